@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A chart: one part of the surface with its map to the plane, and how to find points in it.
+#pragma once
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// uv[i] belongs to mesh.points[i]; every triangle is positively oriented in the plane.
+struct Chart {
+  SubMesh mesh;
+  std::vector<Vec2> uv;
+  std::vector<int> opposite;  ///< half-edges within the chart
+};
+
+/// A place in a chart or on a surface: barycentric coordinates b0 + b1 + b2 = 1 of triangle `face`.
+struct Place {
+  int face = -1;
+  double b0 = 1, b1 = 0, b2 = 0;
+};
+
+/// Builds the charts of a surface from its part labels and the rows of the stream's chart_vertex table
+/// (part, vertex, u, v). Throws BadInput if a row is missing, doubled or out of range.
+std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex, int n_parts);
+
+/// Finds the triangle of the chart that holds p, walking from triangle `hint` by exact orientation tests.
+/// A point outside the chart gets the nearest place on its border (barycentrics clamped to [0,1]). Never fails.
+Place locate(const Chart& chart, Vec2 p, int hint);
+
+}  // namespace meshpipe

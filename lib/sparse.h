@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sparse direct solves, by Eigen's simplicial LDL^T; no other file of the library sees Eigen's solvers.
+#pragma once
+#include <array>
+#include <complex>
+#include <memory>
+#include <vector>
+
+#include "lib/vec.h"
+
+namespace meshpipe {
+
+/// An entry of a matrix; entries at the same place add up. Give the lower triangle (row >= col) only.
+template <class Scalar>
+struct Entry {
+  int row, col;
+  Scalar value;
+};
+
+/// A factorised symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
+/// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
+/// Order: AMD, or METIS nested dissection above 300 000 rows, where it is faster.
+template <class Scalar>
+class Factorisation {
+ public:
+  Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle);
+  ~Factorisation();
+  Factorisation(Factorisation&&) noexcept;
+  /// Solves in place; call as often as needed.
+  void solve(std::vector<Scalar>& right_hand_side) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Weights w of the triangle's edges for the operator sum_j w_ij (u_i - u_j): half the cotangent of the angle
+/// opposite to edge i -> i+1 (i.e. at corner i+2). `floor`, relative: cotangents below it are raised to it,
+/// which keeps the operator an M-matrix (floor > 0 gives a one-to-one map on a convex border, Floater 1997).
+/// Degenerate triangles get finite weights (lengths are mollified).
+std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor = -1e30);
+
+/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the values
+/// at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on return.
+/// weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an edge);
+/// one factorisation, both coordinates solved with it.
+/// `fans` lists loops of vertices, each joined to a virtual centre vertex by positive weights (a filled hole).
+/// Throws GoalMissed if the matrix is singular (a component without a fixed vertex).
+void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
+                     const std::vector<char>& fixed, const std::vector<std::vector<int>>& fans,
+                     std::vector<Vec2>& uv);
+
+}  // namespace meshpipe

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Connectivity of a triangle mesh: neighbours, components, boundary loops, genus (the paper's eq. 2).
+#pragma once
+#include <vector>
+
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// opposite[3*t+i] as in lib/mesh.h, for an oriented manifold; linear up to one radix pass, no hashing.
+/// Throws NotAdmissible naming the edge if it has more than two triangles, or two that disagree on direction.
+std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices);
+
+/// The same where an edge between triangles of different labels counts as border (-1 on both sides).
+std::vector<int> opposite_within(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                                 const std::vector<int>& label);
+
+/// Number of edge-connected components; component[t] in 0..n-1, numbered by their first triangle.
+int components(const std::vector<int>& opposite, std::vector<int>& component);
+
+/// Border loops as lists of half-edges, each with its triangle on the left, in order; the loop with the
+/// smallest half-edge first. Precondition: no pinched vertices on the border (walks around the vertex star).
+std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite);
+
+/// One vertex star too many: the first vertex whose triangles do not form a single fan, or -1.
+int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices);
+
+/// What the table of mtopo holds for a component or a part.
+struct Topology {
+  int vertices = 0, edges = 0, faces = 0;
+  int components = 0;
+  int genus = 0;  ///< eq. (2) summed over the components: (2 C - chi - N_B) / 2
+  int loops = 0;  ///< N_B
+  double area = 0;
+  double longest_loop = 0;             ///< L
+  std::vector<double> loop_length;     ///< in the order of boundary_loops
+  double eta_cyl = 0;                  ///< pi A / L^2; 0 if closed
+  double eta_box = 0;                  ///< bounding-box size of the part over that of its longest loop
+  double eta_geo = 0;                  ///< H / D, H the largest edge-path distance from the longest loop, D = L / pi
+};
+
+/// Topology and aspect ratios of a mesh (one part: use split_by_label first).
+/// Throws like opposite_halfedges; a pinched vertex is NotAdmissible too.
+Topology topology_of(const Mesh& mesh);
+
+/// The paper's conditions (5): genus 0, at least one loop, eta_geo below the limit, one component.
+bool admissible(const Topology& t, double max_aspect = 4);
+
+}  // namespace meshpipe

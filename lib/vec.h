@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points and vectors of the plane and of space: plain structs, value semantics, no dependencies.
+#pragma once
+#include <array>
+#include <cmath>
+
+namespace meshpipe {
+
+struct Vec2 {
+  double x = 0, y = 0;
+};
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+};
+
+inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+inline Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
+inline bool operator==(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
+inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+inline Vec2 lerp(Vec2 a, Vec2 b, double t) { return (1 - t) * a + t * b; }
+
+inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+inline bool operator==(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+inline Vec3 lerp(Vec3 a, Vec3 b, double t) { return (1 - t) * a + t * b; }
+/// a over its length; the zero vector stays zero.
+inline Vec3 normalized(Vec3 a) {
+  double l = norm(a);
+  return l > 0 ? (1 / l) * a : a;
+}
+/// Twice the area of a triangle, along its normal.
+inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
+/// Angle between two vectors in [0, pi]; by atan2, since acos loses half the digits near 0 and pi.
+inline double angle(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+
+}  // namespace meshpipe
