@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every program shares: the common options, reading and writing, reports, exit statuses.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/formats.h"
+#include "formats/stream.h"
+#include "lib/error.h"
+
+namespace meshpipe {
+
+/// A program's input, output and reports, as the common options ask for them.
+class Io {
+ public:
+  /// Reads FILE or standard input, in any format.
+  Stream read();
+  /// Reads a second file (a reference, say); `path` as the user gave it.
+  Stream read(const std::string& path) const;
+  /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard output.
+  void write(Stream& stream);
+  /// Writes bytes to -o FILE or standard output, the same way.
+  void write_bytes(std::string_view bytes) const;
+  /// Writes bytes to another file of the user's, beside it and renamed.
+  static void write_file(const std::string& path, std::string_view bytes);
+  /// A line on standard error, after the program's name; not with -q.
+  void say(const std::string& line) const;
+  /// The same, only with -v.
+  void detail(const std::string& line) const;
+
+  std::string program;
+  std::string input = "-", output = "-";
+  bool ascii = false, binary = false, quiet = false, verbose = false;
+  int threads = 0;
+  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 5 or 6
+  std::string json;
+
+ private:
+  friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
+                      const std::function<void(Io&)>&);
+  std::string arguments_;
+};
+
+/// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and turns exceptions into
+/// one line on standard error and the documented exit status. `summary` ends with the examples --help shows ("\n  mclean ...").
+/// Options of `options` that change the result are recorded in the stream; put those that do not in the group "Reports".
+int run_tool(int argc, char** argv, const char* program, const char* summary,
+             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body);
+
+}  // namespace meshpipe
