@@ -104,10 +104,9 @@ void Io::write(Stream& stream) {
 }
 
 void Io::write_bytes(std::string_view bytes) const {
-  if (output == "-")
-    write_all(STDOUT_FILENO, bytes, "stdout");
-  else
-    write_file(output, bytes);
+  if (output != "-") return write_file(output, bytes);
+  written_ = true;
+  write_all(STDOUT_FILENO, bytes, "stdout");
 }
 
 void Io::write_file(const std::string& path, std::string_view bytes) {
@@ -173,7 +172,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
     std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
     // the next program in the pipe learns whose failure it is
-    if (io.output == "-" && !::isatty(STDOUT_FILENO)) {
+    if (io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO)) {
       std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
       (void)!::write(STDOUT_FILENO, line.data(), line.size());
     }
@@ -195,7 +194,15 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     if (!io.json.empty()) Io::write_file(io.json, io.report.dump(2) + '\n');
   };
   try {
-    body(io);
+    try {
+      body(io);
+    } catch (const GoalMissed&) {
+      write_report();
+      throw;
+    } catch (const ContractMissed&) {
+      write_report();
+      throw;
+    }
     write_report();
     return 0;
   } catch (const UpstreamFailed& e) {
@@ -207,10 +214,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   } catch (const NotAdmissible& e) {
     return failed(4, e.what(), program);
   } catch (const GoalMissed& e) {
-    write_report();
     return failed(5, e.what(), program);
   } catch (const ContractMissed& e) {
-    write_report();
     return failed(6, e.what(), program);
   } catch (const CannotWrite& e) {
     return failed(7, e.what(), program);
