@@ -170,9 +170,10 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   app.get_option("--help")->group(common_group);
 
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
-    std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
-    // the next program in the pipe learns whose failure it is
-    if (io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO)) {
+    // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
+    const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
+    if (!pass_on || culprit == program) std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
+    if (pass_on) {
       std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
       (void)!::write(STDOUT_FILENO, line.data(), line.size());
     }
