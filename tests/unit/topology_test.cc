@@ -179,7 +179,7 @@ TEST(Topology, TableOfPartsHasARowAPart) {
 
   // a part that meets itself at a vertex is refused with the surface's own number
   std::fill(part.begin(), part.end(), 0);
-  part[0] = part[33] = 1;  // triangles (0,1,17) and (17, 34, 33) share vertex 17 only
+  part[0] = part[35] = 1;  // triangles (0, 1, 17) and (17, 34, 33) share vertex 17 only
   ASSERT_EQ(s.tris[0][2], 17);
   try {
     topology_of_parts(s, part, 2);
