@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
     const RelaxReport r = relax(mesh, reference, kinds, options);
     write_lifted(stream, mesh);
     char text[200];
-    std::snprintf(text, sizeof text, "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)",
+    std::snprintf(text, sizeof text,
+                  "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)",
                   mesh.tris.size(), r.kappa_mean, r.kappa_min, r.splits, r.collapses, r.flips);
     io.say(text);
     io.report["triangles"] = mesh.tris.size();
@@ -33,9 +34,11 @@ int main(int argc, char** argv) {
     io.report["intersections"] = r.intersections;
     io.write(stream);
   };
-  return run_tool(argc, argv, "mrelax",
-                  "Optimise a lifted mesh on the surface it came from: flip, collapse, split and move vertices over that "
-                  "surface, across every interface that is not a model edge.\n\n"
-                  "example:\n  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o relaxed.ply",
-                  add_options, body);
+  return run_tool(
+      argc, argv, "mrelax",
+      "Optimise a lifted mesh on the surface it came from: flip, collapse, split and move vertices over that "
+      "surface, across every interface that is not a model edge.\n\n"
+      "example:\n  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply "
+      "-o relaxed.ply",
+      add_options, body);
 }
