@@ -25,6 +25,7 @@ struct Stream {
   std::vector<Table> tables;        ///< the elements after face, in the stream's order
   std::vector<Name> names;
   std::vector<Provenance> history;  ///< in the order the programs ran
+  std::vector<std::string> remarks; ///< other comments, kept as they are
   int input_triangles = 0;          ///< after mclean; 0: not recorded
   bool ascii = false;               ///< encoding it was read in, and is written in unless told otherwise
 
@@ -37,6 +38,9 @@ struct Stream {
   /// Name of a patch, or an empty string.
   std::string name_of(int dim, int tag) const;
 };
+
+/// True for a stream (a PLY with the line "comment mply"), and for the line a failed program leaves in its place.
+bool is_stream(std::string_view bytes);
 
 /// Reads a stream and checks all that formats/mply.md says: header, types, counts, index ranges, finite numbers, no trailing
 /// bytes. Throws BadInput with the line (ascii) or byte (binary): `where` is the file's name for the message.

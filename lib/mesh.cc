@@ -28,7 +28,8 @@ const std::vector<T>& Table::get(std::string_view column) const {
   const Column* c = find(column);
   if (!c) throw NotAdmissible("no column '" + std::string(column) + "' in table '" + name + "'");
   const auto* v = std::get_if<std::vector<T>>(&c->data);
-  if (!v) throw NotAdmissible("column '" + std::string(column) + "' of table '" + name + "' has another type");
+  if (!v)
+    throw NotAdmissible("column '" + std::string(column) + "' of table '" + name + "' has another type");
   return *v;
 }
 
@@ -48,9 +49,9 @@ void Table::erase(std::string_view column) {
   std::erase_if(columns, [&](const Column& c) { return c.name == column; });
 }
 
-#define MESHPIPE_INSTANTIATE(T)                                               \
-  template std::vector<T>& Table::get<T>(std::string_view);                   \
-  template const std::vector<T>& Table::get<T>(std::string_view) const;       \
+#define MESHPIPE_INSTANTIATE(T)                                         \
+  template std::vector<T>& Table::get<T>(std::string_view);             \
+  template const std::vector<T>& Table::get<T>(std::string_view) const; \
   template std::vector<T>& Table::set<T>(std::string_view, std::vector<T>);
 MESHPIPE_INSTANTIATE(std::uint8_t)
 MESHPIPE_INSTANTIATE(int)

@@ -7,8 +7,9 @@
 
 namespace meshpipe {
 
-/// opposite[3*t+i] as in lib/mesh.h, for an oriented manifold; linear up to one radix pass, no hashing.
-/// Throws NotAdmissible naming the edge if it has more than two triangles, or two that disagree on direction.
+/// opposite[3*t+i] as in lib/mesh.h, for an oriented manifold; linear (a counting sort by the smaller vertex), no hashing.
+/// Throws NotAdmissible naming the edge if it has more than two triangles, or two that disagree on direction,
+/// and naming the triangle if it has a repeated vertex.
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices);
 
 /// The same where an edge between triangles of different labels counts as border (-1 on both sides).
@@ -35,13 +36,21 @@ struct Topology {
   double longest_loop = 0;             ///< L
   std::vector<double> loop_length;     ///< in the order of boundary_loops
   double eta_cyl = 0;                  ///< pi A / L^2; 0 if closed
-  double eta_box = 0;                  ///< bounding-box size of the part over that of its longest loop
+  double eta_box = 0;                  ///< longest side of the part's box over that of its longest loop (principal axes)
   double eta_geo = 0;                  ///< H / D, H the largest edge-path distance from the longest loop, D = L / pi
 };
 
 /// Topology and aspect ratios of a mesh (one part: use split_by_label first).
 /// Throws like opposite_halfedges; a pinched vertex is NotAdmissible too.
 Topology topology_of(const Mesh& mesh);
+
+/// The same for every part of a surface: part[t] in 0..n-1. Parallel over the parts.
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n);
+
+/// The stream's table `part`, a row a part: int genus loops faces; double area eta_cyl eta_box eta_geo.
+Table part_table(const std::vector<Topology>& parts);
+/// The table of the parts that face column `part` names, 0..n-1.
+Table part_table(const Surface& surface, int n);
 
 /// The paper's conditions (5): genus 0, at least one loop, eta_geo below the limit, one component.
 bool admissible(const Topology& t, double max_aspect = 4);

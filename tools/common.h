@@ -41,6 +41,7 @@ class Io {
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
                       const std::function<void(Io&)>&);
   std::string arguments_;
+  mutable bool written_ = false;  ///< something went to standard output: no failure line after it
 };
 
 /// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and turns exceptions into

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/line_tables.h"
+
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+[[noreturn]] void bad(const char* table, std::size_t row, const std::string& what) {
+  throw BadInput(std::string(table) + ' ' + std::to_string(row) + ' ' + what);
+}
+
+}  // namespace
+
+std::vector<Chart> read_charts(const Stream& stream) {
+  const Table& rows = stream.need("chart_vertex", "mparam");
+  return make_charts(stream.surface, rows, static_cast<int>(stream.need("part", "mparam").rows));
+}
+
+Lines read_lines(const Stream& stream) {
+  const Table& line = stream.need("line", "mlines");
+  const Table& use = stream.need("line_use", "mlines");
+  const Table& point = stream.need("line_vertex", "mlines");
+  const Table* reference = stream.find("ref_vertex");
+  const int n_vertices = static_cast<int>(reference ? reference->rows : stream.surface.points.size());
+  const int n_points = static_cast<int>(point.rows);
+  const Table* part = stream.find("part");
+
+  Lines lines;
+  const auto &kind = line.get<int>("kind"), &tag = line.get<int>("tag"), &first = line.get<int>("first"),
+             &count = line.get<int>("count"), &closed = line.get<int>("closed");
+  int due = 0;  // the lines tile the points
+  for (std::size_t i = 0; i < line.rows; ++i) {
+    if (kind[i] < border_line || kind[i] > interface_line)
+      bad("line", i, "has kind " + std::to_string(kind[i]) + ", kinds are 0 to 2");
+    if (closed[i] != 0 && closed[i] != 1)
+      bad("line", i, "has closed " + std::to_string(closed[i]) + ", 0 or 1 is due");
+    if (first[i] != due)
+      bad("line", i, "starts at point " + std::to_string(first[i]) + ", " + std::to_string(due) + " is due");
+    if (count[i] < 2 + closed[i])
+      bad("line", i,
+          "has " + std::to_string(count[i]) + " points, the least is " + std::to_string(2 + closed[i]));
+    if (count[i] > n_points - due)
+      bad("line", i,
+          "has " + std::to_string(count[i]) + " points, " + std::to_string(n_points - due) + " are left");
+    due += count[i];
+    lines.lines.push_back({kind[i], tag[i], first[i], count[i], closed[i]});
+  }
+  if (due != n_points)
+    throw BadInput("the lines have " + std::to_string(due) + " points, table 'line_vertex' has " +
+                   std::to_string(n_points));
+
+  const auto &use_line = use.get<int>("line"), &use_part = use.get<int>("part");
+  for (std::size_t i = 0; i < use.rows; ++i) {
+    if (use_line[i] < 0 || use_line[i] >= static_cast<int>(line.rows))
+      bad("line_use", i,
+          "has line " + std::to_string(use_line[i]) + ", but there are " + std::to_string(line.rows));
+    if (use_part[i] < 0 || (part && use_part[i] >= static_cast<int>(part->rows)))
+      bad("line_use", i,
+          "has part " + std::to_string(use_part[i]) + ", but there are " +
+              std::to_string(part ? part->rows : 0));
+    lines.uses.push_back({use_line[i], use_part[i]});
+  }
+
+  const auto &a = point.get<int>("vertex_a"), &b = point.get<int>("vertex_b");
+  const auto& t = point.get<double>("t");
+  lines.points.reserve(point.rows);
+  for (std::size_t i = 0; i < point.rows; ++i) {
+    for (int v : {a[i], b[i]})
+      if (v < 0 || v >= n_vertices)
+        bad("line_vertex", i,
+            "is on vertex " + std::to_string(v) + ", but there are " + std::to_string(n_vertices));
+    if (!(t[i] >= 0 && t[i] <= 1))
+      bad("line_vertex", i, "has t = " + std::to_string(t[i]) + ", 0 to 1 is due");
+    lines.points.push_back({a[i], b[i], t[i]});
+  }
+  return lines;
+}
+
+void write_lines(Stream& stream, const Lines& lines) {
+  std::vector<int> column[5];
+  for (const Line& l : lines.lines) {
+    const int row[] = {l.kind, l.tag, l.first, l.count, l.closed};
+    for (int i = 0; i < 5; ++i) column[i].push_back(row[i]);
+  }
+  Table line{"line", 0, {}};
+  const char* names[] = {"kind", "tag", "first", "count", "closed"};
+  for (int i = 0; i < 5; ++i) line.set(names[i], std::move(column[i]));
+  stream.set(std::move(line));
+
+  std::vector<int> use_line, use_part;
+  for (const LineUse& u : lines.uses) {
+    use_line.push_back(u.line);
+    use_part.push_back(u.part);
+  }
+  Table use{"line_use", 0, {}};
+  use.set("line", std::move(use_line));
+  use.set("part", std::move(use_part));
+  stream.set(std::move(use));
+
+  std::vector<int> a, b;
+  std::vector<double> t;
+  for (const LinePoint& p : lines.points) {
+    a.push_back(p.a);
+    b.push_back(p.b);
+    t.push_back(p.t);
+  }
+  Table point{"line_vertex", 0, {}};
+  point.set("vertex_a", std::move(a));
+  point.set("vertex_b", std::move(b));
+  point.set("t", std::move(t));
+  stream.set(std::move(point));
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A triangle mesh that can be edited in place: flip, split, collapse on flat arrays.
+#pragma once
+#include <cstdint>
+
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// An oriented manifold with borders. Triangles and vertices removed stay as gaps (tris[t][0] < 0, out[v] <
+/// 0) until compact(). Operations keep every invariant; their preconditions are the caller's to check.
+struct EditMesh {
+  std::vector<Tri> tris;
+  std::vector<int> opp;  ///< opposite half-edge, -1 on the border
+  std::vector<std::uint8_t>
+      hard;              ///< per half-edge: must stay an edge (border or model edge); equal on both sides
+  std::vector<int> out;  ///< a half-edge leaving each vertex; on the border the one with opp == -1
+  int live = 0;          ///< triangles that are not gaps
+
+  /// Throws like opposite_halfedges.
+  EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector<std::uint8_t>& model);
+
+  int from(int h) const { return tris[h / 3][h % 3]; }
+  int to(int h) const { return tris[h / 3][(h + 1) % 3]; }
+  int apex(int h) const { return tris[h / 3][(h + 2) % 3]; }
+  bool dead(int t) const { return tris[t][0] < 0; }
+  bool on_border(int v) const { return opp[out[v]] < 0; }
+
+  /// Calls f(h) for every half-edge leaving v within a triangle, counterclockwise.
+  template <class F>
+  void star(int v, F&& f) const {
+    int h = out[v], first = h;
+    do {
+      f(h);
+      h = opp[prev(h)];
+    } while (h >= 0 && h != first);
+  }
+  /// Number of edges at v.
+  int valence(int v) const {
+    int n = 0, last = 0;
+    star(v, [&](int h) { ++n, last = h; });
+    return n + (opp[prev(last)] < 0);
+  }
+  /// Is there an edge between a and b?
+  bool joined(int a, int b) const;
+
+  /// Turns the edge of h within its two triangles: from a-b to c-d. Precondition: not hard, c and d not
+  /// joined.
+  void flip(int h);
+  /// Puts a new vertex (the next number) on the edge of h, splitting its two triangles. Precondition: not
+  /// hard. Triangles 3*2 new half-edges are appended: n is split off triangle h/3, n+1 off triangle opp[h]/3.
+  /// Returns the vertex.
+  int split(int h);
+  /// Moves the start of h to its end and removes it with the edge's two triangles. Precondition:
+  /// can_collapse(h).
+  void collapse(int h);
+  /// The start of h is inside with no hard edge, and the result is a manifold of the same topology (link
+  /// condition).
+  bool can_collapse(int h) const;
+};
+
+}  // namespace meshpipe

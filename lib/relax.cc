@@ -1,0 +1,516 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/edit_mesh.h"
+#include "lib/intersect.h"
+#include "lib/walk.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double sqrt3 = 1.7320508075688772;
+
+/// Shape energy of a triangle: the inverse mean ratio (l1^2 + l2^2 + l3^2) / (4 sqrt(3) A), 1 for the
+/// equilateral and infinite for the degenerate (Knupp 2001), squared so that the worst count most.
+double shape_energy(Vec3 a, Vec3 b, Vec3 c) {
+  double n2 = norm(area_vector(a, b, c));
+  if (n2 <= 0) return 1e30;
+  double q = (dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c)) / (2 * sqrt3 * n2);
+  return q * q;
+}
+
+class Relaxer {
+ public:
+  Relaxer(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
+          const RelaxOptions& options)
+      : lifted_(mesh),
+        reference_(reference),
+        ref_size_(reference.vertex.has("size") ? &reference.vertex.get<double>("size") : nullptr),
+        walk_(reference, reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : no_model_),
+        m_(std::move(mesh.tris), (int)mesh.points.size(), mesh.model),
+        options_(options) {
+    points_.tris.clear();
+    points_.points = std::move(mesh.points);
+    held_.resize(points_.points.size());
+    for (std::size_t v = 0; v < held_.size(); ++v) {
+      int line = mesh.line[v];
+      held_[v] = mesh.kind[v] == 2 || (line >= 0 && line_kind[line] != interface_line);
+    }
+    for (int h = 0; h < (int)m_.hard.size(); ++h)
+      if (m_.hard[h]) held_[m_.from(h)] = held_[m_.to(h)] = 1;
+  }
+
+  RelaxReport run() {
+    const double target = options_.target_triangles > 0 ? options_.target_triangles : wanted_triangles();
+    for (int i = 0; i < 3; ++i) {
+      split_long(1.4, 1e9);
+      collapse_short(0.65, 0);
+      flip_to_regular();
+      smooth(2);
+    }
+    for (int i = 0; i < options_.sweeps; ++i) {
+      meet_count(target);
+      remove_irregular();
+      flip_to_regular();
+      smooth(1);
+      flip_to_shape();
+      smooth(2);
+    }
+    mend_worst();
+    separate();
+    return finish();
+  }
+
+ private:
+  Vec3 at(int v) const { return points_.points[v]; }
+  double size_at(int v) const { return lifted_.size[v]; }
+  double ratio(int a, int b) const { return 2 * norm(at(b) - at(a)) / (size_at(a) + size_at(b)); }
+  Vec3 normal(int t) const {
+    const Tri& v = m_.tris[t];
+    return normalized(area_vector(at(v[0]), at(v[1]), at(v[2])));
+  }
+
+  /// Triangles the size field asks for: the integral of dA / (sqrt(3)/4 h^2).
+  double wanted_triangles() const {
+    double n = 0;
+    for (std::size_t t = 0; t < m_.tris.size(); ++t) {
+      if (m_.dead((int)t)) continue;
+      const Tri& v = m_.tris[t];
+      double h = (size_at(v[0]) + size_at(v[1]) + size_at(v[2])) / 3;
+      n += 0.5 * norm(area_vector(at(v[0]), at(v[1]), at(v[2]))) / (sqrt3 / 4 * h * h);
+    }
+    return n;
+  }
+
+  /// Edges (the smaller half-edge) that pass `test(h)`, ordered by `key(h)`, then by number.
+  template <class Test, class Key>
+  std::vector<int> ordered_edges(Test test, Key key) const {
+    std::vector<std::pair<double, int>> found;
+    for (int h = 0; h < (int)m_.opp.size(); ++h)
+      if (!m_.dead(h / 3) && h < m_.opp[h] && !m_.hard[h] && test(h)) found.push_back({key(h), h});
+    std::sort(found.begin(), found.end());
+    std::vector<int> edges(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) edges[i] = found[i].second;
+    return edges;
+  }
+
+  // --- split ---
+
+  /// Splits the edge of h at the place on the reference nearest to its middle; false if the pieces would
+  /// fold.
+  bool split(int h) {
+    const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+    const Vec3 middle = lerp(at(a), at(b), 0.5);
+    // the walk starts where a wall is least likely to stand in between
+    Place place = walk_.closest(lifted_.place[held_[a] ? b : a], middle);
+    if (held_[a] || held_[b]) {
+      Place other = walk_.closest(lifted_.place[held_[a] ? a : b], middle);
+      if (norm(walk_.point(other) - middle) < norm(walk_.point(place) - middle)) place = other;
+    }
+    const Vec3 p = walk_.point(place);
+    const Vec3 n0 = normal(h / 3), n1 = normal(m_.opp[h] / 3);
+    if (norm(p - middle) > 0.5 * norm(at(b) - at(a))) return false;
+    const Vec3 corners[4][3] = {{at(a), p, at(c)}, {p, at(b), at(c)}, {at(b), p, at(d)}, {p, at(a), at(d)}};
+    for (int i = 0; i < 4; ++i) {
+      Vec3 n = normalized(area_vector(corners[i][0], corners[i][1], corners[i][2]));
+      if (dot(n, i < 2 ? n0 : n1) < 0.3 && dot(n, n0 + n1) < 0.5) return false;
+    }
+    const int low = m_.opp[h] / 3;
+    points_.points.push_back(p);
+    lifted_.place.push_back(place);
+    lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (size_at(a) + size_at(b)));
+    lifted_.kind.push_back(0);
+    lifted_.line.push_back(-1);
+    held_.push_back(0);
+    m_.split(h);
+    lifted_.patch.push_back(lifted_.patch[h / 3]);
+    lifted_.patch.push_back(lifted_.patch[low]);
+    lifted_.part.push_back(lifted_.part[h / 3]);
+    lifted_.part.push_back(lifted_.part[low]);
+    ++report_.splits;
+    return true;
+  }
+
+  double interpolate(const Place& p) const {
+    const Tri& v = reference_.tris[p.face];
+    return p.b0 * (*ref_size_)[v[0]] + p.b1 * (*ref_size_)[v[1]] + p.b2 * (*ref_size_)[v[2]];
+  }
+
+  void split_long(double above, double most) {
+    auto edges = ordered_edges([&](int h) { return ratio(m_.from(h), m_.to(h)) > above; },
+                               [&](int h) { return -ratio(m_.from(h), m_.to(h)); });
+    for (int h : edges) {
+      if (m_.live >= most) break;
+      if (ratio(m_.from(h), m_.to(h)) > above) split(h);
+    }
+  }
+
+  // --- collapse ---
+
+  /// Collapses the edge of h onto its end (or a better point if the end is free) when the star stays
+  /// unfolded, sound in shape (energy at most `worst`, or no worse than now) and no edge gets longer than
+  /// `longest` times the size.
+  bool collapse(int h, double worst, double longest) {
+    const int a = m_.from(h), b = m_.to(h);
+    if (held_[a] || !m_.can_collapse(h)) return false;
+    const int c = m_.apex(h), d = m_.apex(m_.opp[h]);
+    if (m_.valence(a) + m_.valence(b) - 4 > 9) return false;
+    Place place = lifted_.place[b];
+    Vec3 p = at(b);
+    if (!held_[b]) {
+      place = walk_.closest(lifted_.place[b], lerp(at(a), at(b), 0.5));
+      p = walk_.point(place);
+    }
+    double now = 0, after = 0;
+    bool ok = true;
+    auto around = [&](int v) {
+      m_.star(v, [&](int e) {
+        const Vec3 x = at(v), y = at(m_.to(e)), z = at(m_.apex(e));
+        now = std::max(now, shape_energy(x, y, z));
+        if (e / 3 == h / 3 || e / 3 == m_.opp[h] / 3) return;
+        after = std::max(after, shape_energy(p, y, z));
+        if (dot(normalized(area_vector(p, y, z)), normalized(area_vector(x, y, z))) < 0.6) ok = false;
+        if (norm(y - p) > longest * 0.5 * (size_at(m_.to(e)) + size_at(b)) && norm(y - p) > norm(y - x))
+          ok = false;
+      });
+    };
+    around(a);
+    around(b);
+    if (!ok || (after > worst && after > now)) return false;
+    if (held_[c] && held_[d] && held_[b]) return false;
+    m_.collapse(h);
+    points_.points[b] = p;
+    lifted_.place[b] = place;
+    ++report_.collapses;
+    return true;
+  }
+
+  void collapse_short(double below, double least) {
+    auto edges = ordered_edges([&](int h) { return ratio(m_.from(h), m_.to(h)) < below; },
+                               [&](int h) { return ratio(m_.from(h), m_.to(h)); });
+    for (int h : edges) {
+      if (m_.live <= least) break;
+      if (m_.dead(h / 3) || m_.opp[h] < 0 || m_.hard[h] || ratio(m_.from(h), m_.to(h)) >= below) continue;
+      if (!collapse(h, 4, 1.4)) collapse(m_.opp[h], 4, 1.4);
+    }
+  }
+
+  /// Splits the longest or collapses the shortest edges until the count is within half a percent of the
+  /// target.
+  void meet_count(double target) {
+    if (m_.live > 1.005 * target) collapse_short(0.95, target);
+    if (m_.live < 0.995 * target) split_long(1.05, target);
+  }
+
+  /// Inside vertices of valence 3 and 4 go: their star becomes one or two triangles.
+  void remove_irregular() {
+    const int n = (int)m_.out.size();
+    for (int v = 0; v < n; ++v) {
+      if (m_.out[v] < 0 || held_[v] || m_.on_border(v)) continue;
+      const int valence = m_.valence(v);
+      if (valence > 4) continue;
+      int best = -1;
+      double shortest = 1e300;
+      m_.star(v, [&](int h) {
+        double l = norm(at(m_.to(h)) - at(v));
+        if (l < shortest) shortest = l, best = h;
+      });
+      collapse(best, 4, 1.6);
+    }
+  }
+
+  // --- flip ---
+
+  bool may_flip(int h) const {
+    const int g = m_.opp[h];
+    if (g < 0 || m_.hard[h]) return false;
+    const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(g);
+    if (c == d || m_.valence(a) <= 3 || m_.valence(b) <= 3 || m_.joined(c, d)) return false;
+    // the surface may not bend more across the new edge than across the old one, but for little
+    const Vec3 n0 = normal(h / 3), n1 = normal(g / 3);
+    const Vec3 m0 = normalized(area_vector(at(a), at(d), at(c))),
+               m1 = normalized(area_vector(at(b), at(c), at(d)));
+    if (dot(m0, n0 + n1) <= 0 || dot(m1, n0 + n1) <= 0) return false;
+    return dot(m0, m1) >= std::min(dot(n0, n1), 0.9) - 1e-12;
+  }
+
+  double worst_now(int h) const {
+    const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+    return std::max(shape_energy(at(a), at(b), at(c)), shape_energy(at(b), at(a), at(d)));
+  }
+  double worst_flipped(int h) const {
+    const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+    return std::max(shape_energy(at(a), at(d), at(c)), shape_energy(at(b), at(c), at(d)));
+  }
+
+  void do_flip(int h) {
+    m_.flip(h);
+    ++report_.flips;
+  }
+
+  /// Neighbours a vertex should have: 6 inside; at the border or on a model edge in proportion to the angle
+  /// is not known here, so 4 on a border.
+  int excess(int v) const { return m_.valence(v) - (m_.on_border(v) ? 4 : 6); }
+
+  /// Flips that bring valences nearer to 6 and leave triangles of sound shape.
+  void flip_to_regular() {
+    for (int h = 0; h < (int)m_.opp.size(); ++h) {
+      if (m_.dead(h / 3) || h > m_.opp[h] || m_.hard[h]) continue;
+      const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+      if ((held_[a] && !m_.on_border(a)) || (held_[b] && !m_.on_border(b))) continue;
+      const int ea = excess(a), eb = excess(b), ec = excess(c), ed = excess(d);
+      const int before = ea * ea + eb * eb + ec * ec + ed * ed;
+      const int after = (ea - 1) * (ea - 1) + (eb - 1) * (eb - 1) + (ec + 1) * (ec + 1) + (ed + 1) * (ed + 1);
+      if (after >= before || !may_flip(h)) continue;
+      const double w = worst_flipped(h);
+      if (w > 3 && w > worst_now(h)) continue;
+      do_flip(h);
+    }
+  }
+
+  /// Flips that make the worse of the two triangles better.
+  void flip_to_shape() {
+    for (int h = 0; h < (int)m_.opp.size(); ++h) {
+      if (m_.dead(h / 3) || h > m_.opp[h] || m_.hard[h]) continue;
+      if (worst_flipped(h) < 0.9 * worst_now(h) && may_flip(h)) do_flip(h);
+    }
+  }
+
+  // --- move ---
+
+  /// Sum over the star of v, if it were at p; infinite if a triangle turns away from what it is now.
+  double star_energy(int v, Vec3 p) const {
+    double e = 0;
+    const Vec3 x = at(v);
+    const double h = size_at(v), a0 = sqrt3 / 4 * h * h;
+    m_.star(v, [&](int g) {
+      const Vec3 y = at(m_.to(g)), z = at(m_.apex(g));
+      const Vec3 n = area_vector(p, y, z);
+      if (dot(n, area_vector(x, y, z)) < 0.5 * norm(n) * norm(area_vector(x, y, z))) e = 1e30;
+      const double area = 0.5 * norm(n);
+      e += shape_energy(p, y, z) + (area > 0 ? size_weight * (area / a0 + a0 / area) : 1e30);
+    });
+    return e;
+  }
+
+  static constexpr double size_weight = 0.1;
+
+  /// One Newton step on the star's energy in the tangent plane, walked to on the reference and kept only if
+  /// the energy in space falls.
+  bool move(int v) {
+    const Vec3 x = at(v);
+    Vec3 n{};
+    m_.star(v, [&](int g) { n = n + area_vector(x, at(m_.to(g)), at(m_.apex(g))); });
+    n = normalized(n);
+    const Vec3 s = normalized(std::abs(n.x) < 0.6 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0})),
+               t = cross(n, s);
+    const double size = size_at(v), l0 = sqrt3 / 2 * size * size;  // twice the target area
+    double gx = 0, gy = 0, hxx = 0, hxy = 0, hyy = 0;
+    bool flat = true;
+    m_.star(v, [&](int e) {
+      const Vec3 py = at(m_.to(e)) - x, pz = at(m_.apex(e)) - x;
+      const Vec2 y{dot(py, s), dot(py, t)}, z{dot(pz, s), dot(pz, t)};
+      // twice the area is linear in the vertex's position p: L = L0 + dL.p; the sum of squared edges is
+      // quadratic
+      const double area = cross(y, z);
+      if (area <= 1e-3 * l0) {
+        flat = false;
+        return;
+      }
+      const Vec2 da{y.y - z.y, z.x - y.x};
+      const double squares = dot(y, y) + dot(z, z) + dot(z - y, z - y), k = 1 / (2 * sqrt3);
+      const Vec2 ds = -2.0 * (y + z);
+      const double q = k * squares / area;
+      const Vec2 dq = (k / area) * (ds - (squares / area) * da);
+      // second derivatives of q, then of q^2 + w (L/l0 + l0/L)
+      const double u = k / area, w = size_weight * 2 * l0 / (area * area * area);
+      auto second = [&](double dsi, double dsj, double dai, double daj, double same) {
+        return u * (4 * same - (dsi * daj + dsj * dai) / area + 2 * squares * dai * daj / (area * area));
+      };
+      hxx += 2 * (dq.x * dq.x + q * second(ds.x, ds.x, da.x, da.x, 1)) + w * da.x * da.x;
+      hxy += 2 * (dq.x * dq.y + q * second(ds.x, ds.y, da.x, da.y, 0)) + w * da.x * da.y;
+      hyy += 2 * (dq.y * dq.y + q * second(ds.y, ds.y, da.y, da.y, 1)) + w * da.y * da.y;
+      const double size_slope = size_weight * (1 / l0 - l0 / (area * area));
+      gx += 2 * q * dq.x + size_slope * da.x;
+      gy += 2 * q * dq.y + size_slope * da.y;
+    });
+    Vec2 step;
+    const double det = hxx * hyy - hxy * hxy;
+    if (flat && det > 1e-12 * hxx * hyy && hxx > 0)
+      step = {-(hyy * gx - hxy * gy) / det, -(hxx * gy - hxy * gx) / det};
+    else {
+      // a star with folded triangles: towards its centre
+      Vec3 centre{};
+      int count = 0;
+      m_.star(v, [&](int e) { centre = centre + (at(m_.to(e)) - x), ++count; });
+      centre = (1.0 / count) * centre;
+      step = {dot(centre, s), dot(centre, t)};
+    }
+    const double length = norm(step);
+    if (length < 1e-4 * size) return false;
+    if (length > 0.5 * size) step = (0.5 * size / length) * step;
+    const double before = star_energy(v, x);
+    for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
+      Place place = walk_.closest(lifted_.place[v], x + step.x * s + step.y * t);
+      const Vec3 p = walk_.point(place);
+      if (star_energy(v, p) < before) {
+        points_.points[v] = p;
+        lifted_.place[v] = place;
+        if (ref_size_) lifted_.size[v] = interpolate(place);
+        ++report_.moves;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void smooth(int sweeps) {
+    const int n = (int)m_.out.size();
+    for (int i = 0; i < sweeps; ++i)
+      for (int v = 0; v < n; ++v)
+        if (m_.out[v] >= 0 && !held_[v]) move(v);
+  }
+
+  // --- the last few ---
+
+  double kappa_of(int t) const { return kappa(at(m_.tris[t][0]), at(m_.tris[t][1]), at(m_.tris[t][2])); }
+
+  /// Triangles of low quality one by one: whatever of flip, collapse, split and moves of the neighbourhood
+  /// helps.
+  void mend_worst() {
+    for (int round = 0; round < 6; ++round) {
+      std::vector<std::pair<double, int>> bad;
+      for (int t = 0; t < (int)m_.tris.size(); ++t)
+        if (!m_.dead(t))
+          if (double k = kappa_of(t); k < 0.7) bad.push_back({k, t});
+      if (bad.empty()) return;
+      std::sort(bad.begin(), bad.end());
+      for (auto [k, t] : bad) {
+        if (m_.dead(t) || kappa_of(t) > 0.75) continue;
+        for (int i = 0; i < 3 && !m_.dead(t); ++i) {
+          const int h = 3 * t + i;
+          if (m_.hard[h]) continue;
+          if (worst_flipped(h) < 0.95 * worst_now(h) && may_flip(h)) do_flip(h);
+        }
+        if (kappa_of(t) < 0.5) {
+          int shortest = 3 * t;
+          for (int h = 3 * t; h < 3 * t + 3; ++h)
+            if (norm(at(m_.to(h)) - at(m_.from(h))) < norm(at(m_.to(shortest)) - at(m_.from(shortest))))
+              shortest = h;
+          const double now = 1;
+          if (m_.opp[shortest] >= 0 && !m_.hard[shortest] &&
+              (collapse(shortest, now, 1.8) || collapse(m_.opp[shortest], now, 1.8)))
+            continue;
+        }
+        for (int repeat = 0; repeat < 2; ++repeat)
+          for (int v : m_.tris[t]) {
+            if (!held_[v]) move(v);
+            std::vector<int> ring;
+            m_.star(v, [&](int e) { ring.push_back(m_.to(e)); });
+            for (int w : ring)
+              if (!held_[w]) move(w);
+          }
+      }
+    }
+  }
+
+  /// Where triangles of the result intersect, the surface is too thin or too curved for their size: refine
+  /// there.
+  void separate() {
+    for (int round = 0;; ++round) {
+      Mesh now{points_.points, {}};
+      std::vector<int> number;
+      for (int t = 0; t < (int)m_.tris.size(); ++t)
+        if (!m_.dead(t)) now.tris.push_back(m_.tris[t]), number.push_back(t);
+      auto pairs = self_intersections(now);
+      report_.intersections = (int)pairs.size();
+      if (pairs.empty() || round == 10) return;
+      std::vector<int> culprits;
+      for (auto [s, t] : pairs) culprits.insert(culprits.end(), {number[s], number[t]});
+      std::sort(culprits.begin(), culprits.end());
+      culprits.erase(std::unique(culprits.begin(), culprits.end()), culprits.end());
+      std::vector<int> around;
+      for (int t : culprits) {
+        if (m_.dead(t)) continue;
+        int longest = -1;
+        double length = 0;
+        for (int h = 3 * t; h < 3 * t + 3; ++h) {
+          double l = norm(at(m_.to(h)) - at(m_.from(h)));
+          if (!m_.hard[h] && l > length) length = l, longest = h;
+        }
+        if (longest >= 0 && split(longest)) {
+          const int v = (int)m_.out.size() - 1;
+          m_.star(v, [&](int e) { around.push_back(m_.to(e)); });
+        }
+        for (int v : m_.tris[t]) around.push_back(v);
+      }
+      for (int h = 0; h < (int)m_.opp.size(); ++h)
+        if (!m_.dead(h / 3) && h < m_.opp[h] && !m_.hard[h] && worst_flipped(h) < 0.9 * worst_now(h) &&
+            may_flip(h))
+          do_flip(h);
+      for (int v : around)
+        if (m_.out[v] >= 0 && !held_[v]) move(v);
+    }
+  }
+
+  RelaxReport finish() {
+    std::vector<int> number(m_.out.size(), -1);
+    LiftedMesh& r = lifted_;
+    int n = 0;
+    for (std::size_t v = 0; v < m_.out.size(); ++v) {
+      if (m_.out[v] < 0) continue;
+      number[v] = n;
+      r.place[n] = r.place[v], r.kind[n] = held_[v] ? r.kind[v] : 0, r.line[n] = held_[v] ? r.line[v] : -1;
+      r.size[n] = r.size[v];
+      points_.points[n++] = points_.points[v];
+    }
+    points_.points.resize(n), r.place.resize(n), r.kind.resize(n), r.line.resize(n), r.size.resize(n);
+    r.points = std::move(points_.points);
+    r.tris.clear();
+    r.model.clear();
+    double sum = 0;
+    report_.kappa_min = 1;
+    for (int t = 0, k = 0; t < (int)m_.tris.size(); ++t) {
+      if (m_.dead(t)) continue;
+      Tri v;
+      std::uint8_t model = 0;
+      for (int i = 0; i < 3; ++i) {
+        v[i] = number[m_.tris[t][i]];
+        if (m_.hard[3 * t + i] && m_.opp[3 * t + i] >= 0) model |= 1 << i;
+      }
+      r.tris.push_back(v);
+      r.model.push_back(model);
+      r.patch[k] = r.patch[t], r.part[k] = r.part[t];
+      ++k;
+      double q = kappa(r.points[v[0]], r.points[v[1]], r.points[v[2]]);
+      sum += q;
+      report_.kappa_min = std::min(report_.kappa_min, q);
+    }
+    r.patch.resize(r.tris.size()), r.part.resize(r.tris.size());
+    report_.kappa_mean = sum / std::max<std::size_t>(1, r.tris.size());
+    return report_;
+  }
+
+  LiftedMesh& lifted_;
+  const Surface& reference_;
+  const std::vector<double>* ref_size_;
+  const std::vector<std::uint8_t> no_model_;
+  SurfaceWalk walk_;
+  EditMesh m_;
+  Mesh points_;
+  std::vector<char> held_;  ///< per vertex: on a border or model edge, or a corner: does not move
+  RelaxOptions options_;
+  RelaxReport report_;
+};
+
+}  // namespace
+
+RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
+                  const RelaxOptions& options) {
+  return Relaxer(mesh, reference, line_kind, options).run();
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/topology.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <numbers>
+#include <queue>
+
+#include "lib/error.h"
+
+namespace meshpipe {
+
+namespace {
+
+std::string edge_name(int a, int b) { return "edge " + std::to_string(a) + "-" + std::to_string(b); }
+
+[[noreturn]] void not_manifold(const std::vector<Tri>& tris, int h, int count) {
+  throw NotAdmissible(edge_name(origin(tris, h), target(tris, h)) + " of triangle " + std::to_string(h / 3) +
+                      " has " + std::to_string(count) + " triangles, not 2; run mclean first");
+}
+
+}  // namespace
+
+std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices) {
+  // Half-edges in the bucket of their smaller vertex, each as larger vertex and number in one word: equal
+  // edges are next to each other once the bucket, of about three, is sorted.
+  int n = 3 * (int)tris.size();
+  std::vector<int> first(n_vertices + 1, 0);
+  for (int h = 0; h < n; ++h) {
+    int a = origin(tris, h), b = target(tris, h);
+    if (a == b)
+      throw NotAdmissible("triangle " + std::to_string(h / 3) + " has vertex " + std::to_string(a) +
+                          " twice; run mclean first");
+    ++first[std::min(a, b) + 1];
+  }
+  for (int v = 0; v < n_vertices; ++v) first[v + 1] += first[v];
+  std::vector<std::uint64_t> edge(n);
+  std::vector<int> end(first.begin(), first.end() - 1);
+  for (int h = 0; h < n; ++h) {
+    int a = origin(tris, h), b = target(tris, h);
+    edge[end[std::min(a, b)]++] = (std::uint64_t)std::max(a, b) << 32 | (std::uint32_t)h;
+  }
+  std::vector<int> opposite(n, -1);
+  for (int v = 0; v < n_vertices; ++v) {
+    std::uint64_t *e = edge.data() + first[v], *stop = edge.data() + first[v + 1];
+    std::sort(e, stop);
+    while (e < stop) {
+      std::uint64_t* f = e + 1;
+      while (f < stop && *f >> 32 == *e >> 32) ++f;
+      int h = (int)(std::uint32_t)*e;
+      if (f - e > 2) not_manifold(tris, h, (int)(f - e));
+      if (f - e == 2) {
+        int g = (int)(std::uint32_t)e[1];
+        if (origin(tris, h) == origin(tris, g))
+          throw NotAdmissible(edge_name(origin(tris, h), target(tris, h)) +
+                              " runs the same way in triangles " + std::to_string(h / 3) + " and " +
+                              std::to_string(g / 3) + "; run mclean first");
+        opposite[h] = g;
+        opposite[g] = h;
+      }
+      e = f;
+    }
+  }
+  return opposite;
+}
+
+std::vector<int> opposite_within(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                                 const std::vector<int>& label) {
+  std::vector<int> within(opposite);
+  for (int h = 0; h < 3 * (int)tris.size(); ++h)
+    if (within[h] >= 0 && label[h / 3] != label[within[h] / 3]) within[h] = -1;
+  return within;
+}
+
+int components(const std::vector<int>& opposite, std::vector<int>& component) {
+  int n_tris = (int)opposite.size() / 3, n = 0;
+  component.assign(n_tris, -1);
+  std::vector<int> stack;
+  for (int seed = 0; seed < n_tris; ++seed) {
+    if (component[seed] >= 0) continue;
+    component[seed] = n;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      int t = stack.back();
+      stack.pop_back();
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        int o = opposite[h];
+        if (o < 0 || component[o / 3] >= 0) continue;
+        component[o / 3] = n;
+        stack.push_back(o / 3);
+      }
+    }
+    ++n;
+  }
+  return n;
+}
+
+std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite) {
+  std::vector<std::vector<int>> loops;
+  std::vector<char> seen(opposite.size(), 0);
+  for (int seed = 0; seed < (int)opposite.size(); ++seed) {
+    if (opposite[seed] >= 0 || seen[seed]) continue;
+    std::vector<int>& loop = loops.emplace_back();
+    for (int h = seed; !seen[h];) {
+      seen[h] = 1;
+      loop.push_back(h);
+      for (h = next(h); opposite[h] >= 0;) h = next(opposite[h]);
+    }
+  }
+  return loops;
+}
+
+int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices) {
+  std::vector<char> seen(opposite.size(), 0), has_fan(n_vertices, 0);
+  int pinched = n_vertices;
+  for (int seed = 0; seed < (int)opposite.size(); ++seed) {
+    if (seen[seed]) continue;
+    int v = origin(tris, seed);
+    if (has_fan[v]) pinched = std::min(pinched, v);
+    has_fan[v] = 1;
+    int h = seed;
+    do {
+      seen[h] = 1;
+      h = opposite[prev(h)];
+    } while (h >= 0 && h != seed);
+    if (h < 0)  // a border: the rest of the fan is on the other side of the seed
+      for (h = opposite[seed]; h >= 0; h = opposite[h]) {
+        h = next(h);
+        seen[h] = 1;
+      }
+  }
+  return pinched < n_vertices ? pinched : -1;
+}
+
+namespace {
+
+/// Longest side of the box along the principal axes of the points, which turns with them.
+double box_size(const std::vector<Vec3>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (Vec3 p : points) mean += Eigen::Vector3d(p.x, p.y, p.z);
+  mean /= (double)points.size();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (Vec3 p : points) {
+    Eigen::Vector3d d = Eigen::Vector3d(p.x, p.y, p.z) - mean;
+    inertia += d * d.transpose();
+  }
+  Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvectors();
+  double size = 0;
+  for (int k = 0; k < 3; ++k) {
+    Vec3 axis{axes(0, k), axes(1, k), axes(2, k)}, origin = points[0];
+    double lo = 0, hi = 0;
+    for (Vec3 p : points) {
+      lo = std::min(lo, dot(p - origin, axis));
+      hi = std::max(hi, dot(p - origin, axis));
+    }
+    size = std::max(size, hi - lo);
+  }
+  return size;
+}
+
+/// Largest of the distances along edges from the origins of `loop`, over the vertices they lead to
+/// (Dijkstra).
+double edge_path_depth(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& loop) {
+  const double far = std::numeric_limits<double>::infinity();
+  std::vector<int> star(mesh.points.size(),
+                        -1);  // a half-edge that leaves the vertex; the border's, if there is one
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    int v = origin(mesh.tris, h);
+    if (star[v] < 0 || opposite[h] < 0) star[v] = h;
+  }
+  std::vector<double> distance(mesh.points.size(), far);
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> heap;
+  for (int h : loop) {
+    distance[origin(mesh.tris, h)] = 0;
+    heap.push({0, origin(mesh.tris, h)});
+  }
+  double depth = 0;
+  while (!heap.empty()) {
+    auto [d, v] = heap.top();
+    heap.pop();
+    if (d > distance[v]) continue;
+    depth = d;
+    auto reach = [&, d = d, v = v](int w) {
+      double along = d + norm(mesh.points[w] - mesh.points[v]);
+      if (along < distance[w]) {
+        distance[w] = along;
+        heap.push({along, w});
+      }
+    };
+    for (int h = star[v];;) {
+      reach(target(mesh.tris, h));
+      int in = prev(h);
+      h = opposite[in];
+      if (h < 0) reach(origin(mesh.tris, in));
+      if (h < 0 || h == star[v]) break;
+    }
+  }
+  return depth;
+}
+
+/// `number` translates the vertices for the message of a failure; empty: they are what they are.
+Topology measure(const Mesh& mesh, const std::vector<int>& number) {
+  Topology t;
+  int n = (int)mesh.points.size();
+  std::vector<int> opposite = opposite_halfedges(mesh.tris, n);
+  int pinched = find_pinched_vertex(mesh.tris, opposite, n);
+  if (pinched >= 0)
+    throw NotAdmissible("vertex " + std::to_string(number.empty() ? pinched : number[pinched]) +
+                        " joins triangles that share no edge");
+  std::vector<std::vector<int>> loops = boundary_loops(opposite);
+  std::vector<char> used(n, 0);
+  for (const Tri& tri : mesh.tris)
+    for (int v : tri) used[v] = 1;
+  std::size_t longest = 0, border = 0;
+  for (const std::vector<int>& loop : loops) {
+    double length = 0;
+    for (int h : loop) length += norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+    t.loop_length.push_back(length);
+    if (length > t.loop_length[longest]) longest = t.loop_length.size() - 1;
+    border += loop.size();
+  }
+  std::vector<int> component;
+  t.components = components(opposite, component);
+  t.vertices = (int)std::count(used.begin(), used.end(), 1);
+  t.faces = (int)mesh.tris.size();
+  t.edges = (int)((3 * mesh.tris.size() + border) / 2);
+  t.loops = (int)loops.size();
+  t.genus = (2 * t.components - (t.vertices - t.edges + t.faces) - t.loops) / 2;  // eq. (2)
+  t.area = total_area(mesh);
+  if (loops.empty() || t.loop_length[longest] == 0) return t;
+
+  t.longest_loop = t.loop_length[longest];
+  t.eta_cyl = std::numbers::pi * t.area / (t.longest_loop * t.longest_loop);
+  t.eta_geo = edge_path_depth(mesh, opposite, loops[longest]) * std::numbers::pi / t.longest_loop;
+  std::vector<Vec3> whole, rim;
+  for (int v = 0; v < n; ++v)
+    if (used[v]) whole.push_back(mesh.points[v]);
+  for (int h : loops[longest]) rim.push_back(mesh.points[origin(mesh.tris, h)]);
+  if (double size = box_size(rim); size > 0) t.eta_box = box_size(whole) / size;
+  return t;
+}
+
+}  // namespace
+
+Topology topology_of(const Mesh& mesh) { return measure(mesh, {}); }
+
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
+  std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
+  std::vector<Topology> parts(n);
+  std::vector<std::exception_ptr> failure(n);
+#pragma omp parallel for schedule(dynamic)
+  for (int p = 0; p < n; ++p) try {
+      parts[p] = measure(meshes[p], meshes[p].vertex);
+    } catch (const NotAdmissible& e) {
+      failure[p] = std::make_exception_ptr(NotAdmissible("part " + std::to_string(p) + ": " + e.what()));
+    } catch (...) {
+      failure[p] = std::current_exception();
+    }
+  for (const std::exception_ptr& f : failure)
+    if (f) std::rethrow_exception(f);
+  return parts;
+}
+
+Table part_table(const std::vector<Topology>& parts) {
+  Table table{"part", parts.size(), {}};
+  auto add = [&]<class T, class M>(const char* name, M member) {
+    std::vector<T> column;
+    for (const Topology& t : parts) column.push_back(t.*member);
+    table.set<T>(name, std::move(column));
+  };
+  add.template operator()<int>("genus", &Topology::genus);
+  add.template operator()<int>("loops", &Topology::loops);
+  add.template operator()<int>("faces", &Topology::faces);
+  add.template operator()<double>("area", &Topology::area);
+  add.template operator()<double>("eta_cyl", &Topology::eta_cyl);
+  add.template operator()<double>("eta_box", &Topology::eta_box);
+  add.template operator()<double>("eta_geo", &Topology::eta_geo);
+  return table;
+}
+
+Table part_table(const Surface& surface, int n) {
+  return part_table(topology_of_parts(surface, surface.face.get<int>("part"), n));
+}
+
+bool admissible(const Topology& t, double max_aspect) {
+  return t.components == 1 && t.genus == 0 && t.loops >= 1 && t.eta_geo < max_aspect;
+}
+
+}  // namespace meshpipe

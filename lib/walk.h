@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moving over a reference surface: the nearest place to a point, by descent from a place close by.
+#pragma once
+#include <cstdint>
+
+#include "lib/chart.h"
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// A surface to walk on: borders and edges marked in `model` (bit i: the edge from corner i to i+1; empty:
+/// none) are walls.
+class SurfaceWalk {
+ public:
+  /// Precondition: an oriented manifold. Keeps a reference to the mesh.
+  SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model);
+  /// The place reached from `from` by steps to neighbouring triangles that come closer to `target`: it is
+  /// connected to `from` on the surface, so the walk never jumps to another sheet. Never fails; a local
+  /// minimum is a valid answer.
+  Place closest(const Place& from, Vec3 target) const;
+  Vec3 point(const Place& place) const;
+  /// Unit normal of the triangle at a place.
+  Vec3 normal(const Place& place) const { return normals_[place.face]; }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<int> neighbour_;  ///< opposite half-edge, -1 at walls
+  std::vector<Vec3> normals_;
+};
+
+}  // namespace meshpipe

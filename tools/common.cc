@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/common.h"
+
+#include <fcntl.h>
+#include <omp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+namespace meshpipe {
+namespace {
+
+constexpr const char* common_group = "Common options";
+
+std::string reason() { return std::strerror(errno); }
+
+void write_all(int fd, std::string_view bytes, const std::string& where) {
+  while (!bytes.empty()) {
+    ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0)
+      throw CannotWrite(where + ": " + reason() + " with " + std::to_string(bytes.size()) +
+                        " bytes left to write");
+    bytes.remove_prefix(n);
+  }
+}
+
+std::string read_all(const std::string& path) {
+  const bool standard = path == "-";
+  const std::string where = standard ? "stdin" : path;
+  int fd = standard ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY);
+  if (fd < 0) throw BadInput(where + ": " + reason());
+  std::string bytes;
+  struct stat info {};
+  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
+  std::size_t used = 0;
+  for (;;) {
+    if (bytes.size() - used < 1 << 16)
+      bytes.resize(std::max(bytes.capacity(), used + (used >> 1) + (1 << 18)));
+    ssize_t n = ::read(fd, bytes.data() + used, bytes.size() - used);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      std::string why = reason();
+      if (!standard) ::close(fd);
+      throw BadInput(where + ": " + why);
+    }
+    if (n == 0) break;
+    used += n;
+  }
+  bytes.resize(used);
+  if (!standard) ::close(fd);
+  if (bytes.empty()) throw BadInput(where + ": the input is empty");
+  return bytes;
+}
+
+std::string extension_of(const std::string& path) {
+  std::size_t dot = path.find_last_of("./");
+  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
+}
+
+/// The options given on the command line that change the result, as they are recorded in the stream.
+std::string recorded(const CLI::App& app) {
+  std::string out;
+  for (const CLI::Option* o : app.get_options()) {
+    if (o->count() == 0 || o->get_group() == common_group || o->get_group() == "Reports") continue;
+    if (!out.empty()) out += ' ';
+    out += o->get_name(!o->nonpositional());
+    if (o->get_expected_min() == 0) continue;
+    char between = '=';
+    for (const std::string& r : o->results()) {
+      out += between + r;
+      between = ',';
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Stream Io::read() {
+  if (input == "-" && ::isatty(STDIN_FILENO))
+    throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
+  return read(input);
+}
+
+Stream Io::read(const std::string& path) const {
+  return read_any(read_all(path), path == "-" ? "stdin" : path);
+}
+
+void Io::write(Stream& stream) {
+  stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
+  const std::string ext = extension_of(output);
+  const bool text = ascii || (stream.ascii && !binary);
+  if (output != "-" && ext != ".ply")
+    for (const Writer& w : writers())
+      if (ext == w.extension) return write_bytes(w.write(stream, text));
+  if (output == "-" && !text && ::isatty(STDOUT_FILENO))
+    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
+  write_bytes(write_stream(stream, text));
+}
+
+void Io::write_bytes(std::string_view bytes) const {
+  if (output != "-") return write_file(output, bytes);
+  written_ = true;
+  write_all(STDOUT_FILENO, bytes, "stdout");
+}
+
+void Io::write_file(const std::string& path, std::string_view bytes) {
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  // a device or a pipe is written to, not replaced
+  std::string temporary = exists && !S_ISREG(info.st_mode) ? "" : path + ".XXXXXX";
+  int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : ::mkstemp(temporary.data());
+  if (fd < 0) throw CannotWrite(path + ": " + reason());
+  try {
+    write_all(fd, bytes, path);
+    if (!temporary.empty()) {
+      mode_t mask = ::umask(0);
+      ::umask(mask);
+      ::fchmod(fd, exists ? info.st_mode & 0777 : 0666 & ~mask);
+    }
+    int closed = ::close(fd);
+    fd = -1;
+    if (closed != 0) throw CannotWrite(path + ": " + reason());
+    if (!temporary.empty() && ::rename(temporary.c_str(), path.c_str()) != 0)
+      throw CannotWrite(path + ": " + reason());
+  } catch (...) {
+    if (fd >= 0) ::close(fd);
+    if (!temporary.empty()) ::unlink(temporary.c_str());
+    throw;
+  }
+}
+
+void Io::say(const std::string& line) const {
+  if (!quiet) std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
+}
+
+void Io::detail(const std::string& line) const {
+  if (verbose) say(line);
+}
+
+int run_tool(int argc, char** argv, const char* program, const char* summary,
+             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body) {
+  Io io;
+  io.program = program;
+  CLI::App app{summary, program};
+  app.get_formatter()->column_width(34);
+  app.option_defaults()->group("Options");
+  options(app);
+  app.option_defaults()->group(common_group);
+  app.add_option("FILE", io.input, "input: the stream or any mesh format; - is standard input")
+      ->type_name("");
+  app.add_option("-o,--output", io.output, "write to this file instead of standard output")
+      ->type_name("FILE");
+  auto* ascii = app.add_flag("--ascii", io.ascii, "write text");
+  app.add_flag("--binary", io.binary, "write binary")->excludes(ascii);
+  app.add_option("-j,--threads", io.threads, "threads; the result does not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  app.add_flag("-q,--quiet", io.quiet, "say nothing but errors");
+  app.add_flag("-v,--verbose", io.verbose, "say more");
+  app.add_option("--json", io.json, "write the report to this file")->type_name("FILE");
+  app.set_version_flag("--version", std::string(program) + " " MESHPIPE_VERSION " (mply 1.0)");
+  app.get_option("--version")->group(common_group);
+  app.set_help_flag("-h,--help", "this text");
+  app.get_option("--help")->group(common_group);
+
+  auto failed = [&](int status, const std::string& why, const std::string& culprit) {
+    // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
+    const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
+    if (!pass_on || culprit == program) std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
+    if (pass_on) {
+      std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
+      (void)!::write(STDOUT_FILENO, line.data(), line.size());
+    }
+    return status;
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::string why = e.what();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    return failed(2, why + "; see " + program + " --help", program);
+  }
+  if (io.threads > 0) omp_set_num_threads(io.threads);
+  io.arguments_ = recorded(app);
+  io.report["program"] = program;
+
+  auto write_report = [&] {
+    if (!io.json.empty()) Io::write_file(io.json, io.report.dump(2) + '\n');
+  };
+  try {
+    try {
+      body(io);
+    } catch (const GoalMissed&) {
+      write_report();
+      throw;
+    } catch (const ContractMissed&) {
+      write_report();
+      throw;
+    }
+    write_report();
+    return 0;
+  } catch (const UpstreamFailed& e) {
+    return failed(e.status, e.program + " failed before this", e.program);
+  } catch (const BadUsage& e) {
+    return failed(2, e.what(), program);
+  } catch (const BadInput& e) {
+    return failed(3, e.what(), program);
+  } catch (const NotAdmissible& e) {
+    return failed(4, e.what(), program);
+  } catch (const GoalMissed& e) {
+    return failed(5, e.what(), program);
+  } catch (const ContractMissed& e) {
+    return failed(6, e.what(), program);
+  } catch (const CannotWrite& e) {
+    return failed(7, e.what(), program);
+  } catch (const std::bad_alloc&) {
+    return failed(1, "out of memory", program);
+  } catch (const std::exception& e) {
+    return failed(1, e.what(), program);
+  }
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mdraw: a picture of one or several meshes, side by side.
+#include "formats/png.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+int main(int argc, char** argv) {
+  View view;
+  std::string color = "plain";
+  int width = 800, height = 800;
+  std::vector<std::string> others;
+  bool smooth = false;
+  auto add_options = [&](CLI::App& app) {
+    app.add_option("--color", color, "plain, part, patch or kappa (default plain)")
+        ->check(CLI::IsMember({"plain", "part", "patch", "kappa"}))
+        ->type_name("BY");
+    app.add_option("--beside", others, "more meshes, drawn to the right in the same way")->type_name("FILE");
+    app.add_option("--azimuth", view.azimuth,
+                   "direction of the viewer round the z axis, degrees (default 30)");
+    app.add_option("--elevation", view.elevation, "height of the viewer, degrees (default 20)");
+    app.add_option("--zoom", view.zoom, "enlarge about the centre (default 1)")->check(CLI::PositiveNumber);
+    app.add_option("--right", view.shift_x, "move the centre right by this share of the width");
+    app.add_option("--up", view.shift_y, "move the centre up by this share of the width");
+    app.add_option("--width", width, "pixels of one picture (default 800)")->check(CLI::Range(16, 8192));
+    app.add_option("--height", height, "pixels (default 800)")->check(CLI::Range(16, 8192));
+    app.add_flag("--no-edges", smooth, "leave the mesh lines out");
+  };
+  auto picture = [&](const Stream& s) {
+    const Mesh& mesh = s.surface;
+    std::vector<Color> colors(mesh.tris.size(), Color{235, 225, 205});
+    const bool labels = color == "part" || color == "patch";
+    if (labels) {
+      const auto& label = s.surface.face.get<int>(color);
+      for (std::size_t t = 0; t < colors.size(); ++t) colors[t] = label_color(label[t]);
+    } else if (color == "kappa") {
+      for (std::size_t t = 0; t < colors.size(); ++t) {
+        const Tri& v = mesh.tris[t];
+        colors[t] = scale_color(kappa(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]));
+      }
+    }
+    std::vector<std::uint8_t> strong;
+    if (s.surface.face.has("model")) strong = s.surface.face.get<std::uint8_t>("model");
+    return draw_mesh(mesh, colors, strong, view, width, height);
+  };
+  auto body = [&](Io& io) {
+    view.edges = !smooth;
+    std::vector<Image> images{picture(io.read())};
+    for (const std::string& path : others) images.push_back(picture(io.read(path)));
+    io.write_bytes(write_png(side_by_side(images)));
+  };
+  return run_tool(argc, argv, "mdraw",
+                  "Draw a mesh as a PNG picture; model edges are drawn thick. Needs no display.\n\n"
+                  "example:\n  mdraw tree.stl -o tree.png",
+                  add_options, body);
+}
