@@ -19,7 +19,7 @@ struct Entry {
 
 /// A factorised symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
 /// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
-/// Order: AMD, or METIS nested dissection above 300 000 rows, where it is faster.
+/// Order: approximate minimum degree.
 template <class Scalar>
 class Factorisation {
  public:

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/sparse.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+/// Entries to compressed columns: two stable counting passes (by row, then by column), then equal places
+/// added up.
+template <class Scalar>
+Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& entries) {
+  auto sort_by = [n](const std::vector<Entry<Scalar>>& from, int Entry<Scalar>::*key,
+                     std::vector<int>& start) {
+    start.assign(n + 1, 0);
+    for (const Entry<Scalar>& e : from) ++start[e.*key + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Entry<Scalar>> to(from.size());
+    std::vector<int> place(start.begin(), start.end() - 1);
+    for (const Entry<Scalar>& e : from) to[place[e.*key]++] = e;
+    return to;
+  };
+  std::vector<int> start;
+  std::vector<Entry<Scalar>> sorted = sort_by(entries, &Entry<Scalar>::row, start);
+  sorted = sort_by(sorted, &Entry<Scalar>::col, start);
+
+  Eigen::SparseMatrix<Scalar> m(n, n);
+  m.resizeNonZeros((Eigen::Index)sorted.size());
+  int* column = m.outerIndexPtr();
+  int* row = m.innerIndexPtr();
+  Scalar* value = m.valuePtr();
+  int k = 0;
+  for (int c = 0; c < n; ++c) {
+    column[c] = k;
+    for (int e = start[c]; e < start[c + 1]; ++e) {
+      if (k > column[c] && row[k - 1] == sorted[e].row) {
+        value[k - 1] += sorted[e].value;
+      } else {
+        row[k] = sorted[e].row;
+        value[k++] = sorted[e].value;
+      }
+    }
+  }
+  column[n] = k;
+  m.resizeNonZeros(k);
+  return m;
+}
+
+}  // namespace
+
+template <class Scalar>
+struct Factorisation<Scalar>::Impl {
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> ldlt;
+};
+
+template <class Scalar>
+Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle)
+    : impl_(std::make_unique<Impl>()) {
+  Eigen::SparseMatrix<Scalar> m = compress(n, lower_triangle);
+  impl_->ldlt.compute(m);
+  // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
+  // lost all its digits against the diagonal it started from is as singular, and a negative one as little
+  // definite
+  const auto& pivot = impl_->ldlt.vectorD();
+  const auto& order = impl_->ldlt.permutationP().indices();
+  constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
+  for (int i = 0; i < n; ++i) {
+    double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
+    if (impl_->ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
+      throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
+                       " has diagonal " + std::to_string(a) + " and pivot " + std::to_string(d));
+  }
+}
+
+template <class Scalar>
+Factorisation<Scalar>::~Factorisation() = default;
+template <class Scalar>
+Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
+
+template <class Scalar>
+void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> x(right_hand_side.data(),
+                                                         (Eigen::Index)right_hand_side.size());
+  x = impl_->ldlt.solve(x).eval();
+}
+
+template class Factorisation<double>;
+template class Factorisation<std::complex<double>>;
+
+std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor) {
+  // the edges i -> i+1 and their lengths; the angle opposite to edge i lies between the other two edges
+  std::array<Vec3, 3> e{b - a, c - b, a - c};
+  std::array<double, 3> l{norm(e[0]), norm(e[1]), norm(e[2])};
+  double longest = std::max({l[0], l[1], l[2]}), area2 = norm(cross(e[0], e[1]));
+  constexpr double flat = 1e-5;
+  std::array<double, 3> weight;
+  if (area2 > flat * longest * longest) {
+    for (int i = 0; i < 3; ++i) weight[i] = -dot(e[(i + 1) % 3], e[(i + 2) % 3]) / area2;
+  } else {
+    // a flatter triangle has its edges lengthened alike until it is a proper one (Sharp and Crane 2020): a
+    // true element of a slightly wrong shape, with cotangents up to about 1e5 and still sum cot a cot b = 1
+    if (longest == 0) l.fill(longest = 1);
+    for (double more = 1e-9 * longest, area4 = 0; area4 <= 2 * flat * longest * longest; more *= 2) {
+      for (double& x : l) x += more;
+      // four times the area by Heron's formula in Kahan's stable order
+      std::array<double, 3> s = l;
+      std::sort(s.begin(), s.end());
+      double product =
+          (s[2] + (s[1] + s[0])) * (s[0] - (s[2] - s[1])) * (s[0] + (s[2] - s[1])) * (s[2] + (s[1] - s[0]));
+      area4 = std::sqrt(std::max(product, 0.0));
+      for (int i = 0; i < 3; ++i) {
+        double x = l[i], y = l[(i + 1) % 3], z = l[(i + 2) % 3];
+        weight[i] = (y * y + z * z - x * x) / area4;
+      }
+    }
+  }
+  for (double& w : weight) w = 0.5 * std::max(w, floor);
+  return weight;
+}
+
+void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
+                     const std::vector<char>& fixed, const std::vector<std::vector<int>>& fans,
+                     std::vector<Vec2>& uv) {
+  // unknowns: the free vertices that a triangle uses, in order, then the centres of the fans
+  int n_points = (int)uv.size(), n = 0;
+  std::vector<int> unknown(n_points, -1);
+  for (const auto& t : tris)
+    for (int v : t)
+      if (!fixed[v]) unknown[v] = 0;
+  for (int& u : unknown)
+    if (u == 0) u = n++;
+  int first_centre = n;
+  n += (int)fans.size();
+  if (n == 0) return;
+
+  std::vector<Entry<double>> matrix;
+  matrix.reserve(2 * weights.size());
+  std::vector<double> diagonal(n, 0), x(n, 0), y(n, 0);
+  auto couple = [&](int i, int vi, int j, int vj, double w) {  // numbers of unknowns (-1: held), and vertices
+    if (i >= 0) diagonal[i] += w;
+    if (j >= 0) diagonal[j] += w;
+    if (i >= 0 && j >= 0) {
+      matrix.push_back({std::max(i, j), std::min(i, j), -w});
+    } else if (i >= 0) {
+      x[i] += w * uv[vj].x;
+      y[i] += w * uv[vj].y;
+    } else if (j >= 0) {
+      x[j] += w * uv[vi].x;
+      y[j] += w * uv[vi].y;
+    }
+  };
+  for (std::size_t h = 0; h < weights.size(); ++h) {
+    int a = tris[h / 3][h % 3], b = tris[h / 3][(h + 1) % 3];
+    couple(unknown[a], a, unknown[b], b, weights[h]);
+  }
+  for (std::size_t f = 0; f < fans.size(); ++f) {
+    // a regular polygon of k equal sides: angle 2 pi / k at the centre, so half the cotangent of the base
+    // angle is tan(pi / k) / 2, for the two triangles at each spoke together tan(pi / k)
+    constexpr double pi = 3.14159265358979323846;
+    double spoke = std::tan(pi / std::max<double>(3, (double)fans[f].size()));
+    for (int v : fans[f]) couple(first_centre + (int)f, -1, unknown[v], v, spoke);
+  }
+  for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
+
+  Factorisation<double> factorisation(n, matrix);
+  factorisation.solve(x);
+  factorisation.solve(y);
+  for (int v = 0; v < n_points; ++v)
+    if (unknown[v] >= 0) uv[v] = {x[unknown[v]], y[unknown[v]]};
+}
+
+}  // namespace meshpipe
