@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "formats/text.h"
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -36,33 +37,6 @@ struct Element {
 
 [[noreturn]] void fail_at(const std::string& where, std::size_t place, const std::string& what) {
   throw BadInput(where + ":" + std::to_string(place) + ": " + what);
-}
-
-std::string decode(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned value = 0;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(&text[i + 1], &text[i + 3], value, 16).ptr == &text[i + 3]) {
-      out += static_cast<char>(value);
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
-}
-
-std::string encode(std::string_view text) {
-  constexpr char hex[] = "0123456789ABCDEF";
-  std::string out;
-  for (unsigned char c : text) {
-    if (c > 32 && c < 127 && c != '%')
-      out += static_cast<char>(c);
-    else
-      out += {'%', hex[c >> 4], hex[c & 15]};
-  }
-  return out;
 }
 
 std::vector<std::string_view> words(std::string_view line) {
@@ -161,7 +135,7 @@ class Reader {
       Name n;
       if (!parse(w[2], n.dim) || !parse(w[3], n.tag) || n.dim < 0 || n.dim > 3)
         fail("'" + std::string(line.substr(0, 80)) + "' is not 'comment name DIM TAG NAME'");
-      n.text = decode(w[4]);
+      n.text = percent_decode(w[4]);
       stream_.names.push_back(std::move(n));
     } else if (w.size() >= 4 && w[1] == "pg") {
       std::size_t rest = w.size() > 4 ? w[4].data() - line.data() : line.size();
@@ -550,8 +524,8 @@ std::string write_stream(const Stream& stream, bool ascii) {
   if (stream.input_triangles > 0)
     out += "comment input_triangles " + std::to_string(stream.input_triangles) + '\n';
   for (const Name& n : stream.names)
-    out +=
-        "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' + encode(n.text) + '\n';
+    out += "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' +
+           percent_encode(n.text) + '\n';
   for (const std::string& r : stream.remarks) out += "comment " + r + '\n';
   const Surface& s = stream.surface;
   declare(out, s.vertex, s.points.size());
