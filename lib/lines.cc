@@ -119,7 +119,7 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
     }
     if (turn > limit) found.push_back({i, turn});
   }
-  // of a rough border's candidates within h/2 of each other only the sharpest is a corner
+  // on a rough border the neighbours of a corner turn as well, but less: within h/2 only the sharpest count
   const int n = static_cast<int>(found.size());
   for (int k = 0; k < n; ++k) {
     bool sharpest = true;
@@ -132,7 +132,7 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
         double apart = std::abs(length[found[j].index] - length[found[k].index]);
         if (c.closed) apart = std::min(apart, total - apart);
         if (apart > 0.5 * size[v[found[k].index]]) break;
-        sharpest = found[j].turn < found[k].turn || (found[j].turn == found[k].turn && j > k);
+        sharpest = found[j].turn < 1.1 * found[k].turn;
       }
     }
     if (sharpest) corner[v[found[k].index]] = 1;

@@ -47,7 +47,10 @@ std::vector<Chart> flat_charts(const Surface& s, int n_parts) {
   for (SubMesh& m : split_by_label(s, s.face.get<int>("part"), n_parts)) {
     std::vector<Vec2> uv;
     for (Vec3 p : m.points) uv.push_back({p.x, p.y});
-    charts.push_back({std::move(m), std::move(uv), {}});
+    Chart c;
+    c.mesh = std::move(m);
+    c.uv = std::move(uv);
+    charts.push_back(std::move(c));
   }
   return charts;
 }
@@ -114,8 +117,8 @@ TEST(Lines, BreakAtCornersAndJunctions) {
 
 TEST(Lines, PointsThatFallOnVerticesAreVertices) {
   const Surface s = grid(
-      8, 1, flat, [](int, int) { return 0; }, 0.25);
-  for (const LinePoint& p : make_lines(s, flat_charts(s, 1)).points) EXPECT_EQ(p.a, p.b);
+      8, 4, flat, [](int, int) { return 0; }, 0.25);
+  for (const LinePoint& p : make_lines(s, flat_charts(s, 1)).points) EXPECT_EQ(p.a, p.b) << p.t;
   const Surface r = grid(
       7, 1, flat, [](int, int) { return 0; }, 0.25);
   int inside = 0;
