@@ -35,6 +35,8 @@ class Relaxer {
     points_.tris.clear();
     points_.points = std::move(mesh.points);
     held_.resize(points_.points.size());
+    tried_.resize(held_.size());
+    changed_.resize(held_.size());
     for (std::size_t v = 0; v < held_.size(); ++v) {
       int line = mesh.line[v];
       if (line >= 0 && line_kind[line] != interface_line) held_[v] = slides;
@@ -132,7 +134,9 @@ class Relaxer {
     lifted_.kind.push_back(0);
     lifted_.line.push_back(-1);
     held_.push_back(free_);
-    m_.split(h);
+    tried_.push_back(0);
+    changed_.push_back(0);
+    for (int v : {m_.split(h), a, b, c, d}) touch(v);
     lifted_.patch.push_back(lifted_.patch[h / 3]);
     lifted_.patch.push_back(lifted_.patch[low]);
     lifted_.part.push_back(lifted_.part[h / 3]);
@@ -191,6 +195,8 @@ class Relaxer {
     m_.collapse(h);
     points_.points[b] = p;
     lifted_.place[b] = place;
+    touch(b);
+    m_.star(b, [&](int e) { touch(m_.to(e)), touch(m_.apex(e)); });
     ++report_.collapses;
     return true;
   }
@@ -254,6 +260,7 @@ class Relaxer {
   }
 
   void do_flip(int h) {
+    for (int v : {m_.from(h), m_.to(h), m_.apex(h), m_.apex(m_.opp[h])}) touch(v);
     m_.flip(h);
     ++report_.flips;
   }
@@ -304,6 +311,7 @@ class Relaxer {
   }
 
   static constexpr double size_weight = 0.1;
+  static constexpr double settled = 3e-3;  ///< a step below this share of the size is none
 
   /// The same for a vertex on a border or model edge, which slides along it: a parabola through three
   /// energies.
@@ -383,7 +391,7 @@ class Relaxer {
       step = {dot(centre, s), dot(centre, t)};
     }
     const double length = norm(step);
-    if (length < 1e-4 * size) return false;
+    if (length < settled * size) return false;
     if (length > 0.5 * size) step = (0.5 * size / length) * step;
     const double before = star_energy(v, x);
     for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
@@ -400,10 +408,16 @@ class Relaxer {
     return false;
   }
 
-  bool improve(int v) {
-    if (m_.out[v] < 0 || held_[v] == fixed) return false;
-    return held_[v] == slides ? slide(v) : move(v);
+  /// Moves v unless nothing round it has changed since it was last tried.
+  void improve(int v) {
+    if (m_.out[v] < 0 || held_[v] == fixed || (tried_[v] && tried_[v] > changed_[v])) return;
+    tried_[v] = ++clock_;
+    if (held_[v] == slides ? slide(v) : move(v)) {
+      touch(v);
+      m_.star(v, [&](int h) { touch(m_.to(h)), touch(m_.apex(h)); });
+    }
   }
+  void touch(int v) { changed_[v] = ++clock_; }
 
   void smooth(int sweeps) {
     const int n = (int)m_.out.size();
@@ -538,6 +552,9 @@ class Relaxer {
   Mesh points_;
   enum : char { free_ = 0, slides = 1, fixed = 2 };
   std::vector<char> held_;  ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<int> tried_,
+      changed_;  ///< when a vertex was last tried to move, and when its star last changed
+  int clock_ = 0;
   RelaxOptions options_;
   RelaxReport report_;
 };
