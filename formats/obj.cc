@@ -98,6 +98,8 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
       materials.enter(text.rest());
     }
   }
+  // the format has no mark of its own: a file without a face is hardly meant as one
+  if (largest < 0) text.fail("the file ends without a face");
   if (largest >= static_cast<int>(points.size()))
     text.fail_at(largest_line, "a face uses vertex " + std::to_string(largest + 1) + ", but there are " +
                                    std::to_string(points.size()));
