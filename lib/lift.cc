@@ -154,10 +154,13 @@ void split_edge(const Chart& chart, PlaneMesh& mesh, int a, int b) {
 /// The patches of the reference below the triangles of one part.
 void look_below(const Surface& s, const Chart& chart, const PlaneMesh& mesh, std::vector<int>& below) {
   const auto& patch = s.face.get<int>("patch");
+  int hint = 0;
   for (const Tri& t : mesh.tris) {
     const Vec2 uv = (1.0 / 3) * (mesh.points[t[0]].uv + mesh.points[t[1]].uv + mesh.points[t[2]].uv);
-    const Place place = locate(chart, uv, std::max(0, mesh.points[t[2]].place.face));
-    below.push_back(patch[chart.mesh.face[place.face]]);
+    for (int v : t)
+      if (mesh.points[v].place.face >= 0) hint = mesh.points[v].place.face;
+    hint = locate(chart, uv, hint).face;
+    below.push_back(patch[chart.mesh.face[hint]]);
   }
 }
 
