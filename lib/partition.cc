@@ -300,8 +300,8 @@ Component make_component(const Surface& surface, SubMesh sub) {
 /// Cuts parts of too many triangles, with some room for those that smoothing adds.
 void bound_faces(const Component& c, Labelling& l, const PartitionOptions& options) {
   const int limit = std::max(1, (int)(0.9 * options.max_faces));
-  for (bool again = true; again;) {
-    again = false;
+  for (int round = 0; round < 60; ++round) {
+    bool again = false;
     std::vector<std::vector<int>> triangles(l.parts);
     for (std::size_t t = 0; t < l.label.size(); ++t) triangles[l.label[t]].push_back((int)t);
     int n = l.parts;
@@ -311,6 +311,7 @@ void bound_faces(const Component& c, Labelling& l, const PartitionOptions& optio
     l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
     if (l.parts == 0) return;
   }
+  l.parts = 0;
 }
 
 }  // namespace
@@ -342,9 +343,44 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     n_parts += l.parts;
   }
   surface.face.set("part", std::move(part));
-  straighten_interfaces(surface, n_parts, options.snap);
+  if (!surface.face.has("origin")) {
+    std::vector<int> identity(surface.tris.size());
+    std::iota(identity.begin(), identity.end(), 0);
+    surface.face.set("origin", std::move(identity));
+  }
+  straighten_interfaces(surface, n_parts, options.snap, options.max_faces);
   if (std::string fault = part_fault(surface); !fault.empty()) throw GoalMissed(fault);
   return n_parts;
+}
+
+Interfaces measure_interfaces(const Surface& surface) {
+  const std::vector<int>& part = surface.face.get<int>("part");
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  Interfaces r;
+  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end)
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] > h && part[h / 3] != part[opposite[h] / 3]) {
+      int a = origin(surface.tris, h), b = target(surface.tris, h);
+      r.length += norm(surface.points[b] - surface.points[a]);
+      ends.push_back({a, b});
+      ends.push_back({b, a});
+    }
+  if (ends.empty()) return r;
+  r.length /= diagonal(surface);
+  std::sort(ends.begin(), ends.end());
+  std::vector<double> turning;
+  for (std::size_t i = 0, j; i < ends.size(); i = j) {
+    for (j = i + 1; j < ends.size() && ends[j].first == ends[i].first;) ++j;
+    const Vec3 p = surface.points[ends[i].first];
+    if (j - i == 2)
+      turning.push_back(angle(p - surface.points[ends[i].second], surface.points[ends[i + 1].second] - p));
+    if (j - i > 2) ++r.junctions;
+  }
+  if (turning.empty()) return r;
+  auto quantile = turning.begin() + (std::ptrdiff_t)(turning.size() * 9 / 10);
+  std::nth_element(turning.begin(), quantile, turning.end());
+  r.turning_angle = *quantile * 180 / 3.14159265358979323846;
+  return r;
 }
 
 std::string part_fault(const Surface& surface) {

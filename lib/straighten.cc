@@ -155,7 +155,7 @@ void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, std
 /// Tries one smoothing of the interface; leaves the surface changed and returns true if the result is
 /// admissible and shorter.
 bool try_straighten(Surface& s, const Band& band, int a, int b, double old_length, int n_pinned, int n_parts,
-                    double snap, double width, int steps) {
+                    double snap, int max_faces, double width, int steps) {
   std::vector<double> sign;
   for (int t : band.mesh.face) sign.push_back(s.face.get<int>("part")[t] == a ? 1 : -1);
   std::vector<double> level = diffuse(band, std::move(sign), width, steps);
@@ -187,13 +187,16 @@ bool try_straighten(Surface& s, const Band& band, int a, int b, double old_lengt
   keep_largest_pieces(s, opposite, part, a, b);
   const Regions r = find_regions(s, opposite, part, n_parts);
   if (!r.region[a].maps_to_the_plane() || !r.region[b].maps_to_the_plane()) return false;
+  if (max_faces > 0)
+    for (const Region& x : r.region)
+      if (x.faces > max_faces) return false;
   const std::vector<int> interface = interface_of(opposite, part, a, b);
   int pinned = 0;
   for (int h : interface) pinned += is_model(model_of(s), h);
   return pinned >= n_pinned && length_of(s, interface) < old_length;
 }
 
-void straighten_pair(Surface& s, int a, int b, int n_parts, double snap) {
+void straighten_pair(Surface& s, int a, int b, int n_parts, double snap, int max_faces) {
   const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
   const std::vector<int> interface = interface_of(opposite, s.face.get<int>("part"), a, b);
   int pinned = 0;
@@ -207,7 +210,8 @@ void straighten_pair(Surface& s, int a, int b, int n_parts, double snap) {
   };
   for (Attempt t : {Attempt{4, 5}, Attempt{3, 1}, Attempt{1.5, 1}}) {
     Surface copy = s;
-    if (!try_straighten(copy, band, a, b, length, pinned, n_parts, snap, t.width, t.steps)) continue;
+    if (!try_straighten(copy, band, a, b, length, pinned, n_parts, snap, max_faces, t.width, t.steps))
+      continue;
     s = std::move(copy);
     return;
   }
@@ -215,7 +219,7 @@ void straighten_pair(Surface& s, int a, int b, int n_parts, double snap) {
 
 }  // namespace
 
-void straighten_interfaces(Surface& surface, int n_parts, double snap) {
+void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces) {
   const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   const std::vector<int>& part = surface.face.get<int>("part");
   std::vector<std::pair<int, int>> pairs;
@@ -224,7 +228,7 @@ void straighten_interfaces(Surface& surface, int n_parts, double snap) {
       pairs.push_back({part[h / 3], part[opposite[h] / 3]});
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  for (auto [a, b] : pairs) straighten_pair(surface, a, b, n_parts, snap);
+  for (auto [a, b] : pairs) straighten_pair(surface, a, b, n_parts, snap, max_faces);
 }
 
 }  // namespace meshpipe

@@ -10,6 +10,6 @@ namespace meshpipe {
 /// the two parts' triangles change hands there, all other parts only get split along. Interface edges that
 /// are model edges stay. Where the result would not be admissible (part_fault) or longer, the interface of
 /// that pair stays as it was. Precondition: parts without fault.
-void straighten_interfaces(Surface& surface, int n_parts, double snap);
+void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces = 0);
 
 }  // namespace meshpipe
