@@ -27,8 +27,8 @@ std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
   return d;
 }
 
-// Rounds of doubling size at random, each along Hilbert's curve: expected n log n insertion whatever the points
-// (Amenta, Choi, Rote 2003).
+// Rounds of doubling size at random, each along Hilbert's curve: expected n log n insertion whatever the
+// points (Amenta, Choi, Rote 2003).
 std::vector<int> insertion_order(const std::vector<Vec2>& points, Vec2 lo, double extent) {
   int n = (int)points.size();
   std::vector<std::uint64_t> key(n);
@@ -36,13 +36,21 @@ std::vector<int> insertion_order(const std::vector<Vec2>& points, Vec2 lo, doubl
     std::uint64_t r = (i + 1) * 0x9E3779B97F4A7C15ull;
     r = (r ^ (r >> 30)) * 0xBF58476D1CE4E5B9ull;
     r = (r ^ (r >> 27)) * 0x94D049BB133111EBull;
-    int round = r >> 63 ? 0 : r >> 62 ? 1 : r >> 61 ? 2 : r >> 60 ? 3 : r >> 59 ? 4 : r >> 58 ? 5 : r >> 57 ? 6 : 7;
+    int round = r >> 63   ? 0
+                : r >> 62 ? 1
+                : r >> 61 ? 2
+                : r >> 60 ? 3
+                : r >> 59 ? 4
+                : r >> 58 ? 5
+                : r >> 57 ? 6
+                          : 7;
     auto cell = [&](double x) { return (std::uint32_t)(x * (65535 / extent)); };
     key[i] = (std::uint64_t)(7 - round) << 32 | hilbert(cell(points[i].x - lo.x), cell(points[i].y - lo.y));
   }
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return key[i] != key[j] ? key[i] < key[j] : i < j; });
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return key[i] != key[j] ? key[i] < key[j] : i < j; });
   return order;
 }
 
@@ -56,7 +64,8 @@ void Cdt::set(int t, Tri corners) {
 
 int Cdt::walk(Vec2 p, int t) const {
   int from = -1;
-  // a visibility walk may go round in circles in a triangulation that is not Delaunay, so its steps are counted
+  // a visibility walk may go round in circles in a triangulation that is not Delaunay, so its steps are
+  // counted
   for (std::size_t step = 0; step < tris.size() + 3; ++step) {
     int out = -1;
     for (int h = 3 * t; h < 3 * t + 3 && out < 0; ++h)
@@ -185,8 +194,8 @@ void Cdt::insert_all(int n) {
     Vec2 p = input[i];
     t = walk(p, t);
     bool new_point = t >= 0 && grow_cavity(p, t, [&](int s) {
-      return incircle(points[tris[s][0]], points[tris[s][1]], points[tris[s][2]], p) > 0;
-    });
+                       return incircle(points[tris[s][0]], points[tris[s][1]], points[tris[s][2]], p) > 0;
+                     });
     if (!new_point) throw GoalMissed("two points at " + show(p));
     // fill_cavity appends; here the vertex has its number already
     int v = fill_cavity(p);
@@ -203,7 +212,8 @@ void Cdt::insert_all(int n) {
 
 void Cdt::recover(int a, int b, std::uint8_t kind) {
   auto fail = [&](const char* what, int v) {
-    throw GoalMissed("the segment " + show(points[a]) + " " + show(points[b]) + " " + what + " " + show(points[v]));
+    throw GoalMissed("the segment " + show(points[a]) + " " + show(points[b]) + " " + what + " " +
+                     show(points[v]));
   };
   if (a == b) fail("has no length at", a);
   int h = half_edge(a, b);
@@ -213,7 +223,8 @@ void Cdt::recover(int a, int b, std::uint8_t kind) {
     int first = -1;
     around(a, [&](int e) {
       int x = orient2d(points[a], points[b], points[target(e)]);
-      if (x == 0 && dot(points[target(e)] - points[a], points[b] - points[a]) > 0) fail("runs through", target(e));
+      if (x == 0 && dot(points[target(e)] - points[a], points[b] - points[a]) > 0)
+        fail("runs through", target(e));
       if (x < 0 && orient2d(points[a], points[b], points[apex(e)]) > 0) first = next(e);
     });
     for (int e = first;;) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plane triangulation that points are inserted into: constrained Delaunay to begin with, any metric after that.
+// A plane triangulation that points are inserted into: constrained Delaunay to begin with, any metric after
+// that.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,7 +16,8 @@ struct Segment {
   bool border;
 };
 
-/// Triangles with neighbour links; half-edges as in lib/mesh.h. All triangles are positive by the exact predicate, always.
+/// Triangles with neighbour links; half-edges as in lib/mesh.h. All triangles are positive by the exact
+/// predicate, always.
 class Cdt {
  public:
   enum : std::uint8_t { free_edge = 0, inner_segment = 1, border_segment = 2 };
@@ -27,8 +29,9 @@ class Cdt {
   std::vector<int> at;              ///< a triangle of each vertex
   std::vector<int> version;         ///< per triangle: counts how often it was replaced
 
-  /// Constrained Delaunay triangulation of the region that the border segments bound (odd parity from outside).
-  /// Throws GoalMissed naming a point if two points coincide, segments cross or touch, or the borders are not closed.
+  /// Constrained Delaunay triangulation of the region that the border segments bound (odd parity from
+  /// outside). Throws GoalMissed naming a point if two points coincide, segments cross or touch, or the
+  /// borders are not closed.
   Cdt(std::vector<Vec2> points, const std::vector<Segment>& segments);
 
   int origin(int h) const { return tris[h / 3][h % 3]; }
@@ -38,20 +41,21 @@ class Cdt {
   /// Triangle that holds p, walking from t without crossing a fixed edge; -1 if one is in the way.
   int walk(Vec2 p, int t) const;
 
-  /// Collects the triangles around p (which lies in t) that `conflict(triangle)` wants replaced, as far as p sees them
-  /// and without crossing fixed edges. False if p lies on a vertex or on a fixed edge.
+  /// Collects the triangles around p (which lies in t) that `conflict(triangle)` wants replaced, as far as p
+  /// sees them and without crossing fixed edges. False if p lies on a vertex or on a fixed edge.
   template <class Conflict>
   bool grow_cavity(Vec2 p, int t, Conflict conflict);
   /// Half-edges of the last cavity's rim, each inside the cavity.
   const std::vector<int>& rim() const { return rim_; }
-  /// Replaces the last cavity by the fan of a new vertex at p. The fan's triangles are in fan() after it, with the
-  /// vertex as their third corner. Returns the vertex.
+  /// Replaces the last cavity by the fan of a new vertex at p. The fan's triangles are in fan() after it,
+  /// with the vertex as their third corner. Returns the vertex.
   int fill_cavity(Vec2 p);
   const std::vector<int>& fan() const { return fan_; }
 
   /// True if the quadrilateral around h is strictly convex and the edge is free.
   bool can_flip(int h) const;
-  /// Turns the diagonal; the new one runs between the former apexes and is half-edge 3 * (h / 3) of the result.
+  /// Turns the diagonal; the new one runs between the former apexes and is half-edge 3 * (h / 3) of the
+  /// result.
   void flip(int h);
   /// Calls visit(h) for the half-edges that start at v, all round (or from border to border).
   template <class Visit>

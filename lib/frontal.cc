@@ -10,14 +10,15 @@ namespace {
 
 // Lengths below are over the size, so that the wanted edge has length one.
 const double ideal_radius = 1 / std::sqrt(3.0);  // of the equilateral triangle's circumcircle
-constexpr double accepted_radius = 0.64;  // a triangle below this needs no point; with `closest` it gives the count asked for
-constexpr double closest = 0.8;                 // no new edge is shorter
-constexpr double closest_to_line = 0.45;         // no new point is nearer to a fixed edge
+constexpr double accepted_radius =
+    0.64;  // a triangle below this needs no point; with `closest` it gives the count asked for
+constexpr double closest = 0.8;           // no new edge is shorter
+constexpr double closest_to_line = 0.45;  // no new point is nearer to a fixed edge
 
 // A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first.
 struct Entry {
-  int rank;         // 0: has a front edge, 1: second try
-  double key;       // smaller first
+  int rank;    // 0: has a front edge, 1: second try
+  double key;  // smaller first
   std::int64_t order;
   int triangle, version;
   bool operator<(const Entry& e) const {
@@ -29,8 +30,7 @@ struct Entry {
 
 class Front {
  public:
-  Front(SiteMesh& mesh, const SizeMetric& field)
-      : m_(mesh), cdt_(mesh.cdt), field_(field) {}
+  Front(SiteMesh& mesh, const SizeMetric& field) : m_(mesh), cdt_(mesh.cdt), field_(field) {}
 
   void run() {
     row_.assign(cdt_.points.size(), 0);
@@ -60,7 +60,8 @@ class Front {
   bool waits(int t) const { return radius_[t] > accepted_radius; }
   int row(int h) const { return std::max(row_[cdt_.origin(h)], row_[cdt_.target(h)]); }
 
-  // The front edge of a waiting triangle: next to an accepted one or on a line, in the earliest row; -1 if none.
+  // The front edge of a waiting triangle: next to an accepted one or on a line, in the earliest row; -1 if
+  // none.
   int front_edge(int t) const {
     int best = -1;
     for (int h = 3 * t; h < 3 * t + 3; ++h)
@@ -78,8 +79,8 @@ class Front {
       queue_.push({1, -radius_[t], order_++, t, cdt_.version[t]});
   }
 
-  // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther than the
-  // circumcentre's own triangle would reach. Judged in frame f.
+  // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther
+  // than the circumcentre's own triangle would reach. Judged in frame f.
   bool rebay_point(int h, const Frame& f, Vec2& p) const {
     Vec2 a = point(cdt_.origin(h));
     Vec2 b = f.to(point(cdt_.target(h)) - a), c = f.to(point(cdt_.apex(h)) - a);
@@ -125,7 +126,8 @@ class Front {
     Frame f = frame_of(there.metric);
     bool free = cdt_.grow_cavity(p, s, [&](int u) {
       // in-circle in the metric at p: plain rounding will do, as the cavity is kept star-shaped exactly
-      Vec2 a = f.to(point(cdt_.tris[u][0]) - p), b = f.to(point(cdt_.tris[u][1]) - p), c = f.to(point(cdt_.tris[u][2]) - p);
+      Vec2 a = f.to(point(cdt_.tris[u][0]) - p), b = f.to(point(cdt_.tris[u][1]) - p),
+           c = f.to(point(cdt_.tris[u][2]) - p);
       return dot(a, a) * cross(b, c) + dot(b, b) * cross(c, a) + dot(c, c) * cross(a, b) > 0;
     });
     if (!free) return false;
@@ -161,9 +163,7 @@ class Front {
 
 }  // namespace
 
-void insert_frontal(SiteMesh& mesh, const SizeMetric& field) {
-  Front(mesh, field).run();
-}
+void insert_frontal(SiteMesh& mesh, const SizeMetric& field) { Front(mesh, field).run(); }
 
 static void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
   Cdt& cdt = m.cdt;
@@ -186,6 +186,16 @@ static void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
   todo.clear();
 }
 
+// Area over squared edges of the worst triangle at v, were it at x.
+static double worst_shape(const SiteMesh& m, int v, Vec3 x) {
+  double worst = 1e300;
+  m.cdt.around(v, [&](int h) {
+    Vec3 a = m.site[m.cdt.target(h)].space - x, b = m.site[m.cdt.apex(h)].space - x;
+    worst = std::min(worst, norm(cross(a, b)) / (dot(a, a) + dot(b, b) + dot(b - a, b - a)));
+  });
+  return worst;
+}
+
 void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
   Cdt& cdt = m.cdt;
   std::vector<int> todo;
@@ -195,24 +205,27 @@ void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
     flip_to_delaunay(m, todo);
     if (sweep == sweeps) return;
     for (int v = m.line_points; v < (int)cdt.points.size(); ++v) {
-      Vec2 p = cdt.points[v], sum{};
+      Vec3 sum{};
       double weight = 0;
       cdt.around(v, [&](int h) {
         // a long edge pulls more, so that edges even out
-        int u = cdt.target(h);
-        double w = norm(m.site[u].space - m.site[v].space);
-        sum = sum + w * (cdt.points[u] - p);
+        Vec3 d = m.site[cdt.target(h)].space - m.site[v].space;
+        double w = norm(d);
+        sum = sum + w * d;
         weight += w;
       });
       if (!(weight > 0)) continue;
-      Vec2 q = p + (1 / weight) * sum;
+      Vec2 q = cdt.points[v] + field.to_plane(m.site[v].place.face, (1 / weight) * sum);
       bool good = std::isfinite(q.x) && std::isfinite(q.y);
       cdt.around(v, [&](int h) {
         good = good && orient2d(q, cdt.points[cdt.target(h)], cdt.points[cdt.apex(h)]) > 0;
       });
       if (!good) continue;
+      Site there = field.at(q, m.site[v].place.face);
+      double worst = worst_shape(m, v, there.space);
+      if (worst < 0.2 && worst < worst_shape(m, v, m.site[v].space)) continue;
       cdt.points[v] = q;
-      m.site[v] = field.at(q, m.site[v].place.face);
+      m.site[v] = there;
     }
   }
 }

@@ -13,8 +13,8 @@ struct SiteMesh {
   int line_points;  ///< vertices below this number do not move
 };
 
-/// Inserts points until every triangle is sized, in rows from the lines inwards. Ends always: a triangle that takes no
-/// point is left as it is.
+/// Inserts points until every triangle is sized, in rows from the lines inwards. Ends always: a triangle that
+/// takes no point is left as it is.
 void insert_frontal(SiteMesh& mesh, const SizeMetric& field);
 
 /// Flips to Delaunay and moves inner vertices between their neighbours, `sweeps` times; judged in space.

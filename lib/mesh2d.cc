@@ -53,61 +53,79 @@ Drawing draw(const Lines& lines, int part) {
   }
   std::sort(d.row.begin(), d.row.end());
   d.row.erase(std::unique(d.row.begin(), d.row.end()), d.row.end());
-  auto number = [&](int row) { return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin()); };
+  auto number = [&](int row) {
+    return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin());
+  };
   for (Segment& s : d.segments) s = {number(s.a), number(s.b), s.border};
   return d;
 }
 
-// Surface vertices to chart vertices, for the few that are asked for; and a triangle of each.
+// Surface vertices to chart vertices, for the few that are asked for; and where edges between them lie.
 class Numbers {
  public:
-  Numbers(const Chart& chart, std::vector<int> wanted) : global_(std::move(wanted)) {
+  Numbers(const Chart& chart, std::vector<int> wanted) : chart_(chart), global_(std::move(wanted)) {
     std::sort(global_.begin(), global_.end());
     global_.erase(std::unique(global_.begin(), global_.end()), global_.end());
-    local_.assign(global_.size(), -1);
-    triangle_.assign(global_.size(), -1);
-    std::vector<int> slot(chart.mesh.vertex.size(), -1);
-    for (std::size_t v = 0; v < slot.size(); ++v) {
-      int k = find(chart.mesh.vertex[v]);
-      if (k >= 0) local_[slot[v] = k] = (int)v;
+    half_edge_.assign(global_.size(), -1);
+    std::vector<int> slot(chart.mesh.vertex.size());
+    for (std::size_t v = 0; v < slot.size(); ++v) slot[v] = find(chart.mesh.vertex[v]);
+    for (int h = 0; h < 3 * (int)chart.mesh.tris.size(); ++h) {
+      int k = slot[origin(chart.mesh.tris, h)];
+      // on the border the first half-edge of the fan, so that turning left meets them all
+      if (k >= 0 && (half_edge_[k] < 0 || chart.opposite[h] < 0)) half_edge_[k] = h;
     }
-    for (std::size_t t = 0; t < chart.mesh.tris.size(); ++t)
-      for (int v : chart.mesh.tris[t])
-        if (slot[v] >= 0) triangle_[slot[v]] = (int)t;
   }
-  int local(int vertex) const {
-    int k = find(vertex);
-    return k < 0 ? -1 : local_[k];
+
+  // The place of a line point; its face is -1 if the chart does not have that edge or vertex.
+  Place place(const LinePoint& p) const {
+    int k = find(p.a), first = k < 0 ? -1 : half_edge_[k], h = first;
+    if (h < 0) return {};
+    if (p.a == p.b) return on_edge(h, 1, 0);
+    do {
+      if (vertex(target(chart_.mesh.tris, h)) == p.b) return on_edge(h, 1 - p.t, p.t);
+      int in = prev(h);  // runs towards a
+      if (vertex(origin(chart_.mesh.tris, in)) == p.b) return on_edge(in, p.t, 1 - p.t);
+      h = chart_.opposite[in];
+    } while (h >= 0 && h != first);
+    return {};
   }
-  int triangle(int vertex) const { return triangle_[find(vertex)]; }
 
  private:
+  int vertex(int local) const { return chart_.mesh.vertex[local]; }
+  static Place on_edge(int h, double origin_weight, double target_weight) {
+    double b[3] = {0, 0, 0};
+    b[h % 3] = origin_weight;
+    b[(h + 1) % 3] = target_weight;
+    return {h / 3, b[0], b[1], b[2]};
+  }
   int find(int vertex) const {
     auto i = std::lower_bound(global_.begin(), global_.end(), vertex);
     return i != global_.end() && *i == vertex ? (int)(i - global_.begin()) : -1;
   }
-  std::vector<int> global_, local_, triangle_;
+  const Chart& chart_;
+  std::vector<int> global_, half_edge_;
 };
 
 PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part) {
   Drawing drawing = draw(lines, part);
   int n = (int)drawing.row.size();
   std::vector<int> wanted;
-  for (int row : drawing.row)
-    for (int v : {lines.points[row].a, lines.points[row].b}) wanted.push_back(v);
-  Numbers numbers(chart, wanted);
+  for (int row : drawing.row) wanted.push_back(lines.points[row].a);
+  Numbers numbers(chart, std::move(wanted));
 
   SizeMetric field(chart, size);
   std::vector<Vec2> uv(n);
   std::vector<Site> site(n);
   for (int i = 0; i < n; ++i) {
     const LinePoint& p = lines.points[drawing.row[i]];
-    int a = numbers.local(p.a), b = numbers.local(p.b);
-    if (a < 0 || b < 0)
-      throw NotAdmissible("line point " + std::to_string(drawing.row[i]) + " lies on edge " + std::to_string(p.a) +
-                          " " + std::to_string(p.b) + ", which is not in the chart");
-    uv[i] = lerp(chart.uv[a], chart.uv[b], p.t);
-    site[i] = field.at(uv[i], numbers.triangle(p.a));
+    Place place = numbers.place(p);
+    if (place.face < 0)
+      throw NotAdmissible("line point " + std::to_string(drawing.row[i]) + " lies on edge " +
+                          std::to_string(p.a) + " " + std::to_string(p.b) + ", which is not in the chart");
+    site[i] = field.at(place);
+    const Tri& t = chart.mesh.tris[place.face];
+    // as the third weight is zero, the same bits as linear interpolation along the edge
+    uv[i] = place.b0 * chart.uv[t[0]] + place.b1 * chart.uv[t[1]] + place.b2 * chart.uv[t[2]];
   }
 
   SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n};

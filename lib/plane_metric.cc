@@ -33,7 +33,8 @@ std::vector<LogMetric> map_metric(const Chart& chart) {
   std::vector<double> weight(chart.uv.size(), 0);
   for (const Tri& t : chart.mesh.tris) {
     Vec2 p = chart.uv[t[1]] - chart.uv[t[0]], q = chart.uv[t[2]] - chart.uv[t[0]];
-    Vec3 x = chart.mesh.points[t[1]] - chart.mesh.points[t[0]], y = chart.mesh.points[t[2]] - chart.mesh.points[t[0]];
+    Vec3 x = chart.mesh.points[t[1]] - chart.mesh.points[t[0]],
+         y = chart.mesh.points[t[2]] - chart.mesh.points[t[0]];
     double det = cross(p, q), area = norm(cross(x, y));
     if (!(det > 0) || !(area > 0)) continue;
     Vec3 xu = (1 / det) * (q.y * x - p.y * y), xv = (1 / det) * (p.x * y - q.x * x);
@@ -53,10 +54,21 @@ std::vector<LogMetric> map_metric(const Chart& chart) {
 SizeMetric::SizeMetric(const Chart& chart, const std::vector<double>& size)
     : chart_(chart), size_(size), map_(map_metric(chart)) {}
 
+Vec2 SizeMetric::to_plane(int face, Vec3 d) const {
+  const Tri& t = chart_.mesh.tris[face];
+  const auto& x = chart_.mesh.points;
+  Vec3 e = x[t[1]] - x[t[0]], f = x[t[2]] - x[t[0]];
+  double ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), de = dot(d, e), df = dot(d, f),
+         det = ee * ff - ef * ef;
+  return ((de * ff - df * ef) / det) * (chart_.uv[t[1]] - chart_.uv[t[0]]) +
+         ((df * ee - de * ef) / det) * (chart_.uv[t[2]] - chart_.uv[t[0]]);
+}
+
 Site SizeMetric::at(const Place& p) const {
   const Tri& t = chart_.mesh.tris[p.face];
   const auto& x = chart_.mesh.points;
-  Site s{p, p.b0 * x[t[0]] + p.b1 * x[t[1]] + p.b2 * x[t[2]], p.b0 * size_[t[0]] + p.b1 * size_[t[1]] + p.b2 * size_[t[2]],
+  Site s{p, p.b0 * x[t[0]] + p.b1 * x[t[1]] + p.b2 * x[t[2]],
+         p.b0 * size_[t[0]] + p.b1 * size_[t[1]] + p.b2 * size_[t[2]],
          p.b0 * map_[t[0]] + p.b1 * map_[t[1]] + p.b2 * map_[t[2]]};
   double log_h2 = 2 * std::log(s.size);
   s.metric.a -= log_h2;

@@ -15,7 +15,8 @@ struct LogMetric {
 inline LogMetric operator+(LogMetric x, LogMetric y) { return {x.a + y.a, x.b + y.b, x.c + y.c}; }
 inline LogMetric operator*(double s, LogMetric x) { return {s * x.a, s * x.b, s * x.c}; }
 
-/// Upper triangular factor of a metric M = F^T F: the affine map to where lengths are plain, orientation kept.
+/// Upper triangular factor of a metric M = F^T F: the affine map to where lengths are plain, orientation
+/// kept.
 struct Frame {
   double xx = 1, xy = 0, yy = 1;
   Vec2 to(Vec2 d) const { return {xx * d.x + xy * d.y, yy * d.y}; }
@@ -23,7 +24,8 @@ struct Frame {
 };
 Frame frame_of(LogMetric log_metric);
 
-/// J^T J of the chart's map (J = dx/du), averaged over the triangles at a vertex, weighted by area, in log space.
+/// J^T J of the chart's map (J = dx/du), averaged over the triangles at a vertex, weighted by area, in log
+/// space.
 std::vector<LogMetric> map_metric(const Chart& chart);
 
 /// What a vertex of a plane mesh knows of the surface.
@@ -40,6 +42,8 @@ class SizeMetric {
   SizeMetric(const Chart& chart, const std::vector<double>& size);  ///< keeps references
   Site at(const Place& place) const;
   Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
+  /// The plane's vector of a vector in space, as far as it is tangent to the chart's triangle.
+  Vec2 to_plane(int face, Vec3 d) const;
 
  private:
   const Chart& chart_;
