@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "formats/text.h"
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -36,33 +37,6 @@ struct Element {
 
 [[noreturn]] void fail_at(const std::string& where, std::size_t place, const std::string& what) {
   throw BadInput(where + ":" + std::to_string(place) + ": " + what);
-}
-
-std::string decode(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned value = 0;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(&text[i + 1], &text[i + 3], value, 16).ptr == &text[i + 3]) {
-      out += static_cast<char>(value);
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
-}
-
-std::string encode(std::string_view text) {
-  constexpr char hex[] = "0123456789ABCDEF";
-  std::string out;
-  for (unsigned char c : text) {
-    if (c > 32 && c < 127 && c != '%')
-      out += static_cast<char>(c);
-    else
-      out += {'%', hex[c >> 4], hex[c & 15]};
-  }
-  return out;
 }
 
 std::vector<std::string_view> words(std::string_view line) {
@@ -125,18 +99,19 @@ class Reader {
     if (format == "format ascii 1.0")
       stream_.ascii = true;
     else if (format != "format binary_little_endian 1.0")
-      fail("'" + std::string(format.substr(0, 60)) +
-           "' where 'format ascii 1.0' or 'format binary_little_endian 1.0' is due");
+      fail(quoted(format) + " where 'format ascii 1.0' or 'format binary_little_endian 1.0' is due");
     ++line_;
     auto version = words(next_line());
     if (version.size() != 3 || version[0] != "comment" || version[1] != "mply")
       fail("'comment mply 1.0' is due here");
     if (!version[2].starts_with("1."))
-      fail("mply version " + std::string(version[2].substr(0, 20)) + ", but this reader knows version 1");
+      fail("mply version " + quoted(version[2]) + ", but this reader knows version 1");
     for (++line_;; ++line_) {
       std::string_view line = next_line();
       auto w = words(line);
       if (line == "end_header") break;
+      if (std::any_of(line.begin(), line.end(), [](unsigned char c) { return c < 32 || c == 127; }))
+        fail("a control character in the header: " + quoted(line));
       if (w.empty()) fail("an empty line in the header");
       if (w[0] == "comment")
         comment(line, w);
@@ -145,7 +120,7 @@ class Reader {
       else if (w[0] == "property")
         property(w);
       else
-        fail("unknown keyword '" + std::string(w[0].substr(0, 40)) + "'");
+        fail("unknown keyword " + quoted(w[0]));
     }
     in_header_ = false;
     ++line_;
@@ -160,15 +135,15 @@ class Reader {
     if (w.size() == 5 && w[1] == "name") {
       Name n;
       if (!parse(w[2], n.dim) || !parse(w[3], n.tag) || n.dim < 0 || n.dim > 3)
-        fail("'" + std::string(line.substr(0, 80)) + "' is not 'comment name DIM TAG NAME'");
-      n.text = decode(w[4]);
+        fail(quoted(line) + " is not 'comment name DIM TAG NAME'");
+      n.text = percent_decode(w[4]);
       stream_.names.push_back(std::move(n));
     } else if (w.size() >= 4 && w[1] == "pg") {
       std::size_t rest = w.size() > 4 ? w[4].data() - line.data() : line.size();
       stream_.history.push_back({std::string(w[2]), std::string(w[3]), std::string(line.substr(rest))});
     } else if (w.size() == 3 && w[1] == "input_triangles") {
       if (!parse(w[2], stream_.input_triangles) || stream_.input_triangles < 0)
-        fail("'" + std::string(w[2].substr(0, 40)) + "' is not a count of triangles");
+        fail(quoted(w[2]) + " is not a count of triangles");
     } else {
       stream_.remarks.emplace_back(line.substr(std::min(line.size(), std::size_t{8})));
     }
@@ -204,7 +179,7 @@ class Reader {
       fail("'property list uchar int vertex_indices' is due first in 'face'");
     auto type = std::find(std::begin(type_names), std::end(type_names), w[1]);
     if (type == std::end(type_names))
-      fail("type '" + std::string(w[1].substr(0, 40)) + "', but the types are uchar, int and double");
+      fail("type " + quoted(w[1]) + ", but the types are uchar, int and double");
     for (const Property& p : e.properties)
       if (p.name == w[2]) fail("property '" + p.name + "' of '" + e.name + "' is declared twice");
     e.properties.push_back({static_cast<Type>(type - type_names), std::string(w[2])});
@@ -269,7 +244,7 @@ class Reader {
       for (long long r = 0; r < e.rows; ++r) {
         Vec3& p = stream_.surface.points[r];
         std::memcpy(&p, base + r * e.stride, 24);
-        if (!std::isfinite(p.x + p.y + p.z)) not_finite(e, r);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) not_finite(e, r);
       }
       offset = 24;
     } else if (e.has_list) {
@@ -327,8 +302,8 @@ class Reader {
         fail("the file ends at row " + std::to_string(row) + " of '" + e.name + "', but " +
              std::to_string(e.rows) + " rows are due");
       std::size_t stop = std::min(bytes_.find_first_of(" \n", at_), bytes_.size());
-      fail("'" + std::string(bytes_.substr(at_, std::min<std::size_t>(stop - at_, 40))) + "' in row " +
-           std::to_string(row) + " of '" + e.name + "' is not a value of type " +
+      fail(quoted(bytes_.substr(at_, stop - at_)) + " in row " + std::to_string(row) + " of '" + e.name +
+           "' is not a value of type " +
            (sizeof(T) == 8   ? "double"
             : sizeof(T) == 4 ? "int"
                              : "uchar"));
@@ -415,7 +390,11 @@ class Reader {
       const Table& table = from->name == "vertex" ? s.vertex
                            : from->name == "face" ? s.face
                                                   : *stream_.find(r.table);
-      if (!table.has(r.column)) continue;
+      const Column* column = table.find(r.column);
+      if (!column) continue;
+      if (!std::holds_alternative<std::vector<int>>(column->data))
+        fail_at(where_, place(*from, 0),
+                std::string("column '") + r.column + "' of '" + r.table + "' is not of type int");
       const auto& values = table.get<int>(r.column);
       for (int i = 0; i < (int)values.size(); ++i)
         if (values[i] < r.least || values[i] >= into->rows)
@@ -531,7 +510,8 @@ Stream read_stream(std::string_view bytes, const std::string& where) {
   if (bytes.starts_with("mply-failed ")) {
     auto w = words(bytes.substr(0, std::min(bytes.find('\n'), bytes.size())));
     int status = 1;
-    if (w.size() == 3 && parse(w[2], status) && status > 0 && status < 256)
+    if (w.size() == 3 && parse(w[2], status) && status > 0 && status < 256 &&
+        std::all_of(w[1].begin(), w[1].end(), [](unsigned char c) { return c > 32 && c < 127; }))
       throw UpstreamFailed{std::string(w[1]), status};
     throw BadInput(where + ":1: a damaged 'mply-failed' line");
   }
@@ -550,8 +530,8 @@ std::string write_stream(const Stream& stream, bool ascii) {
   if (stream.input_triangles > 0)
     out += "comment input_triangles " + std::to_string(stream.input_triangles) + '\n';
   for (const Name& n : stream.names)
-    out +=
-        "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' + encode(n.text) + '\n';
+    out += "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' +
+           percent_encode(n.text) + '\n';
   for (const std::string& r : stream.remarks) out += "comment " + r + '\n';
   const Surface& s = stream.surface;
   declare(out, s.vertex, s.points.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines of the result: borders, model edges and interfaces between parts, divided by the size field (the paper's step 4).
+// Lines of the result: borders, model edges and interfaces between parts, divided by the size field (the
+// paper's step 4).
 #pragma once
 #include "lib/chart.h"
 #include "lib/mesh.h"
@@ -8,14 +9,15 @@ namespace meshpipe {
 
 enum LineKind { border_line = 0, model_line = 1, interface_line = 2 };
 
-/// A point on edge (a, b) of the surface at a + t (b - a); a == b: on the vertex. Both charts of the edge know its (u,v).
+/// A point on edge (a, b) of the surface at a + t (b - a); a == b: on the vertex. Both charts of the edge
+/// know its (u,v).
 struct LinePoint {
   int a, b;
   double t;
 };
 
-/// Points first .. first+count-1 of Lines::points; an open line has both ends (vertices), a closed one repeats nothing.
-/// Segments join consecutive points, and the last to the first when closed.
+/// Points first .. first+count-1 of Lines::points; an open line has both ends (vertices), a closed one
+/// repeats nothing. Segments join consecutive points, and the last to the first when closed.
 struct Line {
   int kind, tag, first, count, closed;
 };
@@ -30,13 +32,17 @@ struct Lines {
   std::vector<LinePoint> points;
 };
 
-/// Chains the special edges (mesh border, part borders, model bits) into lines that end at junctions and corners
-/// (a vertex where the number of special edges is not two, the kind changes, or a model line turns by more than
-/// `corner` radians), and divides each into N = round(integral of 1/h) segments, at least 1 (3 if closed),
-/// equidistributed in that measure, h = column `size` linear along edges.
-/// No two lines, nor a line and itself, cross or touch in any chart but at common ends: where the chords would, the
-/// lines are refined until they do not. A line's points are the same in every chart that uses it.
-/// Precondition: charts in part order, positively oriented.
+/// Vertices that a remeshed surface keeps: ends and junctions of the mesh border and model edges, and where
+/// these turn by more than `corner` radians at every scale from their edges up to the size (the zig-zag of
+/// scans is no corner).
+std::vector<char> model_corners(const Surface& surface, double corner = 0.7);
+
+/// Chains the special edges (mesh border, part borders, model bits) into lines that end at junctions and
+/// corners (a vertex where the number of special edges is not two, and model_corners), and divides each into
+/// N = round(integral of 1/h) segments, at least 1 (3 if closed), equidistributed in that measure, h = column
+/// `size` linear along edges. No two lines, nor a line and itself, cross or touch in any chart but at common
+/// ends: where the chords would, or would lose the shape of a loop, the lines are refined. A line's points
+/// are the same in every chart that uses it. Precondition: charts in part order, positively oriented.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7);
 
 }  // namespace meshpipe

@@ -1,21 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The multiscale Laplace partitioner of the paper's section 3: cuts a part of genus 0 and large aspect ratio in two.
+// The multiscale Laplace partitioner of the paper's section 3: cuts a part of genus 0 and large aspect ratio
+// in two.
 #pragma once
 #include "lib/mesh.h"
 
 namespace meshpipe {
 
 struct MultiscaleOptions {
-  double max_aspect = 4;      ///< eta_max of eq. (5)
-  double min_area = 1e-10;    ///< A_min, relative to the level's disk
-  int min_set = 10;           ///< smaller sets of small triangles stay good (the paper's footnote)
-  int directions = 16;        ///< root directions tried
+  double max_aspect = 4;    ///< eta_max of eq. (5)
+  double min_area = 1e-10;  ///< A_min, relative to the level's disk
+  int min_set = 10;         ///< smaller sets of small triangles stay good (the paper's footnote)
+  int directions = 16;      ///< root directions tried
 };
 
-/// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, and renumbers
-/// parts 0..n-1. Each result is edge-connected, vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1.
-/// Triangles are split along the cut (lib/cut.h). Precondition: parts of genus 0 with a boundary.
-/// Throws GoalMissed if a part cannot be cut. Returns the number of parts.
-int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {});
+/// One cut that was made.
+struct MultiscaleCut {
+  int part = 0;  ///< of the input, or the half of an earlier cut that was cut again
+  int halves[2] = {0,
+                   0};  ///< parts of the result; cut again themselves if they are the `part` of a later cut
+  double eta = 0;       ///< eta_geo before
+  int levels = 0;       ///< of Laplace maps
+  double length = 0;    ///< of the cut line, over the diagonal of the part's bounding box
+};
+
+/// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, and
+/// renumbers parts 0..n-1: halves keep the place of their part in the order. Each result is edge-connected,
+/// vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1. Triangles are split along the cut
+/// (lib/cut.h). Precondition: parts of genus 0 with a boundary. Throws GoalMissed if a part cannot be cut.
+/// Returns the number of parts; `cuts`, if given, receives what was done, in order.
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
+                   std::vector<MultiscaleCut>* cuts = nullptr);
 
 }  // namespace meshpipe

@@ -35,12 +35,21 @@ class Relaxer {
     points_.tris.clear();
     points_.points = std::move(mesh.points);
     held_.resize(points_.points.size());
+    tried_.resize(held_.size());
+    changed_.resize(held_.size());
     for (std::size_t v = 0; v < held_.size(); ++v) {
       int line = mesh.line[v];
-      held_[v] = mesh.kind[v] == 2 || (line >= 0 && line_kind[line] != interface_line);
+      if (line >= 0 && line_kind[line] != interface_line) held_[v] = slides;
     }
+    std::vector<std::uint8_t> ends(held_.size());
     for (int h = 0; h < (int)m_.hard.size(); ++h)
-      if (m_.hard[h]) held_[m_.from(h)] = held_[m_.to(h)] = 1;
+      if (m_.hard[h] && h > m_.opp[h])
+        for (int v : {m_.from(h), m_.to(h)}) {
+          held_[v] = std::max<char>(held_[v], slides);
+          if (ends[v] < 3) ++ends[v];
+        }
+    for (std::size_t v = 0; v < held_.size(); ++v)
+      if (mesh.kind[v] == 2 || (held_[v] && ends[v] != 2)) held_[v] = fixed;
   }
 
   RelaxReport run() {
@@ -124,8 +133,10 @@ class Relaxer {
     lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (size_at(a) + size_at(b)));
     lifted_.kind.push_back(0);
     lifted_.line.push_back(-1);
-    held_.push_back(0);
-    m_.split(h);
+    held_.push_back(free_);
+    tried_.push_back(0);
+    changed_.push_back(0);
+    for (int v : {m_.split(h), a, b, c, d}) touch(v);
     lifted_.patch.push_back(lifted_.patch[h / 3]);
     lifted_.patch.push_back(lifted_.patch[low]);
     lifted_.part.push_back(lifted_.part[h / 3]);
@@ -184,6 +195,8 @@ class Relaxer {
     m_.collapse(h);
     points_.points[b] = p;
     lifted_.place[b] = place;
+    touch(b);
+    m_.star(b, [&](int e) { touch(m_.to(e)), touch(m_.apex(e)); });
     ++report_.collapses;
     return true;
   }
@@ -247,6 +260,7 @@ class Relaxer {
   }
 
   void do_flip(int h) {
+    for (int v : {m_.from(h), m_.to(h), m_.apex(h), m_.apex(m_.opp[h])}) touch(v);
     m_.flip(h);
     ++report_.flips;
   }
@@ -297,6 +311,33 @@ class Relaxer {
   }
 
   static constexpr double size_weight = 0.1;
+  static constexpr double settled = 3e-3;  ///< a step below this share of the size is none
+
+  /// The same for a vertex on a border or model edge, which slides along it: a parabola through three
+  /// energies.
+  bool slide(int v) {
+    Vec3 ahead{}, behind{};
+    m_.star(v, [&](int e) {
+      if (m_.hard[e]) ahead = at(m_.to(e));
+      if (m_.hard[prev(e)]) behind = at(m_.from(prev(e)));
+    });
+    const Vec3 x = at(v);
+    const double size = size_at(v), reach = std::min(norm(ahead - x), norm(behind - x)), probe = 0.1 * reach;
+    const Vec3 direction = normalized(ahead - behind);
+    if (reach <= 0) return false;
+    auto place_at = [&](double s) { return walk_.slide(lifted_.place[v], x + s * direction); };
+    auto energy = [&](double s) { return star_energy(v, walk_.point(place_at(s))); };
+    const double e0 = star_energy(v, x), left = energy(-probe), right = energy(probe);
+    if (e0 >= 1e30 || left >= 1e30 || right >= 1e30) return false;
+    const double bend = left - 2 * e0 + right;
+    double s = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
+    s = std::clamp(s, -0.4 * reach, 0.4 * reach);
+    if (std::abs(s) < 1e-3 * size || energy(s) > e0 * (1 - 1e-4)) return false;
+    lifted_.place[v] = place_at(s);
+    points_.points[v] = walk_.point(lifted_.place[v]);
+    ++report_.moves;
+    return true;
+  }
 
   /// One Newton step on the star's energy in the tangent plane, walked to on the reference and kept only if
   /// the energy in space falls.
@@ -350,7 +391,7 @@ class Relaxer {
       step = {dot(centre, s), dot(centre, t)};
     }
     const double length = norm(step);
-    if (length < 1e-4 * size) return false;
+    if (length < settled * size) return false;
     if (length > 0.5 * size) step = (0.5 * size / length) * step;
     const double before = star_energy(v, x);
     for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
@@ -367,11 +408,21 @@ class Relaxer {
     return false;
   }
 
+  /// Moves v unless nothing round it has changed since it was last tried.
+  void improve(int v) {
+    if (m_.out[v] < 0 || held_[v] == fixed || (tried_[v] && tried_[v] > changed_[v])) return;
+    tried_[v] = ++clock_;
+    if (held_[v] == slides ? slide(v) : move(v)) {
+      touch(v);
+      m_.star(v, [&](int h) { touch(m_.to(h)), touch(m_.apex(h)); });
+    }
+  }
+  void touch(int v) { changed_[v] = ++clock_; }
+
   void smooth(int sweeps) {
     const int n = (int)m_.out.size();
     for (int i = 0; i < sweeps; ++i)
-      for (int v = 0; v < n; ++v)
-        if (m_.out[v] >= 0 && !held_[v]) move(v);
+      for (int v = 0; v < n; ++v) improve(v);
   }
 
   // --- the last few ---
@@ -407,11 +458,10 @@ class Relaxer {
         }
         for (int repeat = 0; repeat < 2; ++repeat)
           for (int v : m_.tris[t]) {
-            if (!held_[v]) move(v);
+            improve(v);
             std::vector<int> ring;
             m_.star(v, [&](int e) { ring.push_back(m_.to(e)); });
-            for (int w : ring)
-              if (!held_[w]) move(w);
+            for (int w : ring) improve(w);
           }
       }
     }
@@ -451,8 +501,7 @@ class Relaxer {
         if (!m_.dead(h / 3) && h < m_.opp[h] && !m_.hard[h] && worst_flipped(h) < 0.9 * worst_now(h) &&
             may_flip(h))
           do_flip(h);
-      for (int v : around)
-        if (m_.out[v] >= 0 && !held_[v]) move(v);
+      for (int v : around) improve(v);
     }
   }
 
@@ -501,7 +550,11 @@ class Relaxer {
   SurfaceWalk walk_;
   EditMesh m_;
   Mesh points_;
-  std::vector<char> held_;  ///< per vertex: on a border or model edge, or a corner: does not move
+  enum : char { free_ = 0, slides = 1, fixed = 2 };
+  std::vector<char> held_;  ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<int> tried_,
+      changed_;  ///< when a vertex was last tried to move, and when its star last changed
+  int clock_ = 0;
   RelaxOptions options_;
   RelaxReport report_;
 };

@@ -6,7 +6,7 @@
 namespace meshpipe {
 
 struct RelaxOptions {
-  int sweeps = 10;
+  int sweeps = 8;
   double target_triangles = 0;  ///< 0: what the size field asks for
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/walk.h"
 
+#include <algorithm>
+
 #include "lib/bvh.h"
 #include "lib/topology.h"
 
@@ -10,11 +12,20 @@ SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& mode
     : mesh_(mesh),
       neighbour_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
       normals_(mesh.tris.size()) {
+  walls_at_.resize(mesh.points.size());
+  const std::vector<int> opposite = neighbour_;
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    const bool wall = opposite[h] < 0 || (!model.empty() && (model[h / 3] >> (h % 3) & 1));
+    if (!wall) continue;
+    neighbour_[h] = -1;
+    if (opposite[h] >= 0) neighbour_[opposite[h]] = -1;
+    if (opposite[h] > h) continue;  // count an edge once
+    for (int v : {meshpipe::origin(mesh.tris, h), meshpipe::target(mesh.tris, h)})
+      if (walls_at_[v] < 3) ++walls_at_[v];
+  }
   for (std::size_t t = 0; t < mesh.tris.size(); ++t) {
     const Tri& v = mesh.tris[t];
     normals_[t] = normalized(area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]));
-    for (int i = 0; i < 3 && !model.empty(); ++i)
-      if (model[t] >> i & 1) neighbour_[3 * t + i] = -1;
   }
 }
 
@@ -75,6 +86,56 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target) const {
     place = better;
   }
   return place;
+}
+
+Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
+  const double b[3] = {from.b0, from.b1, from.b2};
+  int wall = -1;
+  for (int i = 0; i < 3; ++i)
+    if (b[(i + 2) % 3] <= 0 && neighbour_[3 * from.face + i] < 0) wall = 3 * from.face + i;
+  for (int i = 0; i < 3 && wall < 0; ++i) {
+    if (b[i] < 1) continue;
+    // at a vertex: turn within its fan until a wall leaves it
+    const int start = 3 * from.face + i;
+    for (int h = start; wall < 0;) {
+      if (neighbour_[h] < 0) wall = h;
+      h = neighbour_[prev(h)];
+      if (h < 0 || h == start) break;
+    }
+    for (int h = start; wall < 0 && neighbour_[h] >= 0;) {
+      h = next(neighbour_[h]);
+      if (neighbour_[h] < 0) wall = h;
+      if (h == start) break;
+    }
+  }
+  if (wall < 0) return from;
+
+  auto closest_on = [&](int h, double& t) {
+    const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
+               q = mesh_.points[meshpipe::target(mesh_.tris, h)];
+    const double l2 = dot(q - p, q - p);
+    t = l2 > 0 ? std::clamp(dot(target - p, q - p) / l2, 0.0, 1.0) : 0;
+    const Vec3 e = lerp(p, q, t) - target;
+    return dot(e, e);
+  };
+  double t;
+  double best = closest_on(wall, t);
+  for (int step = 0; step < 10000 && (t <= 0 || t >= 1); ++step) {
+    const bool forward = t >= 1;
+    const int v = forward ? meshpipe::target(mesh_.tris, wall) : meshpipe::origin(mesh_.tris, wall);
+    if (walls_at_[v] != 2) break;
+    int e = forward ? next(wall) : prev(wall);
+    while (neighbour_[e] >= 0) e = forward ? next(neighbour_[e]) : prev(neighbour_[e]);
+    double s;
+    const double closer = closest_on(e, s);
+    if (closer >= best * (1 - 1e-12)) break;
+    best = closer, t = s, wall = e;
+  }
+  Place p{wall / 3, 0, 0, 0};
+  double* c[3] = {&p.b0, &p.b1, &p.b2};
+  *c[wall % 3] = 1 - t;
+  *c[(wall + 1) % 3] = t;
+  return p;
 }
 
 }  // namespace meshpipe

@@ -18,6 +18,9 @@ class SurfaceWalk {
   /// connected to `from` on the surface, so the walk never jumps to another sheet. Never fails; a local
   /// minimum is a valid answer.
   Place closest(const Place& from, Vec3 target) const;
+  /// The place reached from `from`, which lies on a wall, by sliding along the wall towards `target`. Stops
+  /// where the wall ends or others meet it. A place that is not on a wall is returned as it is.
+  Place slide(const Place& from, Vec3 target) const;
   Vec3 point(const Place& place) const;
   /// Unit normal of the triangle at a place.
   Vec3 normal(const Place& place) const { return normals_[place.face]; }
@@ -26,6 +29,7 @@ class SurfaceWalk {
   const Mesh& mesh_;
   std::vector<int> neighbour_;  ///< opposite half-edge, -1 at walls
   std::vector<Vec3> normals_;
+  std::vector<std::uint8_t> walls_at_;  ///< number of walls that meet at a vertex, counted up to 3
 };
 
 }  // namespace meshpipe

@@ -9,7 +9,7 @@ using namespace meshpipe;
 int main(int argc, char** argv) {
   RelaxOptions options;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--sweeps", options.sweeps, "rounds of flips, moves and count keeping (default 10)")
+    app.add_option("--sweeps", options.sweeps, "rounds of flips, moves and count keeping (default 8)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
   };

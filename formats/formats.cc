@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/formats.h"
+
+#include <cstring>
+
+#include "formats/msh.h"
+#include "formats/obj.h"
+#include "formats/off.h"
+#include "formats/ply.h"
+#include "formats/stl.h"
+#include "formats/text.h"
+#include "formats/vtu.h"
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+/// What can be told of bytes that match no format.
+std::string guess(std::string_view bytes) {
+  if (bytes.starts_with("\x1f\x8b")) return "; it is compressed: gzip -dc gives the file";
+  if (std::string size = binary_stl_mismatch(bytes); !size.empty()) return "; " + size;
+  return "";
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+  // binary STL comes first: its size tells it, and its first bytes may be anything
+  static const std::vector<Reader> all = {
+      {"stl", is_stl, read_stl}, {"mply", is_stream, read_stream}, {"ply", is_ply, read_ply},
+      {"msh", is_msh, read_msh}, {"off", is_off, read_off},        {"obj", is_obj, read_obj},
+  };
+  return all;
+}
+
+const std::vector<Writer>& writers() {
+  static const std::vector<Writer> all = {
+      {".mply", write_stream}, {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj},
+      {".off", write_off},     {".msh", write_msh}, {".vtu", write_vtu},
+  };
+  return all;
+}
+
+Stream read_any(std::string_view bytes, const std::string& where) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte-order mark of UTF-8
+  for (const Reader& r : readers())
+    if (r.matches(bytes)) return r.read(bytes, where);
+  std::string known;
+  for (const Reader& r : readers()) known += std::string(known.empty() ? "" : ", ") + r.format;
+  throw BadInput(where + ":1: none of the known formats (" + known + ")" + guess(bytes));
+}
+
+std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
+  const std::size_t dot = path.find_last_of("./");
+  const std::string extension = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
+  std::string known;
+  for (const Writer& w : writers()) {
+    if (extension == w.extension) return w.write(stream, ascii);
+    known += std::string(known.empty() ? "" : " ") + w.extension;
+  }
+  throw BadUsage("'" + path + "' has extension '" + extension + "'; known are " + known);
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/ply.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "formats/polygons.h"
+#include "formats/text.h"
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+struct Type {
+  const char *name, *other_name;
+  std::size_t bytes;
+  bool integral;
+  double (*value)(const char* bytes);
+};
+
+template <class T>
+double as_double(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+constexpr Type types[] = {
+    {"char", "int8", 1, true, as_double<std::int8_t>},
+    {"uchar", "uint8", 1, true, as_double<std::uint8_t>},
+    {"short", "int16", 2, true, as_double<std::int16_t>},
+    {"ushort", "uint16", 2, true, as_double<std::uint16_t>},
+    {"int", "int32", 4, true, as_double<std::int32_t>},
+    {"uint", "uint32", 4, true, as_double<std::uint32_t>},
+    {"float", "float32", 4, false, as_double<float>},
+    {"double", "float64", 8, false, as_double<double>},
+};
+
+/// What a property is to us.
+enum class Role { none, x, y, z, corners, patch };
+
+struct Property {
+  const Type* type;
+  const Type* count = nullptr;  ///< of a list: the type of its length
+  std::string name;
+  Role role = Role::none;
+};
+
+struct Element {
+  std::string name;
+  std::size_t rows = 0;
+  std::vector<Property> properties;
+};
+
+class PlyReader {
+ public:
+  PlyReader(std::string_view bytes, const std::string& where)
+      : bytes_(bytes), where_(where), text_(bytes, where) {}
+
+  Stream read() {
+    header();
+    for (const Element& e : elements_) rows(e);
+    if (ascii_ ? text_.next_line() : at_ != bytes_.size())
+      fail(ascii_ ? "more lines than the header declares"
+                  : std::to_string(bytes_.size() - at_) + " bytes more than the header declares");
+    const int n = static_cast<int>(stream_.surface.points.size());
+    if (largest_ >= n)
+      fail_at(largest_place_, "face " + std::to_string(largest_face_) + " uses vertex " +
+                                  std::to_string(largest_) + ", but there are " + std::to_string(n));
+    polygons_.patch.resize(polygons_.ends.size(), 0);
+    set_faces(stream_, polygons_);
+    return std::move(stream_);
+  }
+
+ private:
+  [[noreturn]] void fail_at(std::size_t place, const std::string& what) const {
+    throw BadInput(where_ + ":" + std::to_string(place) + ": " + what);
+  }
+  /// Line of a text or of the header, byte of binary rows.
+  std::size_t place() const { return ascii_ || in_header_ ? text_.line() : at_; }
+  [[noreturn]] void fail(const std::string& what) const { fail_at(place(), what); }
+
+  void header() {
+    text_.next_line();  // "ply"
+    bool ascii = false, has_format = false;
+    for (;;) {
+      text_.need_line("'end_header'");
+      std::string_view w = text_.word();
+      if (w == "end_header") break;
+      if (w == "comment") {
+        comment();
+      } else if (w == "format") {
+        if (has_format) fail("a second 'format'");
+        has_format = true;
+        w = text_.word();
+        if (w != "ascii" && w != "binary_little_endian" && w != "binary_big_endian")
+          fail(quoted(w) + " where ascii, binary_little_endian or binary_big_endian is due");
+        ascii = w == "ascii";
+        swap_ = (w == "binary_little_endian") != (std::endian::native == std::endian::little);
+      } else if (w == "element") {
+        element();
+      } else if (w == "property") {
+        property();
+      } else if (w != "obj_info") {
+        fail(quoted(w) + " where 'element', 'property', 'comment' or 'end_header' is due");
+      }
+    }
+    if (!has_format) fail("the header has no 'format'");
+    check("vertex", {{"x", Role::x}, {"y", Role::y}, {"z", Role::z}});
+    check("face", {{"vertex_indices", Role::corners}});
+    for (const Element& e : elements_) check_rows(e, ascii);
+    at_ = bytes_.size() - text_.after().size();
+    in_header_ = false;
+    ascii_ = ascii;
+  }
+
+  /// Names of patches are kept, as the stream writes them; anything else is a comment like others.
+  void comment() {
+    long long dim, tag;
+    if (text_.word() == "name" && parse_integer(text_.word(), dim) && parse_integer(text_.word(), tag) &&
+        dim == 2 && std::abs(tag) <= std::numeric_limits<int>::max())
+      stream_.names.push_back({2, static_cast<int>(tag), percent_decode(text_.rest())});
+  }
+
+  void element() {
+    Element e;
+    e.name = text_.word();
+    if (e.name == "tristrips") fail("element 'tristrips' is not built yet");
+    const int rows = text_.integer("a count of rows");
+    if (rows < 0) fail("element " + quoted(e.name) + " has " + std::to_string(rows) + " rows");
+    e.rows = rows;
+    for (const Element& other : elements_)
+      if (other.name == e.name) fail("element " + quoted(e.name) + " is declared twice");
+    elements_.push_back(std::move(e));
+  }
+
+  const Type* type() {
+    std::string_view w = text_.word();
+    for (const Type& t : types)
+      if (w == t.name || w == t.other_name) return &t;
+    fail(quoted(w) + " where a type is due");
+  }
+
+  void property() {
+    if (elements_.empty()) fail("a property before the first element");
+    Element& e = elements_.back();
+    Property p;
+    const bool list = text_.peek() == "list";
+    if (list) {
+      text_.word();
+      p.count = type();
+    }
+    p.type = type();
+    p.name = text_.word();
+    if (p.name.empty()) fail("a property without a name");
+    if (e.name == "vertex" && !list && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z')
+      p.role = p.name == "x" ? Role::x : p.name == "y" ? Role::y : Role::z;
+    if (e.name == "face" && list && (p.name == "vertex_indices" || p.name == "vertex_index"))
+      p.role = Role::corners;
+    if (e.name == "face" && !list && p.name == "patch" && p.type->integral) p.role = Role::patch;
+    if (p.role == Role::corners && !p.type->integral)
+      fail("the corners of faces are of type " + std::string(p.type->name) + ", not of an integral type");
+    for (const Property& other : e.properties)
+      if (p.role != Role::none && other.role == p.role)
+        fail("property " + quoted(p.name) + " is declared twice");
+    e.properties.push_back(std::move(p));
+  }
+
+  void check(const char* element, std::initializer_list<std::pair<const char*, Role>> needs) {
+    auto e =
+        std::find_if(elements_.begin(), elements_.end(), [&](const Element& x) { return x.name == element; });
+    if (e == elements_.end()) fail("the header has no element '" + std::string(element) + "'");
+    for (auto [name, role] : needs)
+      if (std::none_of(e->properties.begin(), e->properties.end(),
+                       [role = role](const Property& p) { return p.role == role; }))
+        fail("element '" + e->name + "' has no property '" + name + "'");
+  }
+
+  void check_rows(const Element& e, bool ascii) {
+    std::size_t least = 0;
+    for (const Property& p : e.properties) least += ascii ? 2 : p.count ? p.count->bytes : p.type->bytes;
+    if (least == 0 && e.rows > 0) fail("element " + quoted(e.name) + " has no properties");
+    // the last value of a text may lack its line end
+    if (e.rows * least > text_.after().size() + 1)
+      fail("element " + quoted(e.name) + " has " + std::to_string(e.rows) + " rows of at least " +
+           std::to_string(least) + " bytes, but only " + std::to_string(text_.after().size()) +
+           " bytes follow the header");
+  }
+
+  void rows(const Element& e) {
+    const bool vertices = e.name == "vertex", faces = e.name == "face";
+    if (vertices) stream_.surface.points.resize(e.rows);
+    if (faces) polygons_.ends.reserve(e.rows);
+    for (std::size_t r = 0; r < e.rows; ++r) {
+      for (const Property& p : e.properties) {
+        if (p.count) {
+          const double n = value(*p.count, e, r);
+          if (n < 0 || n != std::floor(n)) fail("a list of length " + std::to_string(n));
+          if (p.role == Role::corners)
+            corners(static_cast<std::size_t>(n), *p.type, e, r);
+          else
+            skip(static_cast<std::size_t>(n), *p.type, e, r);
+        } else if (p.role == Role::none) {
+          skip(1, *p.type, e, r);
+        } else {
+          const double v = value(*p.type, e, r);
+          if (p.role == Role::patch) {
+            polygons_.patch.push_back(static_cast<int>(whole(v, "patch", r)));
+            continue;
+          }
+          if (!std::isfinite(v)) fail("vertex " + std::to_string(r) + " holds a number that is not finite");
+          Vec3& q = stream_.surface.points[r];
+          (p.role == Role::x ? q.x : p.role == Role::y ? q.y : q.z) = v;
+        }
+      }
+    }
+  }
+
+  void corners(std::size_t n, const Type& type, const Element& e, std::size_t row) {
+    if (n > max_corners)
+      fail("face " + std::to_string(row) + " has " + std::to_string(n) + " corners, the limit is " +
+           std::to_string(max_corners));
+    for (std::size_t i = 0; i < n; ++i) {
+      const int v = whole(value(type, e, row), "vertex", row);
+      if (v < 0) fail("face " + std::to_string(row) + " uses vertex " + std::to_string(v));
+      if (v > largest_) {
+        largest_ = v;
+        largest_face_ = row;
+        largest_place_ = place();
+      }
+      polygons_.corners.push_back(v);
+    }
+    polygons_.ends.push_back(polygons_.corners.size());
+  }
+
+  int whole(double v, const char* what, std::size_t row) const {
+    constexpr double limit = std::numeric_limits<int>::max();
+    if (!(std::abs(v) <= limit) || v != std::floor(v)) {
+      std::string shown;
+      append(shown, v);
+      fail("face " + std::to_string(row) + " has " + what + ' ' + shown + ", not a whole number up to " +
+           std::to_string(std::numeric_limits<int>::max()));
+    }
+    return static_cast<int>(v);
+  }
+
+  /// The next value of a text, on whatever line it is.
+  std::string_view next_word(const Element& e, std::size_t row) {
+    for (;;) {
+      if (std::string_view w = text_.word(); !w.empty()) return w;
+      if (!text_.next_line()) fail(ends(e, row));
+    }
+  }
+
+  static std::string ends(const Element& e, std::size_t row) {
+    return "the file ends in row " + std::to_string(row) + " of " + quoted(e.name) + ", which has " +
+           std::to_string(e.rows);
+  }
+
+  double value(const Type& type, const Element& e, std::size_t row) {
+    if (ascii_) {
+      std::string_view w = next_word(e, row);
+      double v;
+      if (!parse_number(w, v)) fail(quoted(w) + " where a finite number is due");
+      return v;
+    }
+    if (bytes_.size() - at_ < type.bytes) fail(ends(e, row));
+    char buffer[8];
+    std::memcpy(buffer, bytes_.data() + at_, type.bytes);
+    at_ += type.bytes;
+    if (swap_) std::reverse(buffer, buffer + type.bytes);
+    return type.value(buffer);
+  }
+
+  void skip(std::size_t n, const Type& type, const Element& e, std::size_t row) {
+    if (ascii_) {
+      for (std::size_t i = 0; i < n; ++i) next_word(e, row);
+    } else {
+      if ((bytes_.size() - at_) / type.bytes < n) fail(ends(e, row));
+      at_ += n * type.bytes;
+    }
+  }
+
+  std::string_view bytes_;
+  const std::string& where_;
+  Text text_;
+  bool ascii_ = false, swap_ = false, in_header_ = true;
+  std::size_t at_ = 0;  ///< in binary rows
+  std::vector<Element> elements_;
+  Stream stream_;
+  Polygons polygons_;
+  int largest_ = -1;  ///< vertex number, and where it is used: vertices may come after the faces
+  std::size_t largest_face_ = 0, largest_place_ = 0;
+};
+
+}  // namespace
+
+bool is_ply(std::string_view bytes) {
+  Text text(bytes.substr(0, 16), "");
+  return text.next_line() && text.word() == "ply" && text.line_ends();
+}
+
+Stream read_ply(std::string_view bytes, const std::string& where) { return PlyReader(bytes, where).read(); }
+
+std::string write_ply(const Stream& stream, bool ascii) {
+  Stream plain;
+  plain.surface.points = stream.surface.points;
+  plain.surface.tris = stream.surface.tris;
+  plain.names = stream.names;
+  Table& face = plain.surface.face;
+  face.set("patch", patches_of(stream));
+  for (const char* channel : {"red", "green", "blue"})
+    if (stream.surface.face.has(channel)) face.set(channel, stream.surface.face.get<std::uint8_t>(channel));
+  // without its mark a stream is an ordinary PLY, which other programs may change as they like
+  std::string out = write_stream(plain, ascii);
+  const std::string mark = "comment mply 1.0\n";
+  return out.erase(out.find(mark), mark.size());
+}
+
+}  // namespace meshpipe

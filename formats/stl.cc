@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/stl.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "formats/polygons.h"
+#include "formats/text.h"
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr std::size_t head_bytes = 84, facet_bytes = 50;
+/// Three vertices a triangle must be numbered by an int.
+constexpr std::size_t max_facets = std::numeric_limits<int>::max() / 3;
+
+std::uint32_t declared_facets(std::string_view bytes) {
+  std::uint32_t n;
+  std::memcpy(&n, bytes.data() + 80, 4);
+  return n;
+}
+
+bool begins_with_solid(std::string_view bytes) {
+  return same_word(trim(bytes.substr(0, 512)).substr(0, 5), "solid");
+}
+
+void add_facet(Mesh& mesh, const Vec3 (&p)[3]) {
+  const int v = static_cast<int>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), p, p + 3);
+  mesh.tris.push_back({v, v + 1, v + 2});
+}
+
+Stream read_binary(std::string_view bytes, const std::string& where) {
+  const std::size_t n = declared_facets(bytes);
+  if (n > max_facets)
+    throw BadInput(where + ":80: the file has " + std::to_string(n) + " triangles, the limit is " +
+                   std::to_string(max_facets));
+  Stream stream;
+  Surface& s = stream.surface;
+  s.points.reserve(3 * n);
+  s.tris.reserve(n);
+  for (std::size_t t = 0; t < n; ++t) {
+    float f[9];
+    std::memcpy(f, bytes.data() + head_bytes + facet_bytes * t + 12, sizeof f);
+    for (int i = 0; i < 9; ++i)
+      if (!std::isfinite(f[i]))
+        throw BadInput(where + ":" + std::to_string(head_bytes + facet_bytes * t + 12 + 4 * i) +
+                       ": triangle " + std::to_string(t) + " holds a number that is not finite");
+    add_facet(s, {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}});
+  }
+  s.vertex.rows = s.points.size();
+  s.face.set("patch", std::vector<int>(n, 1));
+  return stream;
+}
+
+void expect(Text& text, const char* first, const char* second = nullptr) {
+  text.need_line(first);
+  std::string_view w = text.word();
+  if (!same_word(w, first)) text.fail(quoted(w) + " where '" + first + "' is due");
+  if (second && !same_word(w = text.word(), second))
+    text.fail(quoted(w) + " where '" + second + "' is due after '" + first + "'");
+}
+
+Stream read_text(std::string_view bytes, const std::string& where) {
+  Text text(bytes, where);
+  Stream stream;
+  Surface& s = stream.surface;
+  std::vector<int> patch;
+  int solid = 0;
+  bool open = false;
+  while (text.next_line()) {
+    std::string_view w = text.word();
+    if (same_word(w, "facet")) {
+      // some writers leave out the 'solid' of all solids but the first
+      if (!open) ++solid;
+      open = true;
+      expect(text, "outer", "loop");
+      Vec3 p[3];
+      for (Vec3& q : p) {
+        expect(text, "vertex");
+        q = text.point();
+      }
+      expect(text, "endloop");
+      expect(text, "endfacet");
+      if (s.tris.size() == max_facets)
+        text.fail("more than " + std::to_string(max_facets) + " triangles, which is the limit");
+      add_facet(s, p);
+      patch.push_back(solid);
+    } else if (same_word(w, "solid")) {
+      if (open) text.fail("'solid' where 'facet' or 'endsolid' is due");
+      open = true;
+      ++solid;
+      if (std::string_view name = text.rest(); !name.empty())
+        stream.names.push_back({2, solid, std::string(name)});
+    } else if (same_word(w, "endsolid")) {
+      if (!open) text.fail("'endsolid' without a solid");
+      open = false;
+    } else if (open || solid == 0 || same_word(w, "outer") || same_word(w, "vertex") ||
+               same_word(w, "endloop") || same_word(w, "endfacet")) {
+      text.fail(quoted(w) + " where 'solid', 'facet' or 'endsolid' is due");
+    }  // anything else after a solid is a remark of the program that wrote the file
+  }
+  if (open) text.fail("the file ends where 'endsolid' is due");
+  s.vertex.rows = s.points.size();
+  s.face.set("patch", std::move(patch));
+  return stream;
+}
+
+std::string write_binary(const Surface& s) {
+  if (s.tris.size() > std::numeric_limits<std::uint32_t>::max())
+    throw CannotWrite("stl holds at most 4294967295 triangles, here are " + std::to_string(s.tris.size()));
+  std::string out(head_bytes + facet_bytes * s.tris.size(), '\0');
+  const char title[] = "meshpipe binary STL";  // must not begin with "solid"
+  std::memcpy(out.data(), title, sizeof title - 1);
+  const auto n = static_cast<std::uint32_t>(s.tris.size());
+  std::memcpy(out.data() + 80, &n, 4);
+  char* at = out.data() + head_bytes;
+  for (const Tri& t : s.tris) {
+    const Vec3 a = s.points[t[0]], b = s.points[t[1]], c = s.points[t[2]];
+    const Vec3 u = normalized(area_vector(a, b, c));
+    const double d[] = {u.x, u.y, u.z, a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
+    float f[12];
+    for (int i = 0; i < 12; ++i) {
+      if (std::abs(d[i]) > std::numeric_limits<float>::max()) {
+        std::string value;
+        append(value, d[i]);
+        throw CannotWrite("coordinate " + value +
+                          " does not fit the single precision of a binary stl; use --ascii");
+      }
+      f[i] = static_cast<float>(d[i]);
+    }
+    std::memcpy(at, f, sizeof f);
+    at += facet_bytes;
+  }
+  return out;
+}
+
+}  // namespace
+
+bool is_binary_stl(std::string_view bytes) {
+  return bytes.size() >= head_bytes && bytes.size() == head_bytes + facet_bytes * declared_facets(bytes);
+}
+
+bool is_stl(std::string_view bytes) { return is_binary_stl(bytes) || begins_with_solid(bytes); }
+
+std::string binary_stl_mismatch(std::string_view bytes) {
+  // no text holds a zero byte
+  if (bytes.size() < head_bytes || bytes.substr(0, head_bytes).find('\0') == std::string_view::npos)
+    return "";
+  const std::uint32_t n = declared_facets(bytes);
+  return "as a binary stl of " + std::to_string(n) + " triangles it would have " +
+         std::to_string(head_bytes + facet_bytes * n) + " bytes, but it has " + std::to_string(bytes.size());
+}
+
+Stream read_stl(std::string_view bytes, const std::string& where) {
+  if (is_binary_stl(bytes)) return read_binary(bytes, where);
+  if (std::string size = binary_stl_mismatch(bytes); !size.empty()) throw BadInput(where + ":80: " + size);
+  return read_text(bytes, where);
+}
+
+std::string write_stl(const Stream& stream, bool ascii) {
+  const Surface& s = stream.surface;
+  if (!ascii) return write_binary(s);
+  const ByPatch by = by_patch(stream);
+  std::string out;
+  out.reserve(s.tris.size() * 256);
+  for (std::size_t k = 0; k < by.tags.size(); ++k) {
+    const std::string name = one_line(stream.name_of(2, by.tags[k]));
+    out += name.empty() ? "solid\n" : "solid " + name + '\n';
+    for (std::size_t i = by.first[k]; i < by.first[k + 1]; ++i) {
+      const Tri& t = s.tris[by.order[i]];
+      const Vec3 a = s.points[t[0]], b = s.points[t[1]], c = s.points[t[2]];
+      append_point(out, " facet normal ", normalized(area_vector(a, b, c)));
+      out += "  outer loop\n";
+      for (const Vec3& p : {a, b, c}) append_point(out, "   vertex ", p);
+      out += "  endloop\n endfacet\n";
+    }
+    out += name.empty() ? "endsolid\n" : "endsolid " + name + '\n';
+  }
+  return out;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// STL: triangles without numbering, in solids. Text files may hold several solids; binary ones hold one.
+#pragma once
+#include "formats/stream.h"
+
+namespace meshpipe {
+
+/// A binary file is told by its size, 84 + 50 n bytes with n the count it declares, whatever its first word.
+bool is_binary_stl(std::string_view bytes);
+bool is_stl(std::string_view bytes);
+/// Why bytes that look binary are no binary STL, with both sizes; empty if they are text.
+std::string binary_stl_mismatch(std::string_view bytes);
+/// Three vertices a triangle (STL does not share them); each solid is a patch, numbered from 1, with its
+/// name.
+Stream read_stl(std::string_view bytes, const std::string& where);
+/// Binary in single precision, the patches lost, or text with a solid for each patch and all digits.
+std::string write_stl(const Stream& stream, bool ascii);
+
+}  // namespace meshpipe

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/text.h"
+
+#include <charconv>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+
+#include "lib/error.h"
+
+namespace meshpipe {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+std::string_view without_leading_blanks(std::string_view text) {
+  std::size_t i = 0;
+  while (i < text.size() && is_blank(text[i])) ++i;
+  return text.substr(i);
+}
+
+std::string_view without_plus(std::string_view word) {
+  // from_chars knows no plus sign, and must not see "+-1" as a number
+  return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
+}
+
+}  // namespace
+
+Text::Text(std::string_view bytes, std::string where, char comment)
+    : bytes_(bytes), where_(std::move(where)), comment_(comment) {}
+
+bool Text::next_line() {
+  while (!bytes_.empty()) {
+    std::size_t end = bytes_.find('\n');
+    left_ = bytes_.substr(0, end);
+    bytes_.remove_prefix(end == std::string_view::npos ? bytes_.size() : end + 1);
+    ++line_;
+    if (comment_) left_ = left_.substr(0, left_.find(comment_));
+    left_ = without_leading_blanks(left_);
+    if (!left_.empty()) return true;
+  }
+  left_ = {};
+  return false;
+}
+
+std::string_view Text::peek() const {
+  std::string_view left = without_leading_blanks(left_);
+  std::size_t n = 0;
+  while (n < left.size() && !is_blank(left[n])) ++n;
+  return left.substr(0, n);
+}
+
+std::string_view Text::word() {
+  std::string_view w = peek();
+  left_.remove_prefix(w.data() + w.size() - left_.data());
+  return w;
+}
+
+std::string_view Text::rest() {
+  std::string_view r = trim(left_);
+  left_ = {};
+  return r;
+}
+
+double Text::number(const char* what) {
+  std::string_view w = word();
+  double value;
+  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
+  if (!parse_number(w, value)) fail(quoted(w) + " where " + what + " is due");
+  return value;
+}
+
+Vec3 Text::point() {
+  const double x = number("a coordinate"), y = number("a coordinate"), z = number("a coordinate");
+  return {x, y, z};
+}
+
+int Text::integer(const char* what) {
+  std::string_view w = word();
+  long long value;
+  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
+  if (!parse_integer(w, value)) fail(quoted(w) + " where " + what + " is due");
+  if (value < INT_MIN || value > INT_MAX)
+    fail(std::string(what) + " is " + std::to_string(value) + ", beyond the largest, " +
+         std::to_string(INT_MAX));
+  return static_cast<int>(value);
+}
+
+int Text::count(const char* what, std::size_t least) {
+  int n = integer(what);
+  if (n < 0) fail(std::string(what) + " is " + std::to_string(n));
+  // the last item may lack its line end
+  if (n > 0 && (n - 1) * least >= bytes_.size() + left_.size())
+    fail(std::string(what) + " is " + std::to_string(n) + ", but only " + std::to_string(bytes_.size()) +
+         " bytes follow");
+  return n;
+}
+
+void Text::need_line(const char* what, int i, int n) {
+  if (next_line()) return;
+  const std::string which = i < 0 ? "" : " " + std::to_string(i) + " of " + std::to_string(n);
+  fail("the file ends where " + (what + which) + " is due");
+}
+
+void Text::fail_at(std::size_t line, const std::string& what) const {
+  throw BadInput(where_ + ":" + std::to_string(line) + ": " + what);
+}
+
+bool parse_number(std::string_view word, double& value) {
+  word = without_plus(word);
+  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size() || word.empty()) return false;
+  // too small a number is 0 or denormal, as strtod says; too large a one is not finite
+  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
+  return error != std::errc::invalid_argument && std::isfinite(value);
+}
+
+bool parse_integer(std::string_view word, long long& value) {
+  word = without_plus(word);
+  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+std::string quoted(std::string_view word) {
+  std::string out = "'";
+  for (unsigned char c : word.substr(0, 40)) out += c < 32 || c > 126 ? '?' : static_cast<char>(c);
+  return out + (word.size() > 40 ? "...'" : "'");
+}
+
+std::string_view trim(std::string_view text) {
+  text = without_leading_blanks(text);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string percent_decode(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned value = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(&text[i + 1], &text[i + 3], value, 16).ptr == &text[i + 3]) {
+      out += static_cast<char>(value);
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+std::string percent_encode(std::string_view text) {
+  constexpr char hex[] = "0123456789ABCDEF";
+  std::string out;
+  for (unsigned char c : text) {
+    if (c > 32 && c < 127 && c != '%')
+      out += static_cast<char>(c);
+    else
+      out += {'%', hex[c >> 4], hex[c & 15]};
+  }
+  return out;
+}
+
+std::string one_line(std::string_view name) {
+  std::string out(name);
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+  return std::string(trim(out));
+}
+
+bool same_word(std::string_view word, std::string_view lower) {
+  if (word.size() != lower.size()) return false;
+  for (std::size_t i = 0; i < word.size(); ++i)
+    if ((word[i] >= 'A' && word[i] <= 'Z' ? word[i] + 32 : word[i]) != lower[i]) return false;
+  return true;
+}
+
+void append(std::string& out, double value) {
+  char buffer[32];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+void append(std::string& out, long long value) {
+  char buffer[24];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+void append_point(std::string& out, const char* before, Vec3 p) {
+  out += before;
+  append(out, p.x);
+  out += ' ';
+  append(out, p.y);
+  out += ' ';
+  append(out, p.z);
+  out += '\n';
+}
+
+}  // namespace meshpipe

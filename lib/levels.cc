@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lib/error.h"
+#include "lib/sparse.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+// positive weights make the map of a disk one-to-one (Floater 1997); raised by the edge and not by the
+// triangle, since raising more than needed twists tubes whose diagonals all lean to one side
+constexpr double least_weight = 1e-3;
+// a level resolves about four diameters of a tube (a factor e^-2 in length each); two more make a margin for
+// the natural condition where the system is cut off
+constexpr double depth_in_diameters = 6;
+constexpr std::size_t least_domain = 2000;
+constexpr std::size_t max_levels = 100000;
+
+/// A set of withdrawn triangles that waits for its own level.
+struct Pending {
+  int parent = -1;
+  Vec2 centre;
+  std::vector<int> seeds;   // triangles that touch what is resolved
+  std::vector<int> vertex;  // vertices with known values
+  std::vector<Vec2> uv;     // the values, in the new frame
+};
+
+class LevelSolver {
+ public:
+  LevelSolver(const FilledDisk& disk, double min_area, int min_set)
+      : disk_(disk),
+        min_area_(min_area),
+        min_set_(min_set),
+        owner_(disk.tris.size(), -1),
+        place_(disk.tris.size(), -1),
+        visited_(disk.tris.size(), -1),
+        known_(disk.points.size(), 0),
+        local_(disk.points.size(), -1),
+        barycentre_(disk.tris.size()) {
+    for (std::size_t t = 0; t < disk.tris.size(); t++) {
+      const Tri& c = disk.tris[t];
+      barycentre_[t] = (1. / 3) * (disk.points[c[0]] + disk.points[c[1]] + disk.points[c[2]]);
+    }
+  }
+
+  std::vector<Level> run() {
+    queue_.push_back(root());
+    for (std::size_t i = 0; i < queue_.size(); i++) {
+      if (i > max_levels) throw GoalMissed("more than " + std::to_string(max_levels) + " levels of maps");
+      Pending set = std::move(queue_[i]);
+      solve(set);
+    }
+    return std::move(levels_);
+  }
+
+ private:
+  Pending root() {
+    Pending set;
+    double length = 0, total = 0;
+    const std::size_t n = disk_.rim.size();
+    auto step = [&](std::size_t i) {
+      return norm(disk_.points[disk_.rim[(i + 1) % n]] - disk_.points[disk_.rim[i]]);
+    };
+    for (std::size_t i = 0; i < n; i++) total += step(i);
+    for (std::size_t i = 0; i < n; i++) {
+      double a = 2 * pi * length / total;
+      set.vertex.push_back(disk_.rim[i]);
+      set.uv.push_back({std::cos(a), std::sin(a)});
+      known_[disk_.rim[i]] = 1;
+      length += step(i);
+    }
+    for (std::size_t t = 0; t < disk_.tris.size(); t++)
+      if (touches_known(t)) set.seeds.push_back(t);
+    return set;
+  }
+
+  bool touches_known(int t) const {
+    const Tri& c = disk_.tris[t];
+    return known_[c[0]] || known_[c[1]] || known_[c[2]];
+  }
+  bool unresolved(int t) const { return t >= 0 && owner_[t] < 0; }
+
+  /// Length in space of the set's border; ragged as it is.
+  double border_length(const Pending& set) const {
+    double sum = 0;
+    for (int t : set.seeds)
+      for (int h = 3 * t; h < 3 * t + 3; h++)
+        if (disk_.opposite[h] < 0 || owner_[disk_.opposite[h] / 3] >= 0)
+          sum += norm(disk_.points[target(disk_.tris, h)] - disk_.points[origin(disk_.tris, h)]);
+    return sum;
+  }
+
+  /// Gathers domain_: the triangles of the set within `depth` of its border; breadth first, so distances are
+  /// those of the tree: an upper bound. Returns whether some were left out.
+  bool gather(const Pending& set, double depth) {
+    for (int t : domain_) place_[t] = -1;
+    domain_.clear();
+    distance_.clear();
+    for (int t : set.seeds) {
+      place_[t] = domain_.size();
+      domain_.push_back(t);
+      distance_.push_back(0);
+    }
+    bool truncated = false;
+    for (std::size_t i = 0; i < domain_.size(); i++) {
+      int t = domain_[i];
+      for (int h = 3 * t; h < 3 * t + 3; h++) {
+        int n = disk_.opposite[h] < 0 ? -1 : disk_.opposite[h] / 3;
+        if (!unresolved(n) || place_[n] >= 0) continue;
+        double d = distance_[i] + norm(barycentre_[n] - barycentre_[t]);
+        if (d > depth && domain_.size() > least_domain) {
+          truncated = true;
+          continue;
+        }
+        place_[n] = domain_.size();
+        domain_.push_back(n);
+        distance_.push_back(d);
+      }
+    }
+    return truncated;
+  }
+
+  bool beyond(int h) const {
+    int o = disk_.opposite[h];
+    return o >= 0 && unresolved(o / 3) && place_[o / 3] < 0;
+  }
+
+  void solve(const Pending& set) {
+    const int self = levels_.size();
+    const double area_limit = min_area_ * pi / 4 * (set.parent < 0 ? 4 : 1);
+    double depth = depth_in_diameters * border_length(set) / pi;
+    bool truncated;
+    for (;; depth *= 2) {
+      truncated = gather(set, depth);
+      map(set);
+      small_.assign(domain_.size(), 0);
+      for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = image(i) < area_limit;
+      keep_fans_whole();
+      if (!truncated || !good_at_the_end()) break;
+    }
+    keep_what_touches_the_border();
+    std::vector<int> set_of;
+    int n_sets = find_sets(set_of, truncated);
+    if (std::count(small_.begin(), small_.end(), 0) == 0) {
+      // nothing left to resolve in this frame that another would resolve better: take the level as it is
+      gather(set, 1e300);
+      map(set);
+      small_.assign(domain_.size(), 0);
+      n_sets = 0;
+    }
+    if (set.parent >= 0) levels_[set.parent].children.push_back(self);
+    levels_.push_back(level_of(set, self));
+    for (int s = 0; s < n_sets; s++) withdraw(s, set_of, self);
+    for (int t : domain_) place_[t] = -1;
+    for (int v : vertex_) local_[v] = -1;
+    domain_.clear();
+    vertex_.clear();
+  }
+
+  void map(const Pending& set) {
+    for (int v : vertex_) local_[v] = -1;
+    vertex_.clear();
+    corners_.resize(domain_.size());
+    std::vector<double> weights(3 * domain_.size());
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      for (int k = 0; k < 3; k++) {
+        int v = disk_.tris[domain_[i]][k];
+        if (local_[v] < 0) {
+          local_[v] = vertex_.size();
+          vertex_.push_back(v);
+        }
+        corners_[i][k] = local_[v];
+        weights[3 * i + k] = disk_.weights[3 * domain_[i] + k];
+      }
+    fixed_.assign(vertex_.size(), 0);
+    uv_.assign(vertex_.size(), {});
+    for (std::size_t i = 0; i < set.vertex.size(); i++)
+      if (int l = local_[set.vertex[i]]; l >= 0) {
+        fixed_[l] = 1;
+        uv_[l] = set.uv[i];
+      }
+    solve_dirichlet(corners_, weights, fixed_, {}, uv_);
+  }
+
+  /// Area of the image of triangle i of the domain, taken as equilateral on its longest side: a needle that
+  /// is thin on the surface already is not one that lies deep.
+  double image(int i) const {
+    Vec2 a = uv_[corners_[i][0]], b = uv_[corners_[i][1]], c = uv_[corners_[i][2]];
+    return std::sqrt(3.) / 4 * std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+
+  /// A hole is resolved by one level as a whole: where one triangle of its fan is good, all are.
+  void keep_fans_whole() {
+    for (std::size_t f = 0; f + 1 < disk_.fan_begin.size(); f++) {
+      bool whole = true, good = false;
+      for (int t = disk_.fan_begin[f]; t < disk_.fan_begin[f + 1]; t++) {
+        if (place_[t] < 0)
+          whole = false;
+        else
+          good |= !small_[place_[t]];
+      }
+      for (int t = disk_.fan_begin[f]; t < disk_.fan_begin[f + 1]; t++)
+        if (place_[t] >= 0) small_[place_[t]] = !(whole && good);
+    }
+  }
+
+  /// Does the good region reach where the domain was cut off?
+  bool good_at_the_end() const {
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      if (!small_[i])
+        for (int h = 3 * domain_[i]; h < 3 * domain_[i] + 3; h++)
+          if (beyond(h)) return true;
+    return false;
+  }
+
+  template <class Visit>
+  void neighbours(int i, Visit visit) const {
+    for (int h = 3 * domain_[i]; h < 3 * domain_[i] + 3; h++)
+      if (disk_.opposite[h] >= 0 && place_[disk_.opposite[h] / 3] >= 0) visit(place_[disk_.opposite[h] / 3]);
+  }
+
+  /// Good triangles behind small ones (coarse ones behind fine ones) go with the set that encloses them: then
+  /// every set is a disk.
+  void keep_what_touches_the_border() {
+    std::vector<int> stack;
+    std::vector<char> keep(domain_.size(), 0);
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      if (!small_[i] && (fixed_[corners_[i][0]] || fixed_[corners_[i][1]] || fixed_[corners_[i][2]])) {
+        keep[i] = 1;
+        stack.push_back(i);
+      }
+    while (!stack.empty()) {
+      int i = stack.back();
+      stack.pop_back();
+      neighbours(i, [&](int n) {
+        if (small_[n] || keep[n]) return;
+        keep[n] = 1;
+        stack.push_back(n);
+      });
+    }
+    for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = !keep[i];
+  }
+
+  /// Numbers the edge-connected sets of small triangles; sets that are too small to matter become good.
+  int find_sets(std::vector<int>& set_of, bool truncated) {
+    set_of.assign(domain_.size(), -1);
+    std::vector<int> stack, members;
+    std::vector<char> open;  // does the set go on beyond the domain?
+    int n_sets = 0;
+    for (std::size_t first = 0; first < domain_.size(); first++) {
+      if (!small_[first] || set_of[first] >= 0) continue;
+      members.assign(1, first);
+      set_of[first] = n_sets;
+      bool reaches_beyond = false;
+      for (std::size_t m = 0; m < members.size(); m++) {
+        int t = domain_[members[m]];
+        for (int h = 3 * t; truncated && h < 3 * t + 3; h++) reaches_beyond |= beyond(h);
+        neighbours(members[m], [&](int n) {
+          if (!small_[n] || set_of[n] >= 0) return;
+          set_of[n] = n_sets;
+          members.push_back(n);
+        });
+      }
+      if (!reaches_beyond && static_cast<int>(members.size()) < min_set_) {
+        for (int m : members) {
+          small_[m] = 0;
+          set_of[m] = -1;
+        }
+        continue;
+      }
+      open.push_back(reaches_beyond);
+      n_sets++;
+    }
+    if (std::count(open.begin(), open.end(), 1) > 1) n_sets = join_beyond(set_of, n_sets);
+    return n_sets;
+  }
+
+  /// Sets that meet beyond the domain are one.
+  int join_beyond(std::vector<int>& set_of, int n_sets) {
+    std::vector<int> to(n_sets, -1), stack;
+    const int stamp = levels_.size();
+    int n = 0;
+    for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (set_of[i] < 0 || visited_[domain_[i]] == stamp) continue;
+      int number = to[set_of[i]] >= 0 ? to[set_of[i]] : n++;
+      visited_[domain_[i]] = stamp;
+      stack.push_back(domain_[i]);
+      while (!stack.empty()) {
+        int t = stack.back();
+        stack.pop_back();
+        if (place_[t] >= 0) to[set_of[place_[t]]] = number;
+        for (int h = 3 * t; h < 3 * t + 3; h++) {
+          int o = disk_.opposite[h] < 0 ? -1 : disk_.opposite[h] / 3;
+          if (!unresolved(o) || visited_[o] == stamp || (place_[o] >= 0 && set_of[place_[o]] < 0)) continue;
+          visited_[o] = stamp;
+          stack.push_back(o);
+        }
+      }
+    }
+    for (int& s : set_of)
+      if (s >= 0) s = to[s];
+    return n;
+  }
+
+  Level level_of(const Pending& set, int self) {
+    Level level;
+    level.parent = set.parent;
+    level.centre = set.centre;
+    if (set.parent >= 0)
+      for (int t : set.seeds)
+        for (int k = 0; k < 3; k++)
+          if (int o = disk_.opposite[3 * t + k]; o < 0 || owner_[o / 3] >= 0)
+            level.border.push_back({uv_[corners_[place_[t]][k]], uv_[corners_[place_[t]][(k + 1) % 3]]});
+    std::vector<int> to(vertex_.size(), -1);
+    for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (small_[i]) continue;
+      owner_[domain_[i]] = self;
+      level.tris.push_back(domain_[i]);
+      Tri c;
+      for (int k = 0; k < 3; k++) {
+        int& place = to[corners_[i][k]];
+        if (place < 0) {
+          place = level.vertex.size();
+          level.vertex.push_back(vertex_[corners_[i][k]]);
+          level.uv.push_back(uv_[corners_[i][k]]);
+          known_[level.vertex.back()] = 1;
+          if (level.vertex.back() >= disk_.part_vertices) level.holes.push_back(place);
+        }
+        c[k] = place;
+      }
+      level.corners.push_back(c);
+    }
+    return level;
+  }
+
+  void withdraw(int s, const std::vector<int>& set_of, int parent) {
+    Pending child;
+    child.parent = parent;
+    // where most of the set's surface is: a point that everything deep inside collapses to
+    double total = 0;
+    for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (set_of[i] != s) continue;
+      int t = domain_[i];
+      const Tri& c = disk_.tris[t];
+      double area = norm(area_vector(disk_.points[c[0]], disk_.points[c[1]], disk_.points[c[2]]));
+      total += area;
+      child.centre =
+          child.centre + (area / 3) * (uv_[corners_[i][0]] + uv_[corners_[i][1]] + uv_[corners_[i][2]]);
+      if (!touches_known(t)) continue;
+      child.seeds.push_back(t);
+      for (int v : c)
+        if (known_[v] == 1) {
+          known_[v] = 2;
+          child.vertex.push_back(v);
+        }
+    }
+    child.centre = (1 / total) * child.centre;
+    Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+    for (int v : child.vertex) {
+      known_[v] = 1;
+      Vec2 p = uv_[local_[v]];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      child.uv.push_back(p);
+    }
+    double size = norm(high - low);
+    for (Vec2& p : child.uv) p = (size > 0 ? 1 / size : 1) * (p - child.centre);
+    queue_.push_back(std::move(child));
+  }
+
+  const FilledDisk& disk_;
+  const double min_area_;
+  const int min_set_;
+  std::vector<int> owner_;  // level that resolves the triangle, or -1
+  std::vector<int> place_;  // in the domain of the level at work, or -1
+  std::vector<int> visited_;
+  std::vector<char> known_;  // vertex of a resolved triangle or on the rim (2: listed already)
+  std::vector<int> local_;   // number in the level at work, or -1
+  std::vector<Vec3> barycentre_;
+  std::vector<Pending> queue_;
+  std::vector<Level> levels_;
+  // the level at work
+  std::vector<int> domain_, vertex_;
+  std::vector<double> distance_;
+  std::vector<Tri> corners_;
+  std::vector<char> fixed_, small_;
+  std::vector<Vec2> uv_;
+};
+
+}  // namespace
+
+FilledDisk fill_holes(const Mesh& part) {
+  FilledDisk disk;
+  disk.points = part.points;
+  disk.tris = part.tris;
+  disk.part_vertices = part.points.size();
+  disk.part_tris = part.tris.size();
+  std::vector<int> opposite = opposite_halfedges(part.tris, part.points.size());
+  std::vector<std::vector<int>> loops = boundary_loops(opposite);
+  std::size_t longest = 0;
+  double length = -1;
+  for (std::size_t l = 0; l < loops.size(); l++) {
+    double sum = 0;
+    for (int h : loops[l]) sum += norm(part.points[target(part.tris, h)] - part.points[origin(part.tris, h)]);
+    if (sum > length) {
+      length = sum;
+      longest = l;
+    }
+  }
+  for (std::size_t l = 0; l < loops.size(); l++) {
+    if (l == longest) {
+      for (int h : loops[l]) disk.rim.push_back(origin(part.tris, h));
+      continue;
+    }
+    disk.fan_begin.push_back(disk.tris.size());
+    Vec3 centre;
+    for (int h : loops[l]) centre = centre + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
+    for (int h : loops[l])
+      disk.tris.push_back({target(part.tris, h), origin(part.tris, h), static_cast<int>(disk.points.size())});
+    disk.points.push_back(centre);
+  }
+  disk.fan_begin.push_back(disk.tris.size());
+  disk.opposite = opposite_halfedges(disk.tris, disk.points.size());
+  disk.weights.resize(3 * disk.tris.size());
+  for (std::size_t t = 0; t < disk.tris.size(); t++) {
+    const Tri& c = disk.tris[t];
+    auto w = cotangent_weights(disk.points[c[0]], disk.points[c[1]], disk.points[c[2]]);
+    std::copy(w.begin(), w.end(), disk.weights.begin() + 3 * t);
+  }
+  for (int h = 0; h < static_cast<int>(disk.weights.size()); h++) {
+    const int o = disk.opposite[h];
+    if (o < 0)
+      disk.weights[h] = std::max(disk.weights[h], least_weight);
+    else if (o > h)
+      disk.weights[h] = disk.weights[o] = std::max((disk.weights[h] + disk.weights[o]) / 2, least_weight);
+  }
+  return disk;
+}
+
+std::vector<Level> laplace_levels(const FilledDisk& disk, double min_area, int min_set) {
+  return LevelSolver(disk, min_area, min_set).run();
+}
+
+}  // namespace meshpipe

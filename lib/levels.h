@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The levels of Laplace maps of a long part (the paper's section 3, steps 1 to 4): one harmonic map of a
+// disk, computed piecewise in frames of size 1, so that its exponentially small regions keep all their
+// digits.
+#pragma once
+#include <vector>
+
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// A part of genus 0 made a topological disk: all its loops but the longest are filled by fans around virtual
+/// centres. The part's own vertices and triangles come first, then the centres and the fans.
+struct FilledDisk : Mesh {
+  std::vector<int> opposite;
+  std::vector<double> weights;  ///< of the Laplacian, per half-edge; positive
+  std::vector<int> rim;         ///< vertices of the longest loop, counter-clockwise
+  int part_vertices = 0, part_tris = 0;
+  std::vector<int> fan_begin;  ///< first triangle of each hole's fan, and the end
+};
+
+/// Precondition: one component, genus 0, N_B >= 1, no pinched vertex.
+FilledDisk fill_holes(const Mesh& part);
+
+/// One level's map: the triangles it resolves, in a frame of size 1 (the root: the unit disk).
+/// A child's frame is (uv of the parent - centre) / scale; frames are never composed, since that would
+/// underflow.
+struct Level {
+  int parent = -1;
+  Vec2 centre;  ///< of this set, in the parent's frame
+  std::vector<int> children;
+  std::vector<int> tris;     ///< triangles of the disk, by number
+  std::vector<Tri> corners;  ///< their corners as places in `vertex`
+  std::vector<int> vertex;   ///< vertices of the disk, by number
+  std::vector<Vec2> uv;
+  std::vector<int> holes;                   ///< places in `vertex` of the virtual centres resolved here
+  std::vector<std::array<Vec2, 2>> border;  ///< of the set, in its own frame; empty for the root
+};
+
+/// Level 0 maps the rim to the unit circle. Triangles whose image is smaller than `min_area` times the
+/// level's disk are withdrawn in edge-connected sets; each set of `min_set` triangles or more is a level of
+/// its own, with the parent's image of its border as Dirichlet data. Parents come before children; every
+/// triangle is in one level. A level's system covers only the neighbourhood of its border that it can
+/// resolve, so that the whole is close to linear however long the part. Throws GoalMissed if a system is
+/// singular.
+std::vector<Level> laplace_levels(const FilledDisk& disk, double min_area, int min_set);
+
+}  // namespace meshpipe

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "lib/embed.h"
+#include "lib/error.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+/// An edge that lines run along; right = -1 on the mesh border.
+struct SpecialEdge {
+  int a, b, kind;
+  int left, right;  ///< parts on the left and the right of a -> b
+};
+
+std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>& part) {
+  const std::vector<int> opposite = opposite_halfedges(s.tris, static_cast<int>(s.points.size()));
+  const std::vector<std::uint8_t>* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
+  auto is_model = [&](int h) { return model && ((*model)[h / 3] >> (h % 3) & 1); };
+  std::vector<SpecialEdge> edges;
+  for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {
+    const int o = opposite[h];
+    if (o >= 0 && o < h) continue;
+    const int left = part[h / 3], right = o < 0 ? -1 : part[o / 3];
+    if (o >= 0 && left == right && !is_model(h) && !is_model(o)) continue;
+    const int kind = o < 0 ? border_line : is_model(h) || is_model(o) ? model_line : interface_line;
+    edges.push_back({meshpipe::origin(s.tris, h), target(s.tris, h), kind, left, right});
+  }
+  return edges;
+}
+
+/// Chains the edges between joints (vertices where their number is not two, and `corner` ones), then the
+/// loops that are left, each from its smallest vertex.
+Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner) {
+  const int n_vertices = static_cast<int>(corner.size());
+  std::vector<int> start(n_vertices + 1, 0), star(2 * edges.size());
+  for (const SpecialEdge& e : edges) ++start[e.a + 1], ++start[e.b + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
+    star[at[edges[i].a]++] = i;
+    star[at[edges[i].b]++] = i;
+  }
+  auto is_joint = [&](int v) { return corner[v] || start[v + 1] - start[v] != 2; };
+
+  Chains chains;
+  std::vector<char> used(edges.size(), 0);
+  auto walk = [&](int v, int e, bool closed) {
+    const SpecialEdge& first = edges[e];
+    const bool along = first.a == v;
+    Chain c{first.kind, static_cast<int>(chains.vertex.size()), 1,
+            closed,     along ? first.left : first.right,       along ? first.right : first.left};
+    const int origin = v;
+    chains.vertex.push_back(v);
+    for (;;) {
+      used[e] = 1;
+      v = edges[e].a == v ? edges[e].b : edges[e].a;
+      chains.vertex.push_back(v);
+      ++c.count;
+      if (closed ? v == origin : is_joint(v)) break;
+      const int s = start[v];
+      e = star[s] == e ? star[s + 1] : star[s];
+    }
+    chains.chain.push_back(c);
+  };
+  for (bool closed : {false, true})
+    for (int v = 0; v < n_vertices; ++v) {
+      if (start[v] == start[v + 1] || (!closed && !is_joint(v))) continue;
+      for (int i = start[v]; i < start[v + 1]; ++i)
+        if (!used[star[i]]) walk(v, star[i], closed);
+    }
+  return chains;
+}
+
+/// Marks the inner vertices where a chain has a corner: where it turns by more than `limit` at every scale
+/// from its edges up to the size asked for. The zig-zag of a scan's border fades with scale, a circle is
+/// straight at the small ones.
+void mark_corners(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
+                  double limit, std::vector<char>& corner) {
+  const int* v = &chains.vertex[c.first];
+  std::vector<double> length(c.count, 0);
+  for (int i = 1; i < c.count; ++i) length[i] = length[i - 1] + norm(s.points[v[i]] - s.points[v[i - 1]]);
+  const double total = length.back();
+  auto at = [&](double l) {
+    if (c.closed) l = l < 0 ? l + total : l > total ? l - total : l;
+    int i = static_cast<int>(std::upper_bound(length.begin(), length.end(), l) - length.begin());
+    i = std::clamp(i, 1, c.count - 1);
+    const double d = length[i] - length[i - 1];
+    const double t = d > 0 ? std::clamp((l - length[i - 1]) / d, 0.0, 1.0) : 0;
+    return lerp(s.points[v[i - 1]], s.points[v[i]], t);
+  };
+  struct Candidate {
+    int index;
+    double turn;
+  };
+  std::vector<Candidate> found;
+  for (int i = c.closed ? 0 : 1; i < c.count - 1; ++i) {
+    const Vec3 x = s.points[v[i]];
+    double turn = angle(x - s.points[v[i > 0 ? i - 1 : c.count - 2]], s.points[v[i + 1]] - x);
+    // borders of scans are rougher than creases, which mfeature has chosen
+    const double reach = (c.kind == border_line ? 2 : 1) * size[v[i]];
+    for (double scale : {0.25, 0.5, 1.0}) {
+      if (turn <= limit) break;
+      double back = scale * reach, ahead = back;
+      if (c.closed) {
+        back = ahead = std::min(back, total / 12);  // a circle turns by less than `limit` over two twelfths
+      } else {
+        back = std::min(back, length[i]);
+        ahead = std::min(ahead, total - length[i]);
+      }
+      turn = std::min(turn, angle(x - at(length[i] - back), at(length[i] + ahead) - x));
+    }
+    if (turn > limit) found.push_back({i, turn});
+  }
+  // on a rough border the neighbours of a corner turn as well, but less: within h/2 only the sharpest count
+  const int n = static_cast<int>(found.size());
+  for (int k = 0; k < n; ++k) {
+    bool sharpest = true;
+    for (int step : {-1, 1}) {
+      if (c.kind != border_line) break;
+      for (int far = 1; far < n && sharpest; ++far) {
+        int j = k + step * far;
+        if (!c.closed && (j < 0 || j >= n)) break;
+        j = (j + n) % n;
+        double apart = std::abs(length[found[j].index] - length[found[k].index]);
+        if (c.closed) apart = std::min(apart, total - apart);
+        if (apart > 0.5 * size[v[found[k].index]]) break;
+        sharpest = found[j].turn < 1.1 * found[k].turn;
+      }
+    }
+    if (sharpest) corner[v[found[k].index]] = 1;
+  }
+}
+
+/// Corners of the model: ends, junctions and turns of its border and model edges, whatever the parts.
+std::vector<char> mark_corners(const Surface& s, const std::vector<double>& size,
+                               const std::vector<SpecialEdge>& edges, double limit) {
+  std::vector<char> corner(s.points.size(), 0);
+  std::vector<SpecialEdge> kept;
+  for (const SpecialEdge& e : edges)
+    if (e.kind != interface_line) kept.push_back(e);
+  std::vector<int> degree(s.points.size(), 0), kinds(s.points.size(), 0);
+  for (const SpecialEdge& e : kept)
+    for (int v : {e.a, e.b}) {
+      ++degree[v];
+      kinds[v] |= 1 << e.kind;
+    }
+  for (std::size_t v = 0; v < s.points.size(); ++v)
+    corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
+  const Chains chains = chain_edges(kept, corner);
+  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, corner);
+  return corner;
+}
+
+/// log(1 + x) / x
+double log_over(double x) { return std::abs(x) < 1e-8 ? 1 - 0.5 * x : std::log1p(x) / x; }
+
+/// The integral of 1/h along each chain up to each of its vertices, exact for h linear on edges.
+void measure_chains(const Surface& s, const std::vector<double>& size, Chains& chains) {
+  chains.measure.assign(chains.vertex.size(), 0);
+  chains.ratio.assign(chains.vertex.size(), 0);
+  for (const Chain& c : chains.chain)
+    for (int i = c.first + 1; i < c.first + c.count; ++i) {
+      const int a = chains.vertex[i - 1], b = chains.vertex[i];
+      const double x = (size[b] - size[a]) / size[a];
+      chains.ratio[i - 1] = x;
+      chains.measure[i] = chains.measure[i - 1] + norm(s.points[b] - s.points[a]) / size[a] * log_over(x);
+    }
+}
+
+/// How many segments each line is divided into at first.
+std::vector<int> segment_counts(const Chains& chains) {
+  std::vector<int> count;
+  std::vector<std::array<int, 3>> single;  // ends and line of those with one segment
+  auto total = [&](int line) {
+    const Chain& c = chains.chain[line];
+    return chains.measure[c.first + c.count - 1];
+  };
+  for (int l = 0; l < static_cast<int>(chains.chain.size()); ++l) {
+    const Chain& c = chains.chain[l];
+    const int a = chains.vertex[c.first], b = chains.vertex[c.first + c.count - 1];
+    const int n = static_cast<int>(std::min(std::round(total(l)), 1e9));
+    count.push_back(std::max(a == b ? 3 : 1, n));
+    if (count.back() == 1) single.push_back({std::min(a, b), std::max(a, b), l});
+  }
+  // of several lines between the same two vertices only the shortest may be a single segment
+  std::sort(single.begin(), single.end(), [&](const auto& x, const auto& y) {
+    const double mx = total(x[2]), my = total(y[2]);
+    return std::tie(x[0], x[1], mx, x[2]) < std::tie(y[0], y[1], my, y[2]);
+  });
+  for (std::size_t i = 1; i < single.size(); ++i)
+    if (single[i][0] == single[i - 1][0] && single[i][1] == single[i - 1][1]) count[single[i][2]] = 2;
+  return count;
+}
+
+}  // namespace
+
+std::vector<char> model_corners(const Surface& surface, double corner) {
+  return mark_corners(surface, surface.vertex.get<double>("size"),
+                      special_edges(surface, surface.face.get<int>("part")), corner);
+}
+
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner) {
+  const int n_vertices = static_cast<int>(surface.points.size());
+  if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
+  const auto& size = surface.vertex.get<double>("size");
+  const auto& part = surface.face.get<int>("part");
+  for (int v = 0; v < n_vertices; ++v)
+    if (!(size[v] > 0))
+      throw BadInput("vertex " + std::to_string(v) + " has size " + std::to_string(size[v]) +
+                     ", but sizes are positive");
+  for (int t = 0; t < static_cast<int>(part.size()); ++t)
+    if (part[t] < 0 || part[t] >= static_cast<int>(charts.size()))
+      throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
+                     ", but there are " + std::to_string(charts.size()) + " charts");
+
+  const std::vector<SpecialEdge> edges = special_edges(surface, part);
+  Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner));
+  measure_chains(surface, size, chains);
+  Division division(chains.chain.size());
+  const std::vector<int> count = segment_counts(chains);
+  for (int l = 0; l < static_cast<int>(count.size()); ++l) division[l] = divide(chains, l, count[l]);
+  refine_until_embedded(chains, charts, n_vertices, division);
+
+  Lines lines;
+  for (int l = 0; l < static_cast<int>(division.size()); ++l) {
+    const Chain& c = chains.chain[l];
+    const int n = static_cast<int>(division[l].size()) - (c.closed ? 1 : 0);
+    lines.lines.push_back({c.kind, 0, static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0});
+    for (int i = 0; i < n; ++i) {
+      const Cut& cut = division[l][i];
+      const int a = chains.vertex[c.first + cut.piece];
+      lines.points.push_back({a, cut.t > 0 ? chains.vertex[c.first + cut.piece + 1] : a, cut.t});
+    }
+    const int low = std::min(c.left, c.right), high = std::max(c.left, c.right);
+    if (low >= 0 && low != high) lines.uses.push_back({l, low});
+    lines.uses.push_back({l, high});
+  }
+  return lines;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/multiscale.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <queue>
+
+#include "lib/cut.h"
+#include "lib/cut_line.h"
+#include "lib/error.h"
+#include "lib/levels.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int max_depth = 12;         // of cuts within one part of the input
+constexpr double least_share = 0.02;  // of the area: a smaller half is no progress
+
+/// What the zero level of a field does to a part.
+struct Assessment {
+  bool valid = false;        ///< both sides there, each in one piece
+  int loops = 0;             ///< of both halves together; 2 for two disks
+  double length = 0;         ///< of the cut
+  double smaller_share = 0;  ///< of the area
+};
+
+/// A part of genus 0 with what all candidates share.
+struct Part {
+  SubMesh mesh;
+  std::vector<int> opposite;
+  FilledDisk disk;
+};
+
+int root_of(std::vector<int>& parent, int v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+/// Pieces of a side other than its largest go to the other side: afterwards each side is in one piece.
+/// Pieces are those of the vertices of one sign under the edges between them; the side that the cut makes has
+/// the same connectivity and the same Euler characteristic, for no value is zero.
+void drop_fragments(const Part& part, std::vector<double>& field) {
+  const std::vector<Tri>& tris = part.mesh.tris;
+  std::vector<int> parent(field.size()), size, fragments;
+  for (bool positive : {true, false}) {
+    std::iota(parent.begin(), parent.end(), 0);
+    size.assign(field.size(), 0);
+    for (const Tri& t : tris)
+      for (int k = 0; k < 3; k++) {
+        int a = t[k], b = t[(k + 1) % 3];
+        if ((field[a] > 0) != (field[b] > 0)) continue;
+        int ra = root_of(parent, a), rb = root_of(parent, b);
+        if (ra != rb) parent[std::max(ra, rb)] = std::min(ra, rb);
+      }
+    int largest = -1;
+    for (std::size_t v = 0; v < field.size(); v++) {
+      if ((field[v] > 0) != positive) continue;
+      int r = root_of(parent, v);
+      if (++size[r]; largest < 0 || size[r] > size[largest]) largest = r;
+    }
+    fragments.clear();
+    for (std::size_t v = 0; v < field.size(); v++)
+      if ((field[v] > 0) == positive && root_of(parent, v) != largest) fragments.push_back(v);
+    for (int v : fragments) field[v] = -field[v];
+  }
+}
+
+Assessment assess(const Part& part, const std::vector<double>& field) {
+  const std::vector<Vec3>& p = part.mesh.points;
+  Assessment a;
+  int chi[2] = {0, 0};
+  double area[2] = {0, 0};
+  std::vector<int> parent(field.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  int pieces = field.size();
+  for (double f : field) chi[f > 0]++;
+  if (chi[0] == 0 || chi[1] == 0) return a;
+  for (std::size_t t = 0; t < part.mesh.tris.size(); t++) {
+    const Tri& c = part.mesh.tris[t];
+    const double third = norm(area_vector(p[c[0]], p[c[1]], p[c[2]])) / 6;
+    Vec3 crossing[2];
+    int crossings = 0, positive = 0;
+    for (int k = 0; k < 3; k++) {
+      const int u = c[k], v = c[(k + 1) % 3], h = 3 * t + k;
+      positive += field[u] > 0;
+      area[field[u] > 0] += third;
+      if ((field[u] > 0) != (field[v] > 0)) {
+        crossing[crossings++ & 1] = lerp(p[u], p[v], field[u] / (field[u] - field[v]));
+        continue;
+      }
+      if (part.opposite[h] > h) continue;  // every edge once
+      chi[field[u] > 0]--;
+      int ru = root_of(parent, u), rv = root_of(parent, v);
+      if (ru == rv) continue;
+      parent[std::max(ru, rv)] = std::min(ru, rv);
+      pieces--;
+    }
+    if (crossings == 2) a.length += norm(crossing[1] - crossing[0]);
+    if (positive % 3 == 0) chi[positive == 3]++;
+  }
+  a.valid = pieces == 2;
+  a.loops = 4 - chi[0] - chi[1];
+  a.smaller_share = std::min(area[0], area[1]) / (area[0] + area[1]);
+  return a;
+}
+
+/// Fewest holes left, then a short cut between halves of like size.
+bool better(const Assessment& a, const Assessment& b) {
+  if (a.valid != b.valid) return a.valid;
+  if (a.loops != b.loops) return a.loops < b.loops;
+  auto cost = [](const Assessment& x) { return x.length * (1 + 4 * std::max(0., 0.3 - x.smaller_share)); };
+  return cost(a) < cost(b);
+}
+
+/// A few damped Jacobi steps for the Laplacian in a band around the zero level take the corners out of it.
+std::vector<double> smoothed(const Part& part, std::vector<double> field, int steps) {
+  const std::vector<Tri>& tris = part.mesh.tris;
+  constexpr int rings = 4;
+  std::vector<char> band(field.size(), 0);
+  std::vector<int> active;
+  for (int ring = 1; ring <= rings; ring++) {
+    active.clear();
+    for (std::size_t t = 0; t < tris.size(); t++) {
+      const Tri& c = tris[t];
+      bool in = ring == 1 ? (field[c[0]] > 0) != (field[c[1]] > 0) || (field[c[1]] > 0) != (field[c[2]] > 0)
+                          : band[c[0]] || band[c[1]] || band[c[2]];
+      if (in) active.push_back(t);
+    }
+    for (int t : active)
+      for (int v : tris[t]) band[v] = 1;
+  }
+  // vertices that are only on the band's outer edge hold their values
+  std::fill(band.begin(), band.end(), 0);
+  for (int t : active)
+    for (int v : tris[t]) band[v] = 1;
+  std::vector<int> members;
+  for (std::size_t v = 0; v < field.size(); v++)
+    if (band[v]) members.push_back(v);
+  std::vector<double> sum(field.size()), weight(field.size());
+  for (int step = 0; step < steps; step++) {
+    for (int v : members) sum[v] = weight[v] = 0;
+    for (int t : active)
+      for (int k = 0; k < 3; k++) {
+        int a = tris[t][k], b = tris[t][(k + 1) % 3];
+        double w = part.disk.weights[3 * t + k];
+        sum[a] += w * field[b];
+        sum[b] += w * field[a];
+        weight[a] += w;
+        weight[b] += w;
+      }
+    for (int v : members) {
+      double f = 0.5 * field[v] + 0.5 * sum[v] / weight[v];
+      if (f != 0) field[v] = f;
+    }
+  }
+  return field;
+}
+
+/// The last resort: across the part, half way from its rim to its farthest vertex. It always shortens the
+/// part.
+std::vector<double> across(const Part& part) {
+  const FilledDisk& disk = part.disk;
+  std::vector<double> distance(part.mesh.points.size(), 1e300);
+  std::vector<int> start(distance.size() + 1, 0), edges(3 * part.mesh.tris.size());
+  for (const Tri& t : part.mesh.tris)
+    for (int v : t) start[v + 1]++;
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> fill(start.begin(), start.end() - 1);
+  for (std::size_t h = 0; h < edges.size(); h++) edges[fill[origin(part.mesh.tris, h)]++] = h;
+  using Item = std::pair<double, int>;
+  std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
+  for (int v : disk.rim) queue.push({distance[v] = 0, v});
+  double farthest = 0;
+  while (!queue.empty()) {
+    auto [d, v] = queue.top();
+    queue.pop();
+    if (d > distance[v]) continue;
+    farthest = d;
+    for (int i = start[v]; i < start[v + 1]; i++)
+      for (int w : {target(part.mesh.tris, edges[i]), origin(part.mesh.tris, prev(edges[i]))})
+        if (double e = d + norm(part.mesh.points[w] - part.mesh.points[v]); e < distance[w])
+          queue.push({distance[w] = e, w});
+  }
+  for (double& d : distance) {
+    d -= farthest / 2;
+    if (d == 0) d = std::numeric_limits<double>::min();
+  }
+  return distance;
+}
+
+/// The best field over all directions, smoothed as far as its topology allows.
+std::vector<double> best_field(const Part& part, const MultiscaleOptions& options, int& n_levels) {
+  const std::vector<Level> levels = laplace_levels(part.disk, options.min_area, options.min_set);
+  n_levels = levels.size();
+  std::vector<double> best;
+  Assessment best_is;
+  for (int i = 0; i < options.directions; i++) {
+    std::vector<double> field = cut_line_field(part.disk, levels, std::numbers::pi * i / options.directions);
+    drop_fragments(part, field);
+    Assessment is = assess(part, field);
+    if (best.empty() || better(is, best_is)) {
+      best = std::move(field);
+      best_is = is;
+    }
+  }
+  if (!best_is.valid || best_is.smaller_share < least_share) {
+    best = across(part);
+    drop_fragments(part, best);
+    best_is = assess(part, best);
+  }
+  for (int steps : {24, 6, 2}) {
+    std::vector<double> smooth = smoothed(part, best, steps);
+    drop_fragments(part, smooth);
+    Assessment is = assess(part, smooth);
+    if (is.valid && is.loops <= best_is.loops && is.smaller_share >= best_is.smaller_share / 2) return smooth;
+  }
+  return best;
+}
+
+/// The two sides of a cut as meshes, if they are parts as the stream wants them; their loops, or 0.
+int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topology (&halves)[2]) {
+  std::vector<SubMesh> meshes = split_by_label(surface, side, 2);
+  int loops = 0;
+  try {
+    for (int s : {0, 1}) {
+      if (meshes[s].tris.empty()) return 0;
+      halves[s] = topology_of(meshes[s]);
+      if (halves[s].components != 1 || halves[s].genus != 0 || halves[s].loops < 1) return 0;
+      loops += halves[s].loops;
+    }
+  } catch (const NotAdmissible&) {  // a pinched vertex, where the line was snapped to one twice
+    return 0;
+  }
+  return loops;
+}
+
+std::string name(int part) { return "part " + std::to_string(part); }
+
+}  // namespace
+
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts) {
+  const std::vector<int>& given = surface.face.get<int>("part");
+  int n_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
+  struct Task {
+    int part, depth;
+  };
+  std::vector<Task> tasks;
+  std::vector<Topology> is = topology_of_parts(surface, given, n_parts);
+  for (int p = n_parts - 1; p >= 0; p--) {
+    if (is[p].components != 1 || is[p].genus != 0 || is[p].loops < 1)
+      throw NotAdmissible(name(p) + " has " + std::to_string(is[p].components) + " components, genus " +
+                          std::to_string(is[p].genus) + " and " + std::to_string(is[p].loops) +
+                          " boundary loops where 1, 0 and at least 1 are needed; run mpartition first");
+    if (is[p].eta_geo > options.max_aspect) tasks.push_back({p, 0});
+  }
+  while (!tasks.empty()) {
+    const Task task = tasks.back();
+    tasks.pop_back();
+    if (task.depth >= max_depth)
+      throw GoalMissed(name(task.part) + " still has aspect ratio " + std::to_string(is[task.part].eta_geo) +
+                       " above " + std::to_string(options.max_aspect) + " after " +
+                       std::to_string(task.depth) + " cuts");
+    const std::vector<int>& label = surface.face.get<int>("part");
+    std::vector<int> mine(label.size());
+    std::vector<char> active(label.size());
+    for (std::size_t t = 0; t < label.size(); t++) {
+      active[t] = label[t] == task.part;
+      mine[t] = active[t] ? 0 : -1;
+    }
+    Part part;
+    part.mesh = std::move(split_by_label(surface, mine, 1)[0]);
+    part.opposite = opposite_halfedges(part.mesh.tris, part.mesh.points.size());
+    part.disk = fill_holes(part.mesh);
+    MultiscaleCut cut{task.part, {task.part, n_parts}, is[task.part].eta_geo, 0, 0};
+    const std::vector<double> local = best_field(part, options, cut.levels);
+    const Assessment expected = assess(part, local);
+    if (!expected.valid) throw GoalMissed(name(task.part) + " cannot be cut in two");
+    cut.length = expected.length / diagonal(part.mesh);
+    std::vector<double> field(surface.points.size(), 1);
+    for (std::size_t v = 0; v < local.size(); v++) field[part.mesh.vertex[v]] = local[v];
+
+    // a line that is snapped to vertices may touch itself there: snap less then
+    Surface result;
+    std::vector<int> side;
+    Topology halves[2];
+    int loops = 0;
+    for (double snap : {0.1, 0.03, 0.01, 0.}) {
+      Surface trial = surface;
+      std::vector<int> trial_side;
+      Topology trial_halves[2];
+      cut_by_scalar_field(trial, field, active, trial_side, snap);
+      int trial_loops = loops_of_halves(trial, trial_side, trial_halves);
+      if (trial_loops == 0 || (loops > 0 && trial_loops >= loops)) continue;
+      loops = trial_loops;
+      result = std::move(trial);
+      side.swap(trial_side);
+      for (int s : {0, 1}) halves[s] = trial_halves[s];
+      if (loops <= expected.loops) break;
+    }
+    if (loops == 0) throw GoalMissed(name(task.part) + " cannot be cut into 2 connected halves");
+    surface = std::move(result);
+    std::vector<int>& labels = surface.face.get<int>("part");
+    for (std::size_t t = 0; t < labels.size(); t++)
+      if (side[t] == 1) labels[t] = n_parts;
+    is.resize(n_parts + 1);
+    for (int s : {0, 1}) {
+      is[cut.halves[s]] = halves[s];
+      if (halves[s].eta_geo > options.max_aspect) tasks.push_back({cut.halves[s], task.depth + 1});
+    }
+    n_parts++;
+    if (cuts) cuts->push_back(cut);
+  }
+  return n_parts;
+}
+
+}  // namespace meshpipe
