@@ -1,36 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bounding-volume hierarchy over the triangles of a mesh: nearest point, and pairs of triangles whose boxes overlap.
+// A bounding-volume hierarchy over the triangles of a mesh: nearest point, and the triangles in a box.
 #pragma once
-#include <functional>
-
 #include "lib/chart.h"
 #include "lib/mesh.h"
 
 namespace meshpipe {
 
-/// Closest point of triangle abc to p, as barycentric coordinates (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Closest point of triangle abc to p, as barycentric coordinates (the regions of Ericson, Real-Time
+/// Collision Detection, 5.1.5). A triangle without area counts as its three edges.
 std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 
+/// A box with sides along the axes.
+struct Box {
+  Vec3 lo, hi;
+};
+Box box_of(const Mesh& mesh, int t);
+inline bool overlap(const Box& a, const Box& b) {
+  return a.lo.x <= b.hi.x && a.hi.x >= b.lo.x && a.lo.y <= b.hi.y && a.hi.y >= b.lo.y && a.lo.z <= b.hi.z &&
+         a.hi.z >= b.lo.z;
+}
+
+/// Built by median splits in O(n log n), in parallel, the same tree at any number of threads. Queries do not
+/// allocate.
 class Bvh {
  public:
-  explicit Bvh(const Mesh& mesh);  ///< keeps a reference to the mesh
+  /// Keeps a reference to the mesh. Precondition: it has a triangle.
+  explicit Bvh(const Mesh& mesh);
   struct Hit {
     double distance = 0;
     Place place;
   };
   /// Nearest point of the mesh; `bound` is an upper bound on the distance that is already known.
   Hit nearest(Vec3 p, double bound = 1e300) const;
-  /// Calls visit(t) for every triangle whose box overlaps [lo, hi].
-  void overlapping(Vec3 lo, Vec3 hi, const std::function<void(int)>& visit) const;
+  /// Calls visit(t) for every triangle that may overlap the box: those of every leaf that does.
+  template <class Visit>
+  void overlapping(const Box& box, Visit&& visit) const;
+  /// The triangles, neighbours in space close together.
+  const std::vector<int>& order() const { return order_; }
 
  private:
   struct Node {
-    Vec3 lo, hi;
+    Box box;
     int first, count;  ///< count > 0: leaf with triangles order_[first..]; else children first, first + 1
   };
+  struct Item;
+  void build(Item* items, int first, int count, int node, int children);
   const Mesh& mesh_;
   std::vector<Node> nodes_;
   std::vector<int> order_;
 };
+
+template <class Visit>
+void Bvh::overlapping(const Box& box, Visit&& visit) const {
+  int stack[64], n = 0;
+  stack[n++] = 0;
+  while (n) {
+    const Node& b = nodes_[stack[--n]];
+    if (!overlap(b.box, box)) continue;
+    if (b.count) {
+      for (int i = b.first; i < b.first + b.count; ++i) visit(order_[i]);
+    } else {
+      stack[n++] = b.first;
+      stack[n++] = b.first + 1;
+    }
+  }
+}
 
 }  // namespace meshpipe

@@ -3,15 +3,20 @@
 #pragma once
 #include <utility>
 
+#include "lib/bvh.h"
 #include "lib/mesh.h"
 
 namespace meshpipe {
 
-/// Do two triangles of one mesh meet other than in the vertices or the edge that they share? Exact predicates;
-/// sharing an edge they meet only if coplanar and on the same side, sharing a vertex if an opposite edge meets the other.
+/// Do two triangles of one mesh meet other than in the vertices or the edge that they share? Exact
+/// predicates; sharing an edge they meet only if coplanar and on the same side, sharing a vertex if an
+/// opposite edge meets the other.
 bool triangles_intersect(const Mesh& mesh, int s, int t);
 
-/// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no plane.
+/// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
+/// plane.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
+/// The same with the mesh's tree at hand.
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
 
 }  // namespace meshpipe

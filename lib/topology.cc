@@ -3,67 +3,39 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cstdint>
 #include <exception>
 #include <limits>
 #include <numbers>
 #include <queue>
 
+#include "lib/edges.h"
 #include "lib/error.h"
 
 namespace meshpipe {
 
-namespace {
-
-std::string edge_name(int a, int b) { return "edge " + std::to_string(a) + "-" + std::to_string(b); }
-
-[[noreturn]] void not_manifold(const std::vector<Tri>& tris, int h, int count) {
-  throw NotAdmissible(edge_name(origin(tris, h), target(tris, h)) + " of triangle " + std::to_string(h / 3) +
-                      " has " + std::to_string(count) + " triangles, not 2; run mclean first");
+static std::string edge_name(const std::vector<Tri>& tris, int h) {
+  return "edge " + std::to_string(origin(tris, h)) + "-" + std::to_string(target(tris, h));
 }
 
-}  // namespace
-
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices) {
-  // Half-edges in the bucket of their smaller vertex, each as larger vertex and number in one word: equal
-  // edges are next to each other once the bucket, of about three, is sorted.
-  int n = 3 * (int)tris.size();
-  std::vector<int> first(n_vertices + 1, 0);
-  for (int h = 0; h < n; ++h) {
-    int a = origin(tris, h), b = target(tris, h);
-    if (a == b)
-      throw NotAdmissible("triangle " + std::to_string(h / 3) + " has vertex " + std::to_string(a) +
-                          " twice; run mclean first");
-    ++first[std::min(a, b) + 1];
-  }
-  for (int v = 0; v < n_vertices; ++v) first[v + 1] += first[v];
-  std::vector<std::uint64_t> edge(n);
-  std::vector<int> end(first.begin(), first.end() - 1);
-  for (int h = 0; h < n; ++h) {
-    int a = origin(tris, h), b = target(tris, h);
-    edge[end[std::min(a, b)]++] = (std::uint64_t)std::max(a, b) << 32 | (std::uint32_t)h;
-  }
-  std::vector<int> opposite(n, -1);
-  for (int v = 0; v < n_vertices; ++v) {
-    std::uint64_t *e = edge.data() + first[v], *stop = edge.data() + first[v + 1];
-    std::sort(e, stop);
-    while (e < stop) {
-      std::uint64_t* f = e + 1;
-      while (f < stop && *f >> 32 == *e >> 32) ++f;
-      int h = (int)(std::uint32_t)*e;
-      if (f - e > 2) not_manifold(tris, h, (int)(f - e));
-      if (f - e == 2) {
-        int g = (int)(std::uint32_t)e[1];
-        if (origin(tris, h) == origin(tris, g))
-          throw NotAdmissible(edge_name(origin(tris, h), target(tris, h)) +
-                              " runs the same way in triangles " + std::to_string(h / 3) + " and " +
-                              std::to_string(g / 3) + "; run mclean first");
-        opposite[h] = g;
-        opposite[g] = h;
-      }
-      e = f;
-    }
-  }
+  for (int h = 0; h < 3 * (int)tris.size(); ++h)
+    if (origin(tris, h) == target(tris, h))
+      throw NotAdmissible("triangle " + std::to_string(h / 3) + " has vertex " +
+                          std::to_string(origin(tris, h)) + " twice; run mclean first");
+  std::vector<int> opposite(3 * tris.size(), -1);
+  for_each_edge(tris, n_vertices, [&](std::span<const EdgeUse> uses) {
+    int h = half_edge(uses[0]);
+    if (uses.size() > 2)
+      throw NotAdmissible(edge_name(tris, h) + " of triangle " + std::to_string(h / 3) + " has " +
+                          std::to_string(uses.size()) + " triangles, not 2; run mclean first");
+    if (uses.size() < 2) return;
+    int g = half_edge(uses[1]);
+    if (origin(tris, h) == origin(tris, g))
+      throw NotAdmissible(edge_name(tris, h) + " runs the same way in triangles " + std::to_string(h / 3) +
+                          " and " + std::to_string(g / 3) + "; run mclean first");
+    opposite[h] = g;
+    opposite[g] = h;
+  });
   return opposite;
 }
 

@@ -7,9 +7,9 @@
 
 namespace meshpipe {
 
-/// opposite[3*t+i] as in lib/mesh.h, for an oriented manifold; linear (a counting sort by the smaller vertex), no hashing.
-/// Throws NotAdmissible naming the edge if it has more than two triangles, or two that disagree on direction,
-/// and naming the triangle if it has a repeated vertex.
+/// opposite[3*t+i] as in lib/mesh.h, for an oriented manifold; linear (a counting sort by the smaller
+/// vertex), no hashing. Throws NotAdmissible naming the edge if it has more than two triangles, or two that
+/// disagree on direction, and naming the triangle if it has a repeated vertex.
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices);
 
 /// The same where an edge between triangles of different labels counts as border (-1 on both sides).
@@ -33,11 +33,11 @@ struct Topology {
   int genus = 0;  ///< eq. (2) summed over the components: (2 C - chi - N_B) / 2
   int loops = 0;  ///< N_B
   double area = 0;
-  double longest_loop = 0;             ///< L
-  std::vector<double> loop_length;     ///< in the order of boundary_loops
-  double eta_cyl = 0;                  ///< pi A / L^2; 0 if closed
-  double eta_box = 0;                  ///< longest side of the part's box over that of its longest loop (principal axes)
-  double eta_geo = 0;                  ///< H / D, H the largest edge-path distance from the longest loop, D = L / pi
+  double longest_loop = 0;          ///< L
+  std::vector<double> loop_length;  ///< in the order of boundary_loops
+  double eta_cyl = 0;               ///< pi A / L^2; 0 if closed
+  double eta_box = 0;  ///< longest side of the part's box over that of its longest loop (principal axes)
+  double eta_geo = 0;  ///< H / D, H the largest edge-path distance from the longest loop, D = L / pi
 };
 
 /// Topology and aspect ratios of a mesh (one part: use split_by_label first).
