@@ -10,7 +10,8 @@ namespace meshpipe {
 
 SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model)
     : mesh_(mesh),
-      neighbour_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
+      opposite_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
+      neighbour_(opposite_),
       normals_(mesh.tris.size()) {
   walls_at_.resize(mesh.points.size());
   for (int h = 0; h < (int)opposite_.size(); ++h) {
