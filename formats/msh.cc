@@ -47,6 +47,7 @@ class MshReader {
       std::string_view section = text_.word();
       if (!section.starts_with('$')) text_.fail(quoted(section) + " where a section is due");
       section.remove_prefix(1);
+      bool known = true;
       if (section == "MeshFormat")
         format();
       else if (section == "PhysicalNames")
@@ -56,11 +57,9 @@ class MshReader {
       else if (section == "Elements")
         elements();
       else
-        while (!at_end_of(section)) {
-        }
-      if (section == "MeshFormat" || section == "PhysicalNames" || section == "Nodes" ||
-          section == "Elements")
-        if (!at_end_of(section)) text_.fail("more lines in $" + std::string(section) + " than it declares");
+        known = false;
+      while (!at_end_of(section))
+        if (known) text_.fail("more lines in section " + quoted(section) + " than it declares");
     }
     if (!has_nodes_) text_.fail("the file ends where $Nodes is due");
     if (!has_elements_) text_.fail("the file ends where $Elements is due");
@@ -72,7 +71,7 @@ class MshReader {
  private:
   /// Moves to the next line of a section and says if it is its end.
   bool at_end_of(std::string_view section) {
-    text_.need_line("$End" + std::string(section.substr(0, 40)));
+    text_.need_line("the end of the section");
     std::string_view w = text_.word();
     return w.starts_with("$End") && w.substr(4) == section;
   }
@@ -93,7 +92,7 @@ class MshReader {
     text_.need_line("the count of physical names");
     const int n = text_.count("the count of physical names", 6);
     for (int i = 0; i < n; ++i) {
-      text_.need_line("physical name " + std::to_string(i) + " of " + std::to_string(n));
+      text_.need_line("physical name", i, n);
       const int dim = text_.integer("a dimension"), tag = text_.integer("a physical tag");
       std::string_view name = text_.rest();
       if (name.size() >= 2 && name.front() == '"' && name.back() == '"')
@@ -110,7 +109,7 @@ class MshReader {
     const int n = text_.count("the count of nodes", 8);
     stream_.surface.points.resize(n);
     for (int i = 0; i < n; ++i) {
-      text_.need_line("node " + std::to_string(i) + " of " + std::to_string(n));
+      text_.need_line("node", i, n);
       const int number = text_.integer("a node number");
       if (number < 1) text_.fail("node number " + std::to_string(number) + ", but they are counted from 1");
       numbers_.add(number);
@@ -126,7 +125,7 @@ class MshReader {
     text_.need_line("the count of elements");
     const int n = text_.count("the count of elements", 8);
     for (int i = 0; i < n; ++i) {
-      text_.need_line("element " + std::to_string(i) + " of " + std::to_string(n));
+      text_.need_line("element", i, n);
       text_.integer("an element number");
       const int type = text_.integer("an element type"), tags = text_.integer("a number of tags");
       const int corners = type == 2 ? 3 : type == 3 ? 4 : 0;

@@ -37,7 +37,7 @@ int corner(Text& text, std::string_view word, std::size_t n_vertices) {
   long long v;
   if (!parse_integer(word.substr(0, word.find('/')), v)) text.fail(quoted(word) + " where a corner is due");
   if (v == 0) text.fail("vertex 0, but vertices are counted from 1");
-  if (v < 0 && -v > static_cast<long long>(n_vertices))
+  if (v < -static_cast<long long>(n_vertices))
     text.fail("a face uses vertex " + std::to_string(v) + ", but there are " + std::to_string(n_vertices) +
               " before it");
   if (v > std::numeric_limits<int>::max())

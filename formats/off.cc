@@ -38,13 +38,13 @@ Stream read_off(std::string_view bytes, const std::string& where) {
   std::vector<Vec3>& points = stream.surface.points;
   points.resize(n_vertices);
   for (int i = 0; i < n_vertices; ++i) {
-    text.need_line("vertex " + std::to_string(i) + " of " + std::to_string(n_vertices));
+    text.need_line("vertex", i, n_vertices);
     points[i] = text.point();
   }
   Polygons polygons;
   polygons.ends.reserve(n_faces);
   for (int f = 0; f < n_faces; ++f) {
-    text.need_line("face " + std::to_string(f) + " of " + std::to_string(n_faces));
+    text.need_line("face", f, n_faces);
     const int n = text.integer("a number of corners");
     if (n < 0 || n > max_corners)
       text.fail("face " + std::to_string(f) + " has " + std::to_string(n) + " corners, the limit is " +

@@ -130,7 +130,7 @@ class PlyReader {
     e.name = text_.word();
     if (e.name == "tristrips") fail("element 'tristrips' is not built yet");
     const int rows = text_.integer("a count of rows");
-    if (rows < 0) fail("element '" + e.name + "' has " + std::to_string(rows) + " rows");
+    if (rows < 0) fail("element " + quoted(e.name) + " has " + std::to_string(rows) + " rows");
     e.rows = rows;
     for (const Element& other : elements_)
       if (other.name == e.name) fail("element " + quoted(e.name) + " is declared twice");

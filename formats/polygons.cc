@@ -122,7 +122,7 @@ void set_faces(Stream& stream, const Polygons& polygons) {
   std::vector<int> patch;
   std::size_t first = 0;
   for (std::size_t f = 0; f < polygons.ends.size(); ++f) {
-    triangulation.add(&polygons.corners[first], static_cast<int>(polygons.ends[f] - first));
+    triangulation.add(polygons.corners.data() + first, static_cast<int>(polygons.ends[f] - first));
     patch.resize(s.tris.size(), polygons.patch[f]);
     first = polygons.ends[f];
   }

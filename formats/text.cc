@@ -96,8 +96,10 @@ int Text::count(const char* what, std::size_t least) {
   return n;
 }
 
-void Text::need_line(const std::string& what) {
-  if (!next_line()) fail("the file ends where " + what + " is due");
+void Text::need_line(const char* what, int i, int n) {
+  if (next_line()) return;
+  const std::string which = i < 0 ? "" : " " + std::to_string(i) + " of " + std::to_string(n);
+  fail("the file ends where " + (what + which) + " is due");
 }
 
 void Text::fail_at(std::size_t line, const std::string& what) const {

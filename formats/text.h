@@ -41,8 +41,8 @@ class Text {
   /// A count of things that take at least `least` bytes each: not negative, and no more than the text can
   /// hold.
   int count(const char* what, std::size_t least);
-  /// Moves to the next line, which must exist: "the file ends where WHAT is due" otherwise.
-  void need_line(const std::string& what);
+  /// Moves to the next line, which must exist: "the file ends where WHAT is due" otherwise, or "WHAT i of n".
+  void need_line(const char* what, int i = -1, int n = -1);
 
   std::size_t line() const { return line_; }
   /// The bytes after the current line.

@@ -26,10 +26,27 @@ void append_base64(std::string& out, const unsigned char* bytes, std::size_t n) 
   out += {digits[v >> 18], digits[v >> 12 & 63], i + 1 < n ? digits[v >> 6 & 63] : '=', '='};
 }
 
+bool is_utf8(std::string_view text) {
+  int due = 0;  // bytes that continue the current character
+  for (unsigned char c : text) {
+    if ((c & 0xC0) == 0x80) {
+      if (due-- == 0) return false;
+    } else {
+      if (due > 0 || c > 0xF4) return false;
+      due = c < 0x80 ? 0 : c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
+    }
+  }
+  return due == 0;
+}
+
 std::string escaped(std::string_view text) {
+  const bool utf8 = is_utf8(text);
   std::string out;
   for (char c : text) {
-    if (c == '&')
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 127 && !utf8)  // then it can only be Latin 1
+      out += {static_cast<char>(0xC0 | byte >> 6), static_cast<char>(0x80 | (byte & 63))};
+    else if (c == '&')
       out += "&amp;";
     else if (c == '<')
       out += "&lt;";
@@ -84,21 +101,15 @@ class Vtu {
   bool ascii_;
 };
 
+/// Names as meshio has them: an array of the name, which holds the tag and the dimension.
 void write_names(Vtu& vtu, const Stream& stream) {
-  std::vector<int> tags;
-  std::string codes;
-  for (const Name& n : stream.names) {
-    if (n.dim != 2) continue;
-    tags.push_back(n.tag);
-    for (unsigned char c : n.text) codes += std::to_string(int{c}) + ' ';
-    codes += "0\n";
-  }
-  if (tags.empty()) return;
-  const std::string tuples = " NumberOfTuples=\"" + std::to_string(tags.size()) + "\"";
+  if (stream.names.empty()) return;
   vtu.out += "<FieldData>\n";
-  vtu.array("patch_tag", 1, tags.data(), tags.size(), tuples.c_str());
-  vtu.out += "<DataArray type=\"String\" Name=\"patch_name\"" + tuples + " format=\"ascii\">\n" + codes +
-             "</DataArray>\n</FieldData>\n";
+  for (const Name& n : stream.names) {
+    const int tag_and_dim[] = {n.tag, n.dim};
+    vtu.array(one_line(n.text), 1, tag_and_dim, 2, " NumberOfTuples=\"2\"");
+  }
+  vtu.out += "</FieldData>\n";
 }
 
 }  // namespace

@@ -189,10 +189,14 @@ Finding Embedder::look_at(int part, const std::vector<int>& first_key) const {
       if (std::max(stray[0], stray[1]) < 0) finding.meeting.push_back(d.source[pair[i]].line);
     }
   }
-  // what strays this far has lost the line's shape (three chords of a circle, the fewest, stray by 0.29)
-  for (int i = 0; i < static_cast<int>(d.segments.size()); ++i)
-    if (refinable(d.source[i]) && deviation(part, d, i) > 0.35 * norm(d.segments[i].q - d.segments[i].p))
-      finding.refine.push_back(d.source[i]);
+  // three chords of a circle, the fewest, have 0.2 of their square between them and it; zig-zag cancels
+  for (int i = 0; i < static_cast<int>(d.segments.size()); ++i) {
+    if (!refinable(d.source[i])) continue;
+    const Segment& s = d.segments[i];
+    double between = 0;
+    for_piece(part, d, i, [&](Vec2 a, Vec2 b) { between += 0.5 * cross(a - s.p, b - s.p); });
+    if (std::abs(between) > 0.3 * dot(s.q - s.p, s.q - s.p)) finding.refine.push_back(d.source[i]);
+  }
   if (pairs.empty()) look_at_nesting(part, d, tree, finding);
   return finding;
 }
@@ -221,8 +225,9 @@ std::vector<int> Embedder::loops_of(const Drawing& d) const {
   return loop;
 }
 
-/// No two segments meet here. Then a border loop is wrong only if it turns the other way or is inside another
-/// one that did not hold it, and an embedded line only if it is outside the border.
+/// No two segments meet here. Then a border loop is wrong only if it turns the other way (or has lost most of
+/// its area) or is inside another one that did not hold it, and an embedded line only if it is outside the
+/// border.
 void Embedder::look_at_nesting(int part, const Drawing& d, const SegmentTree& tree, Finding& finding) const {
   const int n = static_cast<int>(d.segments.size());
   const std::vector<int> loop = loops_of(d);
@@ -241,7 +246,7 @@ void Embedder::look_at_nesting(int part, const Drawing& d, const SegmentTree& tr
     if (refinable(d.source[i])) finding.refine.push_back(d.source[i]);
   };
   for (int i = 0; i < n; ++i)
-    if (loop[i] >= 0 && (area[loop[i]] > 0) != (chain_area[loop[i]] > 0)) ask(i);
+    if (loop[i] >= 0 && !(area[loop[i]] / chain_area[loop[i]] > 0.3)) ask(i);
 
   // a point on the wrong side of the border: a segment and its chain have it between them
   auto between = [&](int i, Vec2 x) {

@@ -39,9 +39,10 @@ using Division = std::vector<std::vector<Cut>>;
 std::vector<Cut> divide(const Chains& chains, int line, int n);
 
 /// Adds cuts until the segments of the chains that border or lie in a chart form the same plane drawing as
-/// the chains: no two meet but at common ends, loops keep their orientation and hold the same lines. Adjacent
+/// the chains: no two meet but at common ends, loops keep their orientation, a third of their area, and the
+/// same lines inside; the area between a segment and its chain is at most 0.3 of its square. Adjacent
 /// segments of a refined line differ by at most three times in measure. A chain cut at all its vertices is
-/// drawn as it is, so it ends. Throws GoalMissed naming part and line if the chart itself is not one-to-one.
+/// drawn as it is, so it ends. Throws GoalMissed naming part and lines if the chart itself is not one-to-one.
 void refine_until_embedded(const Chains& chains, const std::vector<Chart>& charts, int n_vertices,
                            Division& division);
 

@@ -195,27 +195,31 @@ std::vector<int> label_regions(const LiftedMesh& mesh, std::vector<int> opposite
   return patch;
 }
 
-/// The glued mesh must be a manifold with the border of the reference, segment by segment.
-std::vector<int> check_glue(const Surface& s, const LiftedMesh& mesh, std::size_t border_segments) {
+/// The glued mesh must be a manifold and its border edges the segments of the border lines: then its loops
+/// are theirs.
+std::vector<int> check_glue(const LiftedMesh& mesh, const std::vector<Edge>& segments) {
+  const int n_vertices = static_cast<int>(mesh.points.size());
   std::vector<int> opposite;
   try {
-    opposite = opposite_halfedges(mesh.tris, static_cast<int>(mesh.points.size()));
+    opposite = opposite_halfedges(mesh.tris, n_vertices);
   } catch (const NotAdmissible& e) {
     throw GoalMissed(std::string("the glued mesh is not a manifold: ") + e.what());
   }
-  const int pinched = find_pinched_vertex(mesh.tris, opposite, static_cast<int>(mesh.points.size()));
+  const int pinched = find_pinched_vertex(mesh.tris, opposite, n_vertices);
   if (pinched >= 0) throw GoalMissed("the glued mesh is pinched at vertex " + std::to_string(pinched));
-  const std::size_t border = std::count(opposite.begin(), opposite.end(), -1);
-  if (border != border_segments)
+  std::size_t border = 0;
+  for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {
+    if (opposite[h] >= 0) continue;
+    ++border;
+    const Edge e = sorted_edge(origin(mesh.tris, h), target(mesh.tris, h));
+    if (!std::binary_search(segments.begin(), segments.end(), e))
+      throw GoalMissed("the glued mesh is open along edge " + std::to_string(e[0]) + ", " +
+                       std::to_string(e[1]) + ", which is no segment of the border");
+  }
+  if (border != segments.size())
     throw GoalMissed("the glued mesh has " + std::to_string(border) +
-                     " border edges, the border's lines have " + std::to_string(border_segments) +
+                     " border edges, the border's lines have " + std::to_string(segments.size()) +
                      " segments");
-  const std::size_t loops = boundary_loops(opposite).size();
-  const std::size_t due =
-      boundary_loops(opposite_halfedges(s.tris, static_cast<int>(s.points.size()))).size();
-  if (loops != due)
-    throw GoalMissed("the glued mesh has " + std::to_string(loops) + " border loops, its reference " +
-                     std::to_string(due));
   return opposite;
 }
 
@@ -288,7 +292,7 @@ LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, cons
     }
 
   const auto border = segments_of(lines, vertex, [](const Line& l) { return l.kind == border_line; });
-  const std::vector<int> opposite = check_glue(reference, out, border.size());
+  const std::vector<int> opposite = check_glue(out, border);
   out.patch = patches ? label_regions(out, opposite, below)
                       : std::vector<int>(n_tris, patch && !patch->empty() ? patch->front() : 0);
   return out;

@@ -41,9 +41,8 @@ std::vector<char> model_corners(const Surface& surface, double corner = 0.7);
 /// corners (a vertex where the number of special edges is not two, and model_corners), and divides each into
 /// N = round(integral of 1/h) segments, at least 1 (3 if closed), equidistributed in that measure, h = column
 /// `size` linear along edges. No two lines, nor a line and itself, cross or touch in any chart but at common
-/// ends: where the chords would, the lines are refined until they do not; also where a chord strays from its
-/// line by more than a third of its length. A line's points are the same in every chart that uses it.
-/// Precondition: charts in part order, positively oriented.
+/// ends: where the chords would, or would lose the shape of a loop, the lines are refined. A line's points
+/// are the same in every chart that uses it. Precondition: charts in part order, positively oriented.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7);
 
 }  // namespace meshpipe

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Other programs read what this project writes: VTK, meshio, MeshLab and Gmsh, each skipped with a message if missing.
+
+usage: tests/interop_test.py BIN_DIR [FILE.ply ...]
+
+Converts a small mesh to every format in both encodings, reads each back and compares the counts. All intermediates of
+a pipe, and the streams given as further arguments, must open in VTK and MeshLab as they are.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+try:
+    import vtk
+except ImportError:
+    vtk = None
+try:
+    import meshio
+except ImportError:
+    meshio = None
+
+# two patches with names, one vertex no face uses: a stream with a table that foreign readers must skip
+SAMPLE = """ply
+format ascii 1.0
+comment mply 1.0
+comment name 2 1 inlet
+comment name 2 5 outer%20wall
+element vertex 7
+property double x
+property double y
+property double z
+property double size
+element face 4
+property list uchar int vertex_indices
+property int patch
+property int part
+element part 2
+property int genus
+property double area
+end_header
+0 0 0 1
+1 0 0 1
+1 1 0 1
+0 1 0 1
+2 0 0.5 1
+2 1 0.5 1
+0.1 0.2 0.3 1
+3 0 1 2 1 0
+3 0 2 3 1 0
+3 1 4 5 5 1
+3 1 5 2 5 1
+0 2
+0 1
+"""
+VERTICES, FACES = 7, 4
+
+failures = []
+checked = 0
+
+
+def check(what, found, due):
+    global checked
+    checked += 1
+    if found != due:
+        failures.append(f"{what}: {found}, not {due}")
+
+
+def missing(tool):
+    print(f"skipped: {tool} is not installed")
+
+
+def header_counts(path):
+    """Vertices and faces by the header of a PLY."""
+    counts = {}
+    with open(path, "rb") as file:
+        for line in file:
+            words = line.split()
+            if words[:1] == [b"element"]:
+                counts[words[1].decode()] = int(words[2])
+            if words == [b"end_header"]:
+                return counts["vertex"], counts["face"]
+    raise ValueError(path)
+
+
+VTK_READERS = {"ply": "vtkPLYReader", "stl": "vtkSTLReader", "obj": "vtkOBJReader", "vtu": "vtkXMLUnstructuredGridReader"}
+
+
+def vtk_read(path):
+    reader = getattr(vtk, VTK_READERS[path.rsplit(".", 1)[1].replace("mply", "ply")])()
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def vtk_checks(path):
+    kind = path.rsplit(".", 1)[1].replace("mply", "ply")
+    if kind not in VTK_READERS:
+        return
+    data = vtk_read(path)
+    # the reader of STL merges equal points and drops unused ones
+    points = VERTICES - 1 if kind == "stl" else VERTICES
+    check(f"VTK, {path}", (data.GetNumberOfPoints(), data.GetNumberOfCells()), (points, FACES))
+    if kind == "vtu":
+        patch = data.GetCellData().GetArray("patch")
+        check(f"VTK, patches of {path}", [patch.GetValue(i) for i in range(FACES)], [1, 1, 5, 5])
+        tags = [data.GetFieldData().GetArray(name) for name in ("inlet", "outer wall")]
+        check(f"VTK, names of {path}", [t and t.GetValue(0) for t in tags], [1, 5])
+        check(f"VTK, sizes of {path}", data.GetPointData().GetArray("size").GetRange(), (1.0, 1.0))
+
+
+def meshio_checks(path):
+    kind = path.rsplit(".", 1)[1]
+    if kind == "mply" or (kind == "ply" and "binary" in path):
+        return  # meshio takes no further elements, and no column after the list in binary
+    mesh = meshio.read(path)
+    cells = sum(len(c.data) for c in mesh.cells if c.type == "triangle")
+    points = len(mesh.points)
+    if kind == "stl":
+        points, due = 0, 0  # merged or not by version
+    else:
+        due = VERTICES
+    check(f"meshio, {path}", (points, cells), (due, FACES))
+    if kind == "msh":
+        check(f"meshio, tags of {path}", [int(t) for c in mesh.cell_data["gmsh:physical"] for t in c], [1, 1, 5, 5])
+        check(f"meshio, names of {path}", {n: int(v[0]) for n, v in mesh.field_data.items()}, {"inlet": 1, "outer wall": 5})
+    if kind == "vtu":
+        check(f"meshio, patches of {path}", [int(t) for c in mesh.cell_data["patch"] for t in c], [1, 1, 5, 5])
+
+
+def meshlab_checks(path, scratch):
+    out = os.path.join(scratch, "meshlab.off")
+    if os.path.exists(out):
+        os.remove(out)
+    run = ["xvfb-run", "-a", "meshlabserver", "-i", path, "-o", out]
+    done = subprocess.run(run, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False)
+    if not os.path.exists(out):
+        failures.append(f"MeshLab does not open {path}: {done.stdout.decode(errors='replace')[-300:]}")
+        return
+    with open(out) as file:
+        words = file.read().split()
+    return int(words[1]), int(words[2])
+
+
+def gmsh_checks(path, scratch):
+    out = os.path.join(scratch, "gmsh.msh2")
+    done = subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False)
+    check(f"Gmsh, errors on {path}", [l for l in done.stdout.decode(errors="replace").splitlines() if "Error" in l], [])
+    with open(out) as file:
+        lines = file.read().split("\n")
+    elements = lines[lines.index("$Elements") + 2:lines.index("$EndElements")]
+    check(f"Gmsh, {path}", sum(e.split()[1] == "2" for e in elements), FACES)
+
+
+def intermediates(programs, scratch):
+    """The streams between the stages of the remeshing of a small tree."""
+    stages = "mshape mclean mtopo mfeature mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck mremesh"
+    absent = [p for p in stages.split() if not os.path.exists(os.path.join(programs, p))]
+    if absent:
+        print(f"skipped: the pipe, without {', '.join(absent)}")
+        return []
+    env = dict(os.environ, PATH=programs + os.pathsep + os.environ["PATH"])
+    tree, keep = os.path.join(scratch, "tree.stl"), os.path.join(scratch, "keep")
+    subprocess.run(["mshape", "tree", "--triangles", "3000", "-q", "-o", tree], env=env, check=True)
+    done = subprocess.run(["mremesh", "-q", "--keep", keep, tree, "-o", os.path.join(scratch, "mesh.vtu")], env=env,
+                          stderr=subprocess.PIPE, check=False)
+    check("mremesh on a small tree", (done.returncode, done.stderr.decode()), (0, ""))
+    return sorted(os.path.join(keep, name) for name in os.listdir(keep))
+
+
+def main():
+    programs, streams = os.path.abspath(sys.argv[1]), sys.argv[2:]
+    mconvert = os.path.join(programs, "mconvert")
+    display = shutil.which("meshlabserver") and shutil.which("xvfb-run")
+    for tool, found in (("python3-vtk9", vtk), ("meshio", meshio), ("meshlabserver with xvfb-run", display),
+                        ("gmsh", shutil.which("gmsh"))):
+        if not found:
+            missing(tool)
+    with tempfile.TemporaryDirectory() as scratch:
+        sample = os.path.join(scratch, "sample.mply")
+        with open(sample, "w") as file:
+            file.write(SAMPLE)
+        for encoding in ("ascii", "binary"):
+            for kind in ("mply", "ply", "stl", "obj", "off", "msh", "vtu"):
+                path = os.path.join(scratch, f"{encoding}.{kind}")
+                subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
+                if vtk:
+                    vtk_checks(path)
+                if meshio:
+                    meshio_checks(path)
+            if shutil.which("gmsh"):
+                gmsh_checks(os.path.join(scratch, f"{encoding}.msh"), scratch)
+        colored = os.path.join(scratch, "colored.ply")
+        subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
+        if vtk:
+            colors = vtk_read(colored).GetCellData().GetArray("RGB")
+            check("VTK, colours", colors and [colors.GetTuple(0) == colors.GetTuple(i) for i in range(FACES)],
+                  [True, True, False, False])
+        streams = streams + intermediates(programs, scratch)
+        streams += [os.path.join(scratch, f"{encoding}.{kind}") for encoding in ("ascii", "binary")
+                    for kind in ("mply", "ply")]
+        for path in streams:
+            due = header_counts(path)
+            # these programs go by the extension
+            as_ply = os.path.join(scratch, "stream.ply")
+            shutil.copy(path, as_ply)
+            if vtk:
+                data = vtk_read(as_ply)
+                check(f"VTK, {path}", (data.GetNumberOfPoints(), data.GetNumberOfCells()), due)
+            if display:
+                check(f"MeshLab, {path}", meshlab_checks(as_ply, scratch), due)
+    for failure in failures:
+        print(f"failed: {failure}")
+    print(f"{checked} checks, {len(failures)} failed")
+    return 1 if failures else 0
+
+
+sys.exit(main())

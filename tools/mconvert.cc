@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mconvert: between mesh formats and the stream; strips, colours, shows charts as a flat mesh.
+#include <algorithm>
+#include <cmath>
+
+#include "formats/line_tables.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+namespace {
+
+struct Options {
+  bool charts = false, surface = false;
+  std::string color;
+};
+
+/// The charts in place of the surface: vertices (u, v, 0), one for each part a vertex touches; face columns
+/// stay.
+void flatten(Stream& stream) {
+  Surface& s = stream.surface;
+  std::vector<Vec3> flat;
+  std::vector<Tri> tris(s.tris.size());
+  for (const Chart& c : read_charts(stream)) {
+    const int first = static_cast<int>(flat.size());
+    for (Vec2 p : c.uv) flat.push_back({p.x, p.y, 0});
+    for (std::size_t t = 0; t < c.mesh.tris.size(); ++t)
+      for (int i = 0; i < 3; ++i) tris[c.mesh.face[t]][i] = first + c.mesh.tris[t][i];
+  }
+  s.points = std::move(flat);
+  s.tris = std::move(tris);
+  s.vertex = Table{"vertex", s.points.size(), {}};
+  stream.tables.clear();
+}
+
+/// Face columns red green blue: a colour for each label, as far apart as can be for labels that follow each
+/// other.
+void color_by(Surface& s, const std::string& column) {
+  const std::vector<int>& label = s.face.get<int>(column);
+  std::vector<std::uint8_t> rgb[3];
+  for (int channel = 0; channel < 3; ++channel) {
+    rgb[channel].resize(label.size());
+    for (std::size_t t = 0; t < label.size(); ++t) {
+      // hues step by the golden ratio; three steps of brightness
+      const double hue = 6 * std::fmod(0.61803398874989485 * (label[t] & 0xffffff), 1.0);
+      const double k = std::fmod(hue + 5 - 2 * channel, 6.0);
+      const double strength = std::clamp(std::min(k, 4 - k), 0.0, 1.0);
+      const double bright = 1 - 0.15 * ((label[t] & 0xffffff) % 3);
+      rgb[channel][t] = static_cast<std::uint8_t>(std::lround(255 * bright * (1 - 0.6 * strength)));
+    }
+  }
+  s.face.set("red", std::move(rgb[0]));
+  s.face.set("green", std::move(rgb[1]));
+  s.face.set("blue", std::move(rgb[2]));
+}
+
+/// Leaves vertices, faces, patches and colours.
+void strip(Stream& stream) {
+  Surface& s = stream.surface;
+  stream.tables.clear();
+  s.vertex.columns.clear();
+  std::erase_if(s.face.columns, [](const Column& c) {
+    return c.name != "patch" && c.name != "red" && c.name != "green" && c.name != "blue";
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  return run_tool(
+      argc, argv, "mconvert",
+      "Convert between mesh formats and the stream.\n\n"
+      "examples:\n  mconvert tree.stl -o tree.vtu\n"
+      "  mclean tree.stl | mconvert --ascii > tree.mply",
+      [&](CLI::App& app) {
+        app.add_flag("--charts", o.charts,
+                     "the charts of mparam as a flat mesh, at u v 0, instead of the surface");
+        app.add_option("--color", o.color, "face columns red green blue by this label")
+            ->check(CLI::IsMember({"part", "patch"}))
+            ->type_name("part|patch");
+        app.add_flag("--surface", o.surface, "leave out all but vertices, faces, patches and colours");
+      },
+      [&](Io& io) {
+        Stream stream = io.read();
+        if (o.charts) flatten(stream);
+        if (!o.color.empty()) color_by(stream.surface, o.color);
+        if (o.surface) strip(stream);
+        io.detail(std::to_string(stream.surface.points.size()) + " vertices, " +
+                  std::to_string(stream.surface.tris.size()) + " triangles");
+        io.report["vertices"] = stream.surface.points.size();
+        io.report["triangles"] = stream.surface.tris.size();
+        if (io.output == "-" || io.output.ends_with(".mply"))
+          io.write(stream);
+        else
+          io.write_bytes(write_as(stream, io.output, io.ascii || (stream.ascii && !io.binary)));
+      });
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mlines: divide borders, model edges and interfaces between parts by the size
+// field.
+#include "formats/line_tables.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+int main(int argc, char** argv) {
+  auto body = [&](Io& io) {
+    Stream stream = io.read();
+    const Lines lines = make_lines(stream.surface, read_charts(stream));
+    write_lines(stream, lines);
+    int lines_of[3] = {0, 0, 0}, segments = 0;
+    for (const Line& l : lines.lines) {
+      ++lines_of[l.kind];
+      segments += l.count - 1 + l.closed;
+    }
+    char text[160];
+    std::snprintf(text, sizeof text, "%d border, %d model, %d interface lines in %d segments",
+                  lines_of[border_line], lines_of[model_line], lines_of[interface_line], segments);
+    io.say(text);
+    io.report["border_lines"] = lines_of[border_line];
+    io.report["model_lines"] = lines_of[model_line];
+    io.report["interface_lines"] = lines_of[interface_line];
+    io.report["segments"] = segments;
+    io.write(stream);
+  };
+  return run_tool(
+      argc, argv, "mlines",
+      "Divide the mesh border, the model edges and the interfaces between "
+      "parts by the size field, so "
+      "that no two of them cross in any chart.\n\n"
+      "example:\n  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
+      "mlines stages/07-size.ply -o "
+      "lines.ply",
+      [](CLI::App&) {}, body);
+}
