@@ -1,25 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multilevel partitioning of a surface until every part has genus 0 and a boundary (the paper's section 4, step 1).
+// Multilevel partitioning of a surface until every part has genus 0 and a boundary (the paper's section 4,
+// step 1).
 #pragma once
+#include <string>
+
 #include "lib/mesh.h"
 
 namespace meshpipe {
 
 struct PartitionOptions {
   int seed = 1;
-  int max_faces = 0;       ///< bound on the triangles of a part; 0: none
-  double snap = 0.1;       ///< of cut_by_scalar_field
+  int max_faces = 0;  ///< bound on the triangles of a part; 0: none
+  double snap = 0.1;  ///< of cut_by_scalar_field
 };
 
-/// Sets face column `part` (0..n-1) so that every part is edge-connected, vertex-manifold, touches itself nowhere,
-/// has genus 0 and at least one boundary loop; as few parts as it finds, then the shortest and smoothest cut.
-/// Interfaces are smoothed by cutting through triangles, so triangles and vertices may be added (see lib/cut.h);
-/// the surface as a set of points stays. Components are treated one by one. Model edges (face column `model`) attract cuts.
-/// Precondition: an oriented manifold without pinched vertices (NotAdmissible otherwise).
-/// Throws GoalMissed if a part cannot be made admissible. Returns the number of parts.
+/// Sets face columns `part` (0..n-1) and `origin` (where missing) so that every part is edge-connected,
+/// vertex-manifold, touches itself nowhere, has genus 0 and at least one boundary loop; as few parts as it
+/// finds, then the shortest and smoothest cut. Interfaces are smoothed by cutting through triangles, so
+/// triangles and vertices may be added (see lib/cut.h); the surface as a set of points stays. Components are
+/// treated one by one. Model edges (face column `model`) attract cuts. Precondition: an oriented manifold
+/// without pinched vertices (NotAdmissible otherwise). Throws GoalMissed if a part cannot be made admissible.
+/// Returns the number of parts.
 int partition_to_disks(Surface& surface, const PartitionOptions& options = {});
 
 /// Checks the rule of formats/mply.md on parts; returns an empty string, or what is wrong and where.
 std::string part_fault(const Surface& surface);
+
+/// How long and how straight the interfaces between the parts are.
+struct Interfaces {
+  double length = 0;  ///< over the diagonal of the surface's bounding box
+  double turning_angle =
+      0;  ///< the 90 % quantile of the angle between successive edges, in degrees; junctions left out
+  int junctions = 0;  ///< vertices with three or more interface edges
+};
+Interfaces measure_interfaces(const Surface& surface);
 
 }  // namespace meshpipe

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/partition.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "lib/error.h"
+#include "lib/graph.h"
+#include "lib/regions.h"
+#include "lib/straighten.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+/// A component of the surface with its dual graph: triangles joined across edges, weighed by the edge's
+/// length.
+struct Component {
+  SubMesh mesh;
+  std::vector<int> opposite;
+  std::vector<double> area;  // of each triangle
+  std::vector<int> weight;   // of each half-edge, as in the graph: the cost of a cut along it
+  Region whole;
+};
+
+/// How a labelling compares: fewer parts first, then the cheaper cut.
+struct Labelling {
+  std::vector<int> label;
+  int parts = 0;
+  std::int64_t cost = 0;
+  bool operator<(const Labelling& o) const { return std::tie(parts, cost) < std::tie(o.parts, o.cost); }
+};
+
+/// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
+std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
+                             const std::vector<std::uint8_t>& model) {
+  constexpr double model_factor = 0.2, sharp_factor = 0.4, sharp = 40 * 3.14159265358979 / 180;
+  std::vector<double> length(opposite.size(), 0);
+  double sum = 0;
+  std::size_t n = 0;
+  std::vector<Vec3> normal(mesh.tris.size());
+  for (std::size_t t = 0; t < normal.size(); ++t) {
+    const Tri& v = mesh.tris[t];
+    normal[t] = area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+  }
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] >= 0) {
+      length[h] = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+      sum += length[h];
+      ++n;
+    }
+  std::vector<int> weight(opposite.size(), 0);
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    int o = opposite[h];
+    if (o < 0) continue;
+    double f = 1;
+    if (!model.empty() && model[h / 3] >> h % 3 & 1)
+      f = model_factor;
+    else if (angle(normal[h / 3], normal[o / 3]) > sharp)
+      f = sharp_factor;
+    weight[h] = (int)std::clamp(std::round(100 * f * length[h] * n / sum), 1.0, 1e5);
+  }
+  return weight;
+}
+
+/// The dual graph of the triangles with this label (all of them if `label` is empty), on their own numbers.
+Graph dual_graph(const Component& c, const std::vector<int>& triangles, const std::vector<int>& local) {
+  Graph g;
+  g.start.push_back(0);
+  double mean = 0;
+  for (int t : triangles) mean += c.area[t];
+  mean /= (double)triangles.size();
+  for (int t : triangles) {
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      int o = c.opposite[h];
+      if (o < 0 || local[o / 3] < 0) continue;
+      g.adjacency.push_back(local[o / 3]);
+      g.edge_weight.push_back(c.weight[h]);
+    }
+    g.start.push_back((int)g.adjacency.size());
+    g.vertex_weight.push_back(mean > 0 ? (int)std::clamp(std::round(10 * c.area[t] / mean), 1.0, 1000.0) : 1);
+  }
+  return g;
+}
+
+int relabel_by_component(const Component& c, std::vector<int>& label) {
+  std::vector<int> component;
+  int n = components(opposite_within(c.mesh.tris, c.opposite, label), component);
+  label.swap(component);
+  return n;
+}
+
+/// Borders between labels: (a, b, weight), a < b, each pair once, sorted.
+struct Shared {
+  int a, b;
+  std::int64_t weight;
+};
+std::vector<Shared> shared_borders(const Component& c, const std::vector<int>& label) {
+  std::vector<Shared> s;
+  for (int h = 0; h < (int)c.opposite.size(); ++h) {
+    int o = c.opposite[h];
+    if (o > h && label[h / 3] != label[o / 3])
+      s.push_back({std::min(label[h / 3], label[o / 3]), std::max(label[h / 3], label[o / 3]), c.weight[h]});
+  }
+  std::sort(s.begin(), s.end(),
+            [](const Shared& p, const Shared& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
+  std::size_t n = 0;
+  for (const Shared& x : s)
+    if (n && s[n - 1].a == x.a && s[n - 1].b == x.b)
+      s[n - 1].weight += x.weight;
+    else
+      s[n++] = x;
+  s.resize(n);
+  return s;
+}
+
+/// Hands connected pieces of fewer triangles or less area than given to the neighbour with the longest shared
+/// border.
+void absorb_fragments(const Component& c, std::vector<int>& label, int min_faces, double min_area) {
+  int n = relabel_by_component(c, label);
+  std::vector<int> faces(n, 0), into(n);
+  std::vector<double> area(n, 0);
+  std::iota(into.begin(), into.end(), 0);
+  for (std::size_t t = 0; t < label.size(); ++t) ++faces[label[t]], area[label[t]] += c.area[t];
+  bool any = false;
+  for (int l = 0; l < n; ++l) any |= faces[l] < min_faces || area[l] < min_area;
+  if (!any) return;
+  const std::vector<Shared> shared = shared_borders(c, label);
+  auto root = [&](int l) {
+    while (into[l] != l) l = into[l] = into[into[l]];
+    return l;
+  };
+  for (;;) {
+    int smallest = -1;
+    for (int l = 0; l < n; ++l)
+      if (into[l] == l && (faces[l] < min_faces || area[l] < min_area) &&
+          (smallest < 0 || area[l] < area[smallest]))
+        smallest = l;
+    if (smallest < 0) break;
+    std::vector<std::int64_t> with(n, 0);
+    for (const Shared& s : shared) {
+      int a = root(s.a), b = root(s.b);
+      if (a != b && (a == smallest || b == smallest)) with[a == smallest ? b : a] += s.weight;
+    }
+    int best = (int)(std::max_element(with.begin(), with.end()) - with.begin());
+    if (with[best] == 0) break;  // alone
+    into[smallest] = best;
+    faces[best] += faces[smallest];
+    area[best] += area[smallest];
+  }
+  for (int& l : label) l = root(l);
+}
+
+/// Where a region lies on the border of itself at a vertex, gives its smaller fan there to the neighbour.
+void open_pinches(const Component& c, std::vector<int>& label) {
+  for (int pass = 0; pass < 8; ++pass) {
+    struct Fan {
+      int label, vertex, size, half_edge;
+    };
+    std::vector<Fan> fans;
+    for (int h = 0; h < (int)c.opposite.size(); ++h) {
+      auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == label[h / 3]; };
+      if (inside(h)) continue;
+      int size = 1;  // of the fan of triangles around the origin of border half-edge h
+      for (int g = prev(h); inside(g); g = prev(c.opposite[g])) ++size;
+      fans.push_back({label[h / 3], origin(c.mesh.tris, h), size, h});
+    }
+    std::sort(fans.begin(), fans.end(), [](const Fan& p, const Fan& q) {
+      return std::tie(p.vertex, p.label, p.size, p.half_edge) <
+             std::tie(q.vertex, q.label, q.size, q.half_edge);
+    });
+    bool changed = false;
+    for (std::size_t i = 0; i + 1 < fans.size(); ++i) {
+      const Fan& f = fans[i];
+      if (f.vertex != fans[i + 1].vertex || f.label != fans[i + 1].label || label[f.half_edge / 3] != f.label)
+        continue;
+      // across the fan's first edge, or its last one where the first is on the border
+      int last = prev(f.half_edge);
+      while (c.opposite[last] >= 0 && label[c.opposite[last] / 3] == f.label) last = prev(c.opposite[last]);
+      int o = c.opposite[f.half_edge] >= 0 ? c.opposite[f.half_edge] : c.opposite[last];
+      if (o < 0 || label[o / 3] == f.label) continue;
+      int to = label[o / 3], h = f.half_edge;
+      for (int k = 0; k < f.size; ++k) {
+        label[h / 3] = to;
+        h = c.opposite[prev(h)];
+        if (h < 0) break;
+      }
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+/// Cuts the triangles into k by METIS; into halves by their numbers if it leaves them together.
+void bisect(const Component& c, const std::vector<int>& triangles, std::vector<int>& label, int n_labels,
+            int seed) {
+  std::vector<int> local(c.mesh.tris.size(), -1);
+  for (std::size_t i = 0; i < triangles.size(); ++i) local[triangles[i]] = (int)i;
+  std::vector<int> part = partition_graph(dual_graph(c, triangles, local), 2, 0.3, seed);
+  if (std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) == part.end())
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = 2 * i < part.size();
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (part[i]) label[triangles[i]] = n_labels;
+}
+
+/// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
+/// parts of the wrong topology bisected. Returns the parts, or 0 regions if it does not get there.
+Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
+  const double total = std::accumulate(c.area.begin(), c.area.end(), 0.0);
+  const int n_faces = (int)c.mesh.tris.size();
+  double min_area = 0.01 * total;
+  int min_faces = std::min(20, n_faces / 10);
+  for (int round = 0; round < 60; ++round, min_area *= 0.25, min_faces /= 2) {
+    absorb_fragments(c, label, min_faces, min_area);
+    if (round < 20) open_pinches(c, label);
+    int n = relabel_by_component(c, label);
+    Regions r = find_regions(c.mesh, c.opposite, label, n);
+    std::vector<int> bad(n, -1);
+    std::vector<std::vector<int>> triangles;
+    for (int l = 0; l < n; ++l)
+      if (!r.region[l].maps_to_the_plane()) bad[l] = (int)triangles.size(), triangles.emplace_back();
+    if (triangles.empty()) return r;
+    for (int t = 0; t < n_faces; ++t)
+      if (bad[label[t]] >= 0) triangles[bad[label[t]]].push_back(t);
+    for (const auto& ts : triangles) bisect(c, ts, label, n++, seed);
+  }
+  return {};
+}
+
+/// Joins neighbours, those with the longest shared border first, while their union maps to the plane.
+void merge(const Component& c, std::vector<int>& label, Regions regions, int max_faces) {
+  std::vector<Shared> shared = shared_borders(c, label);
+  Joiner joiner(c.mesh, c.opposite, label, std::move(regions));
+  for (;;) {
+    std::sort(shared.begin(), shared.end(), [](const Shared& p, const Shared& q) {
+      return std::tuple(-p.weight, p.a, p.b) < std::tuple(-q.weight, q.a, q.b);
+    });
+    auto found = std::find_if(shared.begin(), shared.end(), [&](const Shared& s) {
+      Region r = joiner.joined(s.a, s.b);
+      return r.maps_to_the_plane() && (max_faces == 0 || r.faces <= max_faces);
+    });
+    if (found == shared.end()) break;
+    joiner.join(found->a, found->b);
+    shared = shared_borders(c, label);
+  }
+}
+
+Labelling finish(const Component& c, std::vector<int> label, int seed, int max_faces) {
+  Labelling l;
+  Regions r = make_admissible(c, label, seed);
+  if (r.region.empty()) return l;
+  merge(c, label, std::move(r), max_faces);
+  l.parts = relabel_by_component(c, label);
+  for (const Shared& s : shared_borders(c, label)) l.cost += s.weight;
+  l.label = std::move(label);
+  return l;
+}
+
+/// Tries several numbers of parts, balances and seeds, and keeps the labelling with the fewest parts and the
+/// shortest cut.
+Labelling best_labelling(const Component& c, const PartitionOptions& options) {
+  const int n = (int)c.mesh.tris.size();
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  const Graph graph = dual_graph(c, all, all);
+
+  // METIS takes about 0.4 us a triangle; the budget keeps large surfaces near linear
+  const int trials = std::clamp(1500000 / n, 8, 64);
+  const int most = 2 * c.whole.genus() + 2;
+  std::vector<int> ks;
+  for (int k = 2; k <= most; k += std::max(1, k / 4)) ks.push_back(k);
+  if (c.whole.genus() == 0) ks = {2};
+  const double balances[] = {0.3, 0.1, 0.5};
+  Labelling best;
+  for (int i = 0; i < trials; ++i) {
+    int k = ks[i % ks.size()], seed = options.seed + i;
+    Labelling l = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed, 0);
+    if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+  }
+  return best;
+}
+
+Component make_component(const Surface& surface, SubMesh sub) {
+  Component c;
+  c.mesh = std::move(sub);
+  c.opposite = opposite_halfedges(c.mesh.tris, (int)c.mesh.points.size());
+  for (const Tri& v : c.mesh.tris)
+    c.area.push_back(0.5 * norm(area_vector(c.mesh.points[v[0]], c.mesh.points[v[1]], c.mesh.points[v[2]])));
+  std::vector<std::uint8_t> model;
+  if (surface.face.has("model"))
+    for (int t : c.mesh.face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
+  c.weight = cut_weights(c.mesh, c.opposite, model);
+  c.whole = find_regions(c.mesh, c.opposite, std::vector<int>(c.mesh.tris.size(), 0), 1).region[0];
+  return c;
+}
+
+/// Cuts parts of too many triangles, with some room for those that smoothing adds.
+void bound_faces(const Component& c, Labelling& l, const PartitionOptions& options) {
+  const int limit = std::max(1, (int)(0.9 * options.max_faces));
+  for (int round = 0; round < 60; ++round) {
+    bool again = false;
+    std::vector<std::vector<int>> triangles(l.parts);
+    for (std::size_t t = 0; t < l.label.size(); ++t) triangles[l.label[t]].push_back((int)t);
+    int n = l.parts;
+    for (const auto& ts : triangles)
+      if ((int)ts.size() > limit) bisect(c, ts, l.label, n++, options.seed), again = true;
+    if (!again) return;
+    l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
+    if (l.parts == 0) return;
+  }
+  l.parts = 0;
+}
+
+}  // namespace
+
+int partition_to_disks(Surface& surface, const PartitionOptions& options) {
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  if (int v = find_pinched_vertex(surface.tris, opposite, (int)surface.points.size()); v >= 0)
+    throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
+  std::vector<int> component;
+  const int n_components = components(opposite, component);
+  std::vector<int> part(surface.tris.size(), 0);
+  int n_parts = 0;
+  std::vector<SubMesh> subs = split_by_label(surface, component, n_components);
+  for (int i = 0; i < n_components; ++i) {
+    Component c = make_component(surface, std::move(subs[i]));
+    Labelling l;
+    if (c.whole.maps_to_the_plane()) {
+      l.label.assign(c.mesh.tris.size(), 0);
+      l.parts = 1;
+    } else {
+      l = best_labelling(c, options);
+    }
+    if (l.parts > 0 && options.max_faces > 0) bound_faces(c, l, options);
+    if (l.parts == 0)
+      throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
+                       " triangles and genus " + std::to_string(c.whole.genus()) +
+                       " could not be cut into parts of genus 0");
+    for (std::size_t t = 0; t < l.label.size(); ++t) part[c.mesh.face[t]] = n_parts + l.label[t];
+    n_parts += l.parts;
+  }
+  surface.face.set("part", std::move(part));
+  if (!surface.face.has("origin")) {
+    std::vector<int> identity(surface.tris.size());
+    std::iota(identity.begin(), identity.end(), 0);
+    surface.face.set("origin", std::move(identity));
+  }
+  straighten_interfaces(surface, n_parts, options.snap, options.max_faces);
+  if (std::string fault = part_fault(surface); !fault.empty()) throw GoalMissed(fault);
+  return n_parts;
+}
+
+Interfaces measure_interfaces(const Surface& surface) {
+  const std::vector<int>& part = surface.face.get<int>("part");
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  Interfaces r;
+  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end)
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] > h && part[h / 3] != part[opposite[h] / 3]) {
+      int a = origin(surface.tris, h), b = target(surface.tris, h);
+      r.length += norm(surface.points[b] - surface.points[a]);
+      ends.push_back({a, b});
+      ends.push_back({b, a});
+    }
+  if (ends.empty()) return r;
+  r.length /= diagonal(surface);
+  std::sort(ends.begin(), ends.end());
+  std::vector<double> turning;
+  for (std::size_t i = 0, j; i < ends.size(); i = j) {
+    for (j = i + 1; j < ends.size() && ends[j].first == ends[i].first;) ++j;
+    const Vec3 p = surface.points[ends[i].first];
+    if (j - i == 2)
+      turning.push_back(angle(p - surface.points[ends[i].second], surface.points[ends[i + 1].second] - p));
+    if (j - i > 2) ++r.junctions;
+  }
+  if (turning.empty()) return r;
+  auto quantile = turning.begin() + (std::ptrdiff_t)(turning.size() * 9 / 10);
+  std::nth_element(turning.begin(), quantile, turning.end());
+  r.turning_angle = *quantile * 180 / 3.14159265358979323846;
+  return r;
+}
+
+std::string part_fault(const Surface& surface) {
+  const std::vector<int>& part = surface.face.get<int>("part");
+  if (part.empty()) return {};
+  const auto [least, most] = std::minmax_element(part.begin(), part.end());
+  if (*least < 0) return "part " + std::to_string(*least) + " is negative";
+  const int n = *most + 1;
+  if (n > (int)part.size())
+    return "part " + std::to_string(*most) + ", but there are " + std::to_string(part.size()) + " triangles";
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  const Regions regions = find_regions(surface, opposite, part, n);
+  std::vector<int> piece;
+  const int n_pieces = components(opposite_within(surface.tris, opposite, part), piece);
+  std::vector<int> first(n_pieces, -1), pieces(n, 0);
+  for (std::size_t t = 0; t < part.size(); ++t)
+    if (first[piece[t]] < 0) first[piece[t]] = part[t], ++pieces[part[t]];
+  for (int p = 0; p < n; ++p) {
+    const Region& r = regions.region[p];
+    const std::string name = "part " + std::to_string(p);
+    if (r.faces == 0) return name + " of " + std::to_string(n) + " has no triangles";
+    if (pieces[p] > 1) return name + " has " + std::to_string(pieces[p]) + " pieces";
+    if (r.pinched) {
+      std::vector<int> v;
+      for (int h : regions.border[p]) v.push_back(origin(surface.tris, h));
+      std::sort(v.begin(), v.end());
+      return name + " touches itself at vertex " + std::to_string(*std::adjacent_find(v.begin(), v.end()));
+    }
+    if (r.loops == 0) return name + " has no boundary";
+    if (r.genus() != 0) return name + " has genus " + std::to_string(r.genus());
+  }
+  return {};
+}
+
+}  // namespace meshpipe

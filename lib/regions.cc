@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/regions.h"
+
+#include <algorithm>
+
+namespace meshpipe {
+namespace {
+
+/// Counts the loops of a region's border half-edges and finds pinched vertices. `inside(t)` tells the
+/// region's triangles; `outgoing` is scratch, -1 for every vertex before and after.
+template <class Inside>
+void walk_border(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& border,
+                 std::vector<int>& outgoing, Inside inside, Region& region) {
+  region.border = (int)border.size();
+  region.loops = 0;
+  region.pinched = false;
+  for (int i = 0; i < (int)border.size(); ++i) {
+    int& o = outgoing[origin(mesh.tris, border[i])];
+    region.pinched |= o >= 0;
+    o = i;
+  }
+  auto next_on_border = [&](int h) {
+    int g = next(h);
+    while (opposite[g] >= 0 && inside(opposite[g] / 3)) g = next(opposite[g]);
+    return g;
+  };
+  if (region.pinched) {  // vertices do not name the half-edges: sort these
+    std::vector<int> sorted = border;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<char> seen(sorted.size(), 0);
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      if (seen[i]) continue;
+      ++region.loops;
+      for (std::size_t k = i; !seen[k];) {
+        seen[k] = 1;
+        k = std::lower_bound(sorted.begin(), sorted.end(), next_on_border(sorted[k])) - sorted.begin();
+      }
+    }
+  } else {
+    for (int h : border) {
+      if (outgoing[origin(mesh.tris, h)] < 0) continue;
+      ++region.loops;
+      for (int g = h; outgoing[origin(mesh.tris, g)] >= 0; g = next_on_border(g))
+        outgoing[origin(mesh.tris, g)] = -1;
+    }
+  }
+  for (int h : border) outgoing[origin(mesh.tris, h)] = -1;
+}
+
+}  // namespace
+
+Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& label,
+                     int n) {
+  Regions r;
+  r.region.resize(n);
+  r.border.resize(n);
+  std::vector<int> of_vertex(mesh.points.size(), -1);
+  constexpr int on_border = -2;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    ++r.region[label[t]].faces;
+    for (int i = 0; i < 3; ++i) {
+      int h = 3 * t + i, v = mesh.tris[t][i];
+      if (of_vertex[v] != on_border) of_vertex[v] = label[t];
+      if (opposite[h] >= 0 && label[opposite[h] / 3] == label[t]) continue;
+      r.border[label[t]].push_back(h);
+      of_vertex[v] = of_vertex[mesh.tris[t][(i + 1) % 3]] = on_border;
+    }
+  }
+  for (int l : of_vertex)
+    if (l >= 0) ++r.region[l].inside;
+  std::vector<int> outgoing(mesh.points.size(), -1);
+  for (int l = 0; l < n; ++l)
+    walk_border(
+        mesh, opposite, r.border[l], outgoing, [&](int t) { return label[t] == l; }, r.region[l]);
+  return r;
+}
+
+Joiner::Joiner(const Mesh& mesh, const std::vector<int>& opposite, std::vector<int>& label, Regions regions)
+    : mesh_(mesh),
+      opposite_(opposite),
+      label_(label),
+      regions_(std::move(regions)),
+      outgoing_(mesh.points.size(), -1) {}
+
+Region Joiner::joined(int a, int b) {
+  auto inside = [&](int t) { return label_[t] == a || label_[t] == b; };
+  shared_.clear();
+  outer_.clear();
+  for (int l : {a, b})
+    for (int h : regions_.border[l])
+      (opposite_[h] >= 0 && inside(opposite_[h] / 3) ? shared_ : outer_).push_back(h);
+  Region r;
+  r.faces = regions_.region[a].faces + regions_.region[b].faces;
+  r.inside = regions_.region[a].inside + regions_.region[b].inside;
+  // a vertex of the shared border comes inside unless the outer border passes it; each is the origin of one
+  // shared half-edge of either region then
+  for (int h : outer_) outgoing_[origin(mesh_.tris, h)] = 0;
+  for (int h : shared_)
+    if (int& o = outgoing_[origin(mesh_.tris, h)]; o == -1) ++r.inside, o = -2;
+  for (int h : outer_) outgoing_[origin(mesh_.tris, h)] = -1;
+  for (int h : shared_) outgoing_[origin(mesh_.tris, h)] = -1;
+  walk_border(mesh_, opposite_, outer_, outgoing_, inside, r);
+  return r;
+}
+
+void Joiner::join(int a, int b) {
+  regions_.region[a] = joined(a, b);
+  // outer_ still holds the union's border
+  std::vector<int> stack;
+  for (int h : regions_.border[b])
+    if (label_[h / 3] == b) label_[h / 3] = a, stack.push_back(h / 3);
+  while (!stack.empty()) {
+    int t = stack.back();
+    stack.pop_back();
+    for (int i = 0; i < 3; ++i)
+      if (int o = opposite_[3 * t + i]; o >= 0 && label_[o / 3] == b)
+        label_[o / 3] = a, stack.push_back(o / 3);
+  }
+  regions_.border[a] = outer_;
+  regions_.border[b].clear();
+  regions_.region[b] = {};
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Straightens the interfaces between the parts of a surface by diffusion and iso-cutting.
+#pragma once
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// Moves the interface of each pair of parts (face column `part`, 0..n-1) to the zero level of a diffused
+/// indicator of the two sides (threshold dynamics: motion towards shorter curves), by cut_by_scalar_field;
+/// the two parts' triangles change hands there, all other parts only get split along. Interface edges that
+/// are model edges stay. Where the result would not be admissible (part_fault) or longer, the interface of
+/// that pair stays as it was. Precondition: parts without fault.
+void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces = 0);
+
+}  // namespace meshpipe

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mpartition: cut until every part has genus 0 and a boundary.
+#include "lib/partition.h"
+#include "lib/topology.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+int main(int argc, char** argv) {
+  PartitionOptions options;
+  std::string method = "metis";
+  auto add_options = [&](CLI::App& app) {
+    app.add_option("--seed", options.seed, "seed of the partitioner (default 1)")
+        ->check(CLI::Range(0, 1000000000))
+        ->type_name("N");
+    app.add_option("--max-faces", options.max_faces, "no part has more triangles than this")
+        ->check(CLI::Range(100, 2147483647))
+        ->type_name("N");
+    app.add_option("--method", method, "metis (default) or homology (not built yet)")
+        ->check(CLI::IsMember({"metis", "homology"}))
+        ->type_name("NAME");
+  };
+  auto body = [&](Io& io) {
+    if (method == "homology") throw BadUsage("--method homology is not built yet");
+    Stream stream = io.read();
+    const int n_parts = partition_to_disks(stream.surface, options);
+    const Interfaces cut = measure_interfaces(stream.surface);
+    char text[200];
+    std::snprintf(text, sizeof text, "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%)",
+                  n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle);
+    io.say(text);
+    io.report["parts"] = n_parts;
+    io.report["cut_length"] = cut.length;
+    io.report["junctions"] = cut.junctions;
+    io.report["turning_angle"] = cut.turning_angle;
+    stream.set(part_table(stream.surface, n_parts));
+    io.write(stream);
+  };
+  return run_tool(argc, argv, "mpartition",
+                  "Cut the surface until every part has genus 0 and at least one boundary.\n\n"
+                  "examples:\n  mclean scan.stl | mfeature | mpartition -o parts.ply\n"
+                  "  mclean scan.stl | mpartition --max-faces 50000 -o parts.ply",
+                  add_options, body);
+}
