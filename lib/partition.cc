@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -250,6 +249,19 @@ Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
   return joiner.regions();
 }
 
+/// Parts only an edge wide somewhere make bad charts: an edge inside a part with both ends on borders costs
+/// twice its length.
+std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, const Regions& regions) {
+  std::vector<char> on_border(c.mesh.points.size(), 0);
+  for (const auto& border : regions.border)
+    for (int h : border) on_border[origin(c.mesh.tris, h)] = 1;
+  std::int64_t cost = 0;
+  for (int h = 0; h < (int)c.opposite.size(); ++h)
+    if (on_border[origin(c.mesh.tris, h)] && on_border[target(c.mesh.tris, h)])
+      if (int o = c.opposite[h]; o > h && label[o / 3] == label[h / 3]) cost += 2 * c.weight[h];
+  return cost;
+}
+
 Labelling finish(const Component& c, std::vector<int> label, int seed) {
   Labelling l;
   Regions r = make_admissible(c, label, seed);
@@ -260,6 +272,7 @@ Labelling finish(const Component& c, std::vector<int> label, int seed) {
     l.burden += burden(x);
   }
   for (const Shared& s : shared_borders(c, label, r)) l.cost += s.weight;
+  l.cost += bridge_cost(c, label, r);
   separate_pieces(c.opposite, label);
   l.label = std::move(label);
   return l;
@@ -272,12 +285,14 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   std::iota(all.begin(), all.end(), 0);
   const Graph graph = dual_graph(c, all, all);
 
-  // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear
-  const int trials = std::clamp(1000000 / n, 8, 64);
-  const int most = 2 * c.whole.genus() + 2;
-  std::vector<int> ks;
-  for (int k = 2; k <= most; k += std::max(1, k / 4)) ks.push_back(k);
-  if (c.whole.genus() == 0) ks = {2};
+  // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear. Joining neighbours
+  // afterwards makes the number of parts asked for uncritical: about G + 2 does best
+  const int trials = std::clamp(500000 / n, 6, 40), genus = c.whole.genus();
+  std::vector<int> ks{genus + 2};
+  for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
+    ks.push_back(genus + 2 + d);
+    ks.push_back(genus + 2 - d);
+  }
   const double balances[] = {0.3, 0.1, 0.5};
   std::vector<Labelling> tried(trials);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -285,10 +300,6 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
     const int k = ks[i % ks.size()], seed = options.seed + i;
     tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
   }
-  if (getenv("STAT"))
-    for (int i = 0; i < trials; i++)
-      printf("  k %d bal %g: parts %d burden %d cost %ld\n", ks[i % ks.size()], balances[i / ks.size() % 3],
-             tried[i].parts, tried[i].burden, (long)tried[i].cost);
   auto best = tried.begin();
   for (auto l = tried.begin(); l != tried.end(); ++l)
     if (l->parts > 0 && (best->parts == 0 || *l < *best)) best = l;
