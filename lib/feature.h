@@ -7,7 +7,7 @@ namespace meshpipe {
 
 struct FeatureOptions {
   enum { automatic, angles, none } mode = automatic;
-  double strong = 40, weak = 20;  ///< degrees; a chain starts at strong edges and goes on along weak ones (hysteresis)
+  double strong = 40, weak = 20;  ///< degrees, for the modes with creases
   double size = 0;                ///< target edge length h; 0: the mean edge length
 };
 
@@ -15,9 +15,14 @@ struct FeatureReport {
   int model_edges = 0, patch_edges = 0, crease_edges = 0, corners = 0;
 };
 
-/// Sets face column `model`: bit i of triangle t is set if the edge from corner i to i+1 is a model edge (set on both sides).
-/// Borders between patches (face column `patch`) are always model edges; the mesh border needs no bit.
-/// automatic: crease chains that are closed or run from corner to corner, are longer than 5 h and turn smoothly.
+/// Sets face column `model`: bit i of triangle t is set if the edge from corner i to i+1 is a model edge (set
+/// on both sides). Borders between patches (face column `patch`) are always model edges; the mesh border
+/// needs no bit. A crease starts at edges above the strong angle and goes on from its free ends along weak
+/// ones; the angles are 40 and 20 in automatic mode. There, chains that are not closed and end freely are
+/// dropped, and a component keeps its creases only if it looks designed: at least half of its strong edges,
+/// by length, are between patches or in chains that turn smoothly and are longer than five mean edges of the
+/// input. Otherwise free ends are dropped if shorter than 3 h. Pieces below 3 h are dropped in automatic
+/// mode. Throws like opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options);
 
 }  // namespace meshpipe

@@ -6,8 +6,9 @@
 
 namespace meshpipe {
 
-/// A point of a plane mesh. line_point: row of Lines::points it stands for (rows that are the same surface vertex
-/// count as one; the smallest row is used), or -1 inside. place: where in the chart it lies (chart triangle numbers).
+/// A point of a plane mesh. line_point: row of Lines::points it stands for (rows that are the same surface
+/// vertex count as one; the smallest row is used), or -1 inside. place: where in the chart it lies (chart
+/// triangle numbers).
 struct ChartPoint {
   Vec2 uv;
   int line_point = -1;

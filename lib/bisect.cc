@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/bisect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lib/cut.h"
+#include "lib/sparse.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+/// A third of the area of the triangles around each vertex.
+std::vector<double> lumped_area(const Mesh& mesh) {
+  std::vector<double> mass(mesh.points.size(), 0);
+  for (const Tri& t : mesh.tris)
+    for (int v : t) mass[v] += norm(area_vector(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])) / 6;
+  return mass;
+}
+
+/// The second eigenvector of the Laplacian with free borders, by inverse iteration on L + s M. Both sides of
+/// its zero level are connected (Fiedler 1975; the weights are positive).
+std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& mass) {
+  int n = (int)mesh.points.size();
+  std::vector<double> diagonal(n);
+  double area = std::accumulate(mass.begin(), mass.end(), 0.0);
+  // well below the eigenvalue sought (pi / length)^2, and enough to make the matrix definite
+  for (int v = 0; v < n; ++v) diagonal[v] = 0.1 * mass[v] / area;
+  std::vector<Entry<double>> matrix;
+  for (const Tri& t : mesh.tris) {
+    auto w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
+    for (int i = 0; i < 3; ++i) {
+      int a = t[i], b = t[(i + 1) % 3];
+      matrix.push_back({std::max(a, b), std::min(a, b), -w[i]});
+      diagonal[a] += w[i];
+      diagonal[b] += w[i];
+    }
+  }
+  for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
+  Factorisation<double> factorisation(n, matrix);
+
+  // from the distance to a far vertex; the constant vector is taken out each time
+  int far = 0;
+  for (int v = 0; v < n; ++v)
+    if (norm(mesh.points[v] - mesh.points[0]) > norm(mesh.points[far] - mesh.points[0])) far = v;
+  std::vector<double> x(n);
+  for (int v = 0; v < n; ++v) x[v] = norm(mesh.points[v] - mesh.points[far]);
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    double mean = 0, square = 0;
+    for (int v = 0; v < n; ++v) mean += mass[v] * x[v] / area;
+    for (double& xv : x) xv -= mean;
+    for (int v = 0; v < n; ++v) square += mass[v] * x[v] * x[v];
+    double size = std::sqrt(square);
+    if (!(size > 0)) break;
+    for (int v = 0; v < n; ++v) x[v] *= mass[v] / size;
+    factorisation.solve(x);
+  }
+  return x;
+}
+
+double level_length(const Mesh& mesh, const std::vector<double>& field, double level) {
+  double length = 0;
+  for (const Tri& t : mesh.tris) {
+    Vec3 end[2];
+    int n = 0;
+    for (int i = 0; i < 3; ++i) {
+      int a = t[i], b = t[(i + 1) % 3];
+      double fa = field[a] - level, fb = field[b] - level;
+      if ((fa < 0) != (fb < 0)) end[n++] = lerp(mesh.points[a], mesh.points[b], fa / (fa - fb));
+    }
+    if (n == 2) length += norm(end[1] - end[0]);
+  }
+  return length;
+}
+
+/// True if the part falls into two connected halves without pinched vertices at this level.
+bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
+  Surface trial;
+  static_cast<Mesh&>(trial) = mesh;
+  trial.vertex.rows = mesh.points.size();
+  trial.face.rows = mesh.tris.size();
+  for (double& f : field) f -= level;
+  std::vector<int> side, component;
+  cut_by_scalar_field(trial, field, {}, side);
+  for (const SubMesh& half : split_by_label(trial, side, 2)) {
+    if (half.tris.empty()) return false;
+    auto opposite = opposite_halfedges(half.tris, (int)half.points.size());
+    if (components(opposite, component) != 1 ||
+        find_pinched_vertex(half.tris, opposite, (int)half.points.size()) >= 0)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool bisect_part(Surface& surface, int part, int new_part) {
+  const auto& label = surface.face.get<int>("part");
+  std::vector<int> only(label.size());
+  for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
+  SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
+  std::vector<double> mass = lumped_area(mesh), field = fiedler_vector(mesh, mass);
+
+  // levels by the share of the area below them, the shortest first
+  std::vector<int> order(field.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return field[a] < field[b]; });
+  double area = std::accumulate(mass.begin(), mass.end(), 0.0), below = 0;
+  std::vector<std::pair<double, double>> levels;  // length, level
+  double share = 0.3;
+  for (int v : order) {
+    below += mass[v];
+    for (; share < 0.71 && below >= share * area; share += 0.05)
+      levels.push_back({level_length(mesh, field, field[v]), field[v]});
+  }
+  std::sort(levels.begin(), levels.end());
+  for (auto [length, level] : levels) {
+    if (!halves_well(mesh, field, level)) continue;
+    std::vector<double> whole(surface.points.size(), 1);
+    for (std::size_t v = 0; v < field.size(); ++v) whole[mesh.vertex[v]] = field[v] - level;
+    std::vector<char> active(only.size());
+    for (std::size_t t = 0; t < only.size(); ++t) active[t] = only[t] == 0;
+    std::vector<int> side;
+    cut_by_scalar_field(surface, whole, active, side);
+    auto& relabel = surface.face.get<int>("part");
+    for (std::size_t t = 0; t < side.size(); ++t)
+      if (side[t] == 1) relabel[t] = new_part;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/feature.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "lib/error.h"
+#include "lib/topology.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
+constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
+constexpr double smooth_turn = 20 * degree;    ///< mean change of the turning vector from vertex to vertex
+constexpr double design_share = 0.5;           ///< of the strong edges, by length, in good chains
+
+/// Unit normals. A triangle so thin that rounding of single-precision coordinates turns its normal has that
+/// of the neighbour across its longest edge, in whose plane it lies.
+std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite) {
+  const double least = 3e-6 * diagonal(mesh);
+  const int n = (int)mesh.tris.size();
+  std::vector<Vec3> normal(n);
+  std::vector<int> heir(n, -1);
+  for (int t = 0; t < n; ++t) {
+    const Tri& c = mesh.tris[t];
+    const Vec3 a = area_vector(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
+    int longest = 3 * t;
+    double length = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (double l = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+          l > length) {
+        length = l;
+        longest = h;
+      }
+    normal[t] = normalized(a);
+    if (norm(a) < least * length) heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
+  }
+  for (int t = 0; t < n; ++t) {
+    int u = t;
+    for (int steps = 0; heir[u] >= 0 && steps < 16; ++steps) u = heir[u];
+    normal[t] = normal[u];
+  }
+  return normal;
+}
+
+/// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
+class Creases {
+ public:
+  Creases(const Surface& surface, const FeatureOptions& options)
+      : s_(surface), opposite_(opposite_halfedges(surface.tris, (int)surface.points.size())) {
+    const int n = (int)opposite_.size();
+    const std::vector<Vec3> normal = sound_normals(s_, opposite_);
+    angle_.assign(n, 0);
+    on_.assign(n, 0);
+    patch_.assign(n, 0);
+    star_.assign(s_.points.size(), -1);
+    valence_.assign(s_.points.size(), 0);
+    anchor_.assign(s_.points.size(), 0);
+    const std::vector<int>* patch = s_.face.has("patch") ? &s_.face.get<int>("patch") : nullptr;
+    double sum = 0;
+    for (int h = 0; h < n; ++h) {
+      const int o = opposite_[h], v = from(h);
+      if (star_[v] < 0 || o < 0) star_[v] = h;
+      sum += length(h);
+      if (o >= 0) angle_[h] = angle(normal[h / 3], normal[o / 3]);
+      patch_[h] = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
+      if (o < 0 || patch_[h]) anchor_[v] = anchor_[to(h)] = 1;
+    }
+    // what looks designed is a matter of the input's own edges, what is worth keeping of the target's; a
+    // coarse model of few triangles has no longer chains than a tenth of itself
+    const double mean = n ? sum / n : 0, most = 0.1 * diagonal(s_);
+    telling_ = std::min(5 * mean, most);
+    short_ = std::min(3 * (options.size > 0 ? options.size : mean), most);
+  }
+
+  void choose(double strong, double weak) {
+    for (int h = 0; h < (int)opposite_.size(); ++h)
+      if (opposite_[h] > h && !patch_[h] && angle_[h] > strong) set(h, 1);
+    strong_ = on_;
+    const int n = (int)s_.points.size();
+    std::vector<int> ends;
+    for (int v = 0; v < n; ++v)
+      if (free_end(v)) ends.push_back(v);
+    for (int v : ends) follow(v, weak);
+  }
+
+  /// Drops chains with a free end that are shorter than `least`.
+  void prune(double least) {
+    std::vector<int> ends;
+    for (int v = 0; v < (int)s_.points.size(); ++v)
+      if (free_end(v)) ends.push_back(v);
+    std::vector<int> chain;
+    while (!ends.empty()) {
+      const int v = ends.back();
+      ends.pop_back();
+      if (!free_end(v)) continue;
+      chain.clear();
+      double along = 0;
+      int h = leaving(v, -1);
+      for (;;) {
+        chain.push_back(h);
+        along += length(h);
+        if (valence_[to(h)] != 2 || anchor_[to(h)]) break;
+        h = leaving(to(h), opposite_[h]);
+      }
+      if (along >= least) continue;
+      for (int g : chain) set(g, 0);
+      if (free_end(to(h))) ends.push_back(to(h));
+    }
+  }
+
+  /// On components where less than half of the strong edges are in chains that look designed, takes no
+  /// crease.
+  void keep_designed(double sharp) {
+    std::vector<int> component;
+    const int n = components(opposite_, component);
+    std::vector<double> strong(n, 0), good(n, 0);
+    for (int h = 0; h < (int)opposite_.size(); ++h)
+      if (opposite_[h] > h && (strong_[h] || (patch_[h] && angle_[h] > sharp))) {
+        strong[component[h / 3]] += length(h);
+        if (patch_[h]) good[component[h / 3]] += length(h);
+      }
+    for (const std::vector<int>& chain : chains()) {
+      double along = 0, counted = 0;
+      for (int h : chain) {
+        along += length(h);
+        if (strong_[h]) counted += length(h);
+      }
+      if (along > telling_ && roughness(chain) < smooth_turn) good[component[chain[0] / 3]] += counted;
+    }
+    for (int h = 0; h < (int)opposite_.size(); ++h)
+      if (on_[h] && good[component[h / 3]] < design_share * strong[component[h / 3]]) set(h, 0);
+  }
+
+  /// Drops connected pieces of the network that are short in all and hang on nothing.
+  void drop_small_pieces() {
+    std::vector<char> seen(s_.points.size(), 0);
+    std::vector<int> piece;
+    for (int seed = 0; seed < (int)s_.points.size(); ++seed) {
+      if (seen[seed] || !valence_[seed]) continue;
+      piece.assign(1, seed);
+      seen[seed] = 1;
+      double twice = 0;
+      bool held = false;
+      for (std::size_t i = 0; i < piece.size(); ++i) {
+        held = held || anchor_[piece[i]];
+        around(piece[i], [&](int h) {
+          if (!on_[h]) return;
+          twice += length(h);
+          if (!seen[to(h)]) piece.push_back(to(h));
+          seen[to(h)] = 1;
+        });
+      }
+      if (held || twice >= 2 * short_) continue;
+      for (int v : piece)
+        around(v, [&](int h) {
+          if (on_[h]) set(h, 0);
+        });
+    }
+  }
+
+  FeatureReport mark(std::vector<std::uint8_t>& model) const {
+    FeatureReport r;
+    std::vector<int> lines(s_.points.size(), 0);
+    for (int h = 0; h < (int)opposite_.size(); ++h) {
+      if (!on_[h] && !patch_[h]) continue;
+      model[h / 3] |= 1 << h % 3;
+      if (opposite_[h] < h) continue;
+      (patch_[h] ? r.patch_edges : r.crease_edges) += 1;
+      ++lines[from(h)];
+      ++lines[to(h)];
+    }
+    r.model_edges = r.patch_edges + r.crease_edges;
+    for (int v = 0; v < (int)s_.points.size(); ++v) {
+      if (!lines[v]) continue;
+      bool corner = lines[v] != 2;
+      if (!corner) {
+        int two[2], k = 0;
+        around(v, [&](int h) {
+          if (on_[h] || patch_[h]) two[k++] = h;
+        });
+        corner = turn(opposite_[two[0]], two[1]) > corner_turn;
+      }
+      r.corners += corner;
+    }
+    return r;
+  }
+
+  double shortest() const { return short_; }
+
+ private:
+  int from(int h) const { return origin(s_.tris, h); }
+  int to(int h) const { return target(s_.tris, h); }
+  Vec3 along(int h) const { return s_.points[to(h)] - s_.points[from(h)]; }
+  double length(int h) const { return norm(along(h)); }
+  double turn(int in, int out) const { return angle(along(in), along(out)); }
+  bool free_end(int v) const { return valence_[v] == 1 && !anchor_[v]; }
+
+  void set(int h, char on) {
+    on_[h] = on_[opposite_[h]] = on;
+    valence_[from(h)] += on ? 1 : -1;
+    valence_[to(h)] += on ? 1 : -1;
+  }
+
+  /// Calls visit(h) for the half-edges that leave v, but for those on the border.
+  template <class Visit>
+  void around(int v, Visit visit) const {
+    int h = star_[v];
+    do {
+      const int after = opposite_[prev(h)];
+      if (opposite_[h] >= 0) visit(h);
+      h = after;
+    } while (h >= 0 && h != star_[v]);
+  }
+
+  /// The first crease half-edge that leaves v, other than `except`; -1 if none.
+  int leaving(int v, int except) const {
+    int found = -1;
+    around(v, [&](int h) {
+      if (found < 0 && on_[h] && h != except) found = h;
+    });
+    return found;
+  }
+
+  /// Goes on from the free end v along weak edges, as straight as they allow, until it meets the network.
+  void follow(int v, double weak) {
+    if (!free_end(v)) return;
+    for (int in = opposite_[leaving(v, -1)];;) {
+      int best = -1;
+      double least = continue_turn;
+      around(v, [&](int h) {
+        if (on_[h] || patch_[h] || angle_[h] <= weak) return;
+        if (double a = turn(in, h); a < least) {
+          least = a;
+          best = h;
+        }
+      });
+      if (best < 0) return;
+      v = to(best);
+      const bool met = valence_[v] > 0 || anchor_[v];
+      set(best, 1);
+      if (met) return;
+      in = best;
+    }
+  }
+
+  /// The chains between corners and junctions, then the closed ones without any.
+  std::vector<std::vector<int>> chains() const {
+    std::vector<std::vector<int>> all;
+    std::vector<char> seen(on_.size(), 0);
+    auto passes = [&](int in) {  // the half-edge after `in`; -1 at the end of the chain
+      const int v = to(in);
+      if (valence_[v] != 2 || anchor_[v]) return -1;
+      const int out = leaving(v, opposite_[in]);
+      return turn(in, out) > corner_turn ? -1 : out;
+    };
+    for (bool closed : {false, true})
+      for (int h = 0; h < (int)on_.size(); ++h) {
+        if (!on_[h] || seen[h] || (!closed && passes(opposite_[h]) >= 0)) continue;
+        std::vector<int>& chain = all.emplace_back();
+        for (int g = h; g >= 0 && !seen[g]; g = passes(g)) {
+          seen[g] = seen[opposite_[g]] = 1;
+          chain.push_back(g);
+        }
+      }
+    return all;
+  }
+
+  /// Mean change of the turning vector (the angle times the axis) from vertex to vertex: 0 on straight lines
+  /// and circles however coarse, twice the angle on a zigzag.
+  double roughness(const std::vector<int>& chain) const {
+    double sum = 0;
+    Vec3 last;
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const Vec3 axis =
+          turn(chain[i - 1], chain[i]) * normalized(cross(along(chain[i - 1]), along(chain[i])));
+      if (i > 1) sum += norm(axis - last);
+      last = axis;
+    }
+    return chain.size() > 2 ? sum / (double)(chain.size() - 2) : 0;
+  }
+
+  const Surface& s_;
+  std::vector<int> opposite_;
+  std::vector<double> angle_;      ///< between the normals on either side
+  std::vector<char> on_, strong_;  ///< chosen; chosen by its angle alone
+  std::vector<char> patch_;        ///< between two patches
+  std::vector<int> star_;          ///< a half-edge that leaves the vertex, on the border the border's
+  std::vector<int> valence_;       ///< of the network of creases
+  std::vector<char> anchor_;       ///< on a patch border or the surface's: chains may end there
+  double short_ = 0;               ///< pieces below this length are dropped
+  double telling_ = 0;             ///< chains above this length tell whether the surface is designed
+};
+
+}  // namespace
+
+FeatureReport mark_features(Surface& surface, const FeatureOptions& options) {
+  Creases creases(surface, options);
+  if (options.mode != FeatureOptions::none) {
+    creases.choose(options.strong * degree, options.weak * degree);
+    if (options.mode == FeatureOptions::automatic) {
+      creases.prune(std::numeric_limits<double>::infinity());
+      creases.keep_designed(options.strong * degree);
+      creases.drop_small_pieces();
+    } else {
+      creases.prune(creases.shortest());
+    }
+  }
+  std::vector<std::uint8_t> model(surface.tris.size(), 0);
+  const FeatureReport report = creases.mark(model);
+  surface.face.set("model", std::move(model));
+  return report;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/frontal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace meshpipe {
+namespace {
+
+// Lengths below are over the size, so that the wanted edge has length one.
+const double ideal_radius = 1 / std::sqrt(3.0);  // of the equilateral triangle's circumcircle
+constexpr double accepted_radius =
+    0.64;  // a triangle below this needs no point; with `closest` it gives the count asked for
+constexpr double closest = 0.8;           // no new edge is shorter
+constexpr double closest_to_line = 0.45;  // no new point is nearer to a fixed edge
+
+// A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first.
+struct Entry {
+  int rank;    // 0: has a front edge, 1: second try
+  double key;  // smaller first
+  std::int64_t order;
+  int triangle, version;
+  bool operator<(const Entry& e) const {
+    if (rank != e.rank) return rank > e.rank;
+    if (key != e.key) return key > e.key;
+    return order > e.order;
+  }
+};
+
+class Front {
+ public:
+  Front(SiteMesh& mesh, const SizeMetric& field) : m_(mesh), cdt_(mesh.cdt), field_(field) {}
+
+  void run() {
+    row_.assign(cdt_.points.size(), 0);
+    radius_.resize(cdt_.tris.size());
+    for (std::size_t t = 0; t < radius_.size(); ++t) radius_[t] = radius(t);
+    for (std::size_t t = 0; t < radius_.size(); ++t) offer(t);
+    while (!queue_.empty()) {
+      Entry e = queue_.top();
+      queue_.pop();
+      if (cdt_.version[e.triangle] != e.version) continue;
+      if (e.rank == 0 ? from_front(e.triangle) : at_centre(e.triangle)) continue;
+      if (e.rank == 0) queue_.push({1, -radius_[e.triangle], order_++, e.triangle, e.version});
+    }
+  }
+
+ private:
+  Vec2 point(int v) const { return cdt_.points[v]; }
+  const Site& site(int t, int i) const { return m_.site[cdt_.tris[t][i]]; }
+
+  double radius(int t) const {
+    const Site &a = site(t, 0), &b = site(t, 1), &c = site(t, 2);
+    Vec3 u = b.space - a.space, v = c.space - a.space;
+    double area2 = norm(cross(u, v)), h = (a.size + b.size + c.size) / 3;
+    return area2 > 0 ? norm(u) * norm(v) * norm(v - u) / (2 * area2 * h) : 1e300;
+  }
+
+  bool waits(int t) const { return radius_[t] > accepted_radius; }
+  int row(int h) const { return std::max(row_[cdt_.origin(h)], row_[cdt_.target(h)]); }
+
+  // The front edge of a waiting triangle: next to an accepted one or on a line, in the earliest row; -1 if
+  // none.
+  int front_edge(int t) const {
+    int best = -1;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (cdt_.fixed[h] || cdt_.opposite[h] < 0 || !waits(cdt_.opposite[h] / 3))
+        if (best < 0 || row(h) < row(best)) best = h;
+    return best;
+  }
+
+  void offer(int t) {
+    if (!waits(t)) return;
+    int h = front_edge(t);
+    if (h >= 0)
+      queue_.push({0, (double)row(h), order_++, t, cdt_.version[t]});
+    else
+      queue_.push({1, -radius_[t], order_++, t, cdt_.version[t]});
+  }
+
+  // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther
+  // than the circumcentre's own triangle would reach. Judged in frame f.
+  bool rebay_point(int h, const Frame& f, Vec2& p) const {
+    Vec2 a = point(cdt_.origin(h));
+    Vec2 b = f.to(point(cdt_.target(h)) - a), c = f.to(point(cdt_.apex(h)) - a);
+    double half = 0.5 * norm(b), area2 = cross(b, c);
+    if (!(half > 0) || !(area2 > 0)) return false;
+    double q = half * dot(c, c - b) / area2;  // from the edge to the circumcentre
+    if (!(q > 0)) return false;
+    double r = std::min(std::max(ideal_radius, half), (half * half + q * q) / (2 * q));
+    double d = r + std::sqrt(std::max(0.0, r * r - half * half));
+    Vec2 normal = (0.5 / half) * Vec2{-b.y, b.x};
+    p = a + f.back(0.5 * b + d * normal);
+    return true;
+  }
+
+  bool from_front(int t) {
+    int h = front_edge(t);
+    if (h < 0) return false;
+    const Site &a = m_.site[cdt_.origin(h)], &b = m_.site[cdt_.target(h)];
+    Vec2 p;
+    if (!rebay_point(h, frame_of(0.5 * (a.metric + b.metric)), p)) return false;
+    // once more in the metric between the edge and there
+    Site there = field_.at(p, a.place.face);
+    if (!rebay_point(h, frame_of((1.0 / 3) * (a.metric + b.metric + there.metric)), p)) return false;
+    return insert(p, t, there.place.face, row(h) + 1);
+  }
+
+  bool at_centre(int t) {
+    const Tri& v = cdt_.tris[t];
+    Frame f = frame_of((1.0 / 3) * (site(t, 0).metric + site(t, 1).metric + site(t, 2).metric));
+    Vec2 b = f.to(point(v[1]) - point(v[0])), c = f.to(point(v[2]) - point(v[0]));
+    double area2 = cross(b, c);
+    if (!(area2 > 0)) return false;
+    Vec2 x = (0.5 / area2) * Vec2{c.y * dot(b, b) - b.y * dot(c, c), b.x * dot(c, c) - c.x * dot(b, b)};
+    int rows = std::max({row_[v[0]], row_[v[1]], row_[v[2]]});
+    return insert(point(v[0]) + f.back(x), t, site(t, 0).place.face, rows + 1);
+  }
+
+  bool insert(Vec2 p, int t, int hint, int row) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) return false;
+    int s = cdt_.walk(p, t);
+    if (s < 0) return false;
+    Site there = field_.at(p, hint);
+    Frame f = frame_of(there.metric);
+    bool free = cdt_.grow_cavity(p, s, [&](int u) {
+      // in-circle in the metric at p: plain rounding will do, as the cavity is kept star-shaped exactly
+      Vec2 a = f.to(point(cdt_.tris[u][0]) - p), b = f.to(point(cdt_.tris[u][1]) - p),
+           c = f.to(point(cdt_.tris[u][2]) - p);
+      return dot(a, a) * cross(b, c) + dot(b, b) * cross(c, a) + dot(c, c) * cross(a, b) > 0;
+    });
+    if (!free) return false;
+    for (int h : cdt_.rim()) {
+      Vec3 a = m_.site[cdt_.origin(h)].space - there.space;
+      if (norm(a) < closest * there.size) return false;
+      if (!cdt_.fixed[h]) continue;
+      Vec3 b = m_.site[cdt_.target(h)].space - there.space;
+      if (norm(cross(a, b)) < closest_to_line * there.size * norm(b - a)) return false;
+    }
+    cdt_.fill_cavity(p);
+    m_.site.push_back(there);
+    row_.push_back(row);
+    radius_.resize(cdt_.tris.size());
+    for (int u : cdt_.fan()) radius_[u] = radius(u);
+    for (int u : cdt_.fan()) {
+      offer(u);
+      // its outer neighbour has got a front edge if this one is accepted
+      int o = cdt_.opposite[3 * u];
+      if (!waits(u) && o >= 0) offer(o / 3);
+    }
+    return true;
+  }
+
+  SiteMesh& m_;
+  Cdt& cdt_;
+  const SizeMetric& field_;
+  std::vector<int> row_;
+  std::vector<double> radius_;
+  std::priority_queue<Entry> queue_;
+  std::int64_t order_ = 0;
+};
+
+}  // namespace
+
+void insert_frontal(SiteMesh& mesh, const SizeMetric& field) { Front(mesh, field).run(); }
+
+static void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
+  Cdt& cdt = m.cdt;
+  // on a curved surface flips might go round in circles: bounded
+  for (std::size_t budget = 10 * todo.size(); !todo.empty() && budget > 0; --budget) {
+    int h = todo.back(), o = cdt.opposite[h];
+    todo.pop_back();
+    if (o < 0 || cdt.fixed[h]) continue;
+    Vec3 a = m.site[cdt.origin(h)].space, b = m.site[cdt.target(h)].space, c = m.site[cdt.apex(h)].space,
+         d = m.site[cdt.apex(o)].space;
+    // sin(gamma + delta) < 0 for the angles that look at the edge: not Delaunay
+    double ca = norm(cross(a - c, b - c)), da = norm(cross(a - d, b - d));
+    double sine = ca * dot(a - d, b - d) + dot(a - c, b - c) * da;
+    double scale = norm(a - c) * norm(b - c) * norm(a - d) * norm(b - d);
+    if (!(sine < -1e-10 * scale) || !cdt.can_flip(h)) continue;
+    int t = h / 3, s = o / 3;
+    cdt.flip(h);
+    for (int e : {3 * t + 1, 3 * t + 2, 3 * s + 1, 3 * s + 2}) todo.push_back(e);
+  }
+  todo.clear();
+}
+
+// Area over squared edges of the worst triangle at v, were it at x.
+static double worst_shape(const SiteMesh& m, int v, Vec3 x) {
+  double worst = 1e300;
+  m.cdt.around(v, [&](int h) {
+    Vec3 a = m.site[m.cdt.target(h)].space - x, b = m.site[m.cdt.apex(h)].space - x;
+    worst = std::min(worst, norm(cross(a, b)) / (dot(a, a) + dot(b, b) + dot(b - a, b - a)));
+  });
+  return worst;
+}
+
+void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
+  Cdt& cdt = m.cdt;
+  std::vector<int> todo;
+  for (int sweep = 0;; ++sweep) {
+    for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h)
+      if (h < cdt.opposite[h]) todo.push_back(h);
+    flip_to_delaunay(m, todo);
+    if (sweep == sweeps) return;
+    for (int v = m.line_points; v < (int)cdt.points.size(); ++v) {
+      Vec3 sum{};
+      double weight = 0;
+      cdt.around(v, [&](int h) {
+        // a long edge pulls more, so that edges even out
+        Vec3 d = m.site[cdt.target(h)].space - m.site[v].space;
+        double w = norm(d);
+        sum = sum + w * d;
+        weight += w;
+      });
+      if (!(weight > 0)) continue;
+      Vec2 q = cdt.points[v] + field.to_plane(m.site[v].place.face, (1 / weight) * sum);
+      bool good = std::isfinite(q.x) && std::isfinite(q.y);
+      cdt.around(v, [&](int h) {
+        good = good && orient2d(q, cdt.points[cdt.target(h)], cdt.points[cdt.apex(h)]) > 0;
+      });
+      if (!good) continue;
+      Site there = field.at(q, m.site[v].place.face);
+      double worst = worst_shape(m, v, there.space);
+      if (worst < 0.2 && worst < worst_shape(m, v, m.site[v].space)) continue;
+      cdt.points[v] = q;
+      m.site[v] = there;
+    }
+  }
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/mesh2d.h"
+
+#include <algorithm>
+#include <string>
+
+#include "lib/error.h"
+#include "lib/frontal.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int smoothing_sweeps = 4;
+
+// The points and segments that the lines of a part make in its chart.
+struct Drawing {
+  std::vector<int> row;  // of Lines::points, ascending
+  std::vector<Segment> segments;
+};
+
+Drawing draw(const Lines& lines, int part) {
+  std::vector<char> used(lines.lines.size(), 0);
+  for (const LineUse& u : lines.uses)
+    if (u.part == part) used[u.line] = 1;
+  // a model line may lie inside the part: it does if no other part uses it
+  std::vector<char> shared(lines.lines.size(), 0);
+  for (const LineUse& u : lines.uses)
+    if (used[u.line] && u.part != part) shared[u.line] = 1;
+
+  // ends of lines that are the same surface vertex are one point: that of the smallest row
+  std::vector<std::pair<int, int>> ends;  // vertex, row
+  for (const Line& l : lines.lines)
+    for (int row : {l.first, l.first + l.count - 1})
+      if (lines.points[row].a == lines.points[row].b) ends.push_back({lines.points[row].a, row});
+  std::sort(ends.begin(), ends.end());
+  auto same = [&](int row) {
+    const LinePoint& p = lines.points[row];
+    if (p.a != p.b) return row;
+    auto first = std::lower_bound(ends.begin(), ends.end(), std::pair{p.a, -1});
+    return first != ends.end() && first->first == p.a ? first->second : row;
+  };
+
+  Drawing d;
+  for (std::size_t i = 0; i < lines.lines.size(); ++i) {
+    if (!used[i]) continue;
+    const Line& l = lines.lines[i];
+    bool border = l.kind != model_line || shared[i];
+    for (int k = 0; k < l.count; ++k) {
+      int a = same(l.first + k);
+      d.row.push_back(a);
+      if (k + 1 < l.count || l.closed) d.segments.push_back({a, same(l.first + (k + 1) % l.count), border});
+    }
+  }
+  std::sort(d.row.begin(), d.row.end());
+  d.row.erase(std::unique(d.row.begin(), d.row.end()), d.row.end());
+  auto number = [&](int row) {
+    return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin());
+  };
+  for (Segment& s : d.segments) s = {number(s.a), number(s.b), s.border};
+  return d;
+}
+
+// Surface vertices to chart vertices, for the few that are asked for; and where edges between them lie.
+class Numbers {
+ public:
+  Numbers(const Chart& chart, std::vector<int> wanted) : chart_(chart), global_(std::move(wanted)) {
+    std::sort(global_.begin(), global_.end());
+    global_.erase(std::unique(global_.begin(), global_.end()), global_.end());
+    half_edge_.assign(global_.size(), -1);
+    std::vector<int> slot(chart.mesh.vertex.size());
+    for (std::size_t v = 0; v < slot.size(); ++v) slot[v] = find(chart.mesh.vertex[v]);
+    for (int h = 0; h < 3 * (int)chart.mesh.tris.size(); ++h) {
+      int k = slot[origin(chart.mesh.tris, h)];
+      // on the border the first half-edge of the fan, so that turning left meets them all
+      if (k >= 0 && (half_edge_[k] < 0 || chart.opposite[h] < 0)) half_edge_[k] = h;
+    }
+  }
+
+  // The place of a line point; its face is -1 if the chart does not have that edge or vertex.
+  Place place(const LinePoint& p) const {
+    int k = find(p.a), first = k < 0 ? -1 : half_edge_[k], h = first;
+    if (h < 0) return {};
+    if (p.a == p.b) return on_edge(h, 1, 0);
+    do {
+      if (vertex(target(chart_.mesh.tris, h)) == p.b) return on_edge(h, 1 - p.t, p.t);
+      int in = prev(h);  // runs towards a
+      if (vertex(origin(chart_.mesh.tris, in)) == p.b) return on_edge(in, p.t, 1 - p.t);
+      h = chart_.opposite[in];
+    } while (h >= 0 && h != first);
+    return {};
+  }
+
+ private:
+  int vertex(int local) const { return chart_.mesh.vertex[local]; }
+  static Place on_edge(int h, double origin_weight, double target_weight) {
+    double b[3] = {0, 0, 0};
+    b[h % 3] = origin_weight;
+    b[(h + 1) % 3] = target_weight;
+    return {h / 3, b[0], b[1], b[2]};
+  }
+  int find(int vertex) const {
+    auto i = std::lower_bound(global_.begin(), global_.end(), vertex);
+    return i != global_.end() && *i == vertex ? (int)(i - global_.begin()) : -1;
+  }
+  const Chart& chart_;
+  std::vector<int> global_, half_edge_;
+};
+
+PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part) {
+  Drawing drawing = draw(lines, part);
+  int n = (int)drawing.row.size();
+  std::vector<int> wanted;
+  for (int row : drawing.row) wanted.push_back(lines.points[row].a);
+  Numbers numbers(chart, std::move(wanted));
+
+  SizeMetric field(chart, size);
+  std::vector<Vec2> uv(n);
+  std::vector<Site> site(n);
+  for (int i = 0; i < n; ++i) {
+    const LinePoint& p = lines.points[drawing.row[i]];
+    Place place = numbers.place(p);
+    if (place.face < 0)
+      throw NotAdmissible("line point " + std::to_string(drawing.row[i]) + " lies on edge " +
+                          std::to_string(p.a) + " " + std::to_string(p.b) + ", which is not in the chart");
+    site[i] = field.at(place);
+    const Tri& t = chart.mesh.tris[place.face];
+    // as the third weight is zero, the same bits as linear interpolation along the edge
+    uv[i] = place.b0 * chart.uv[t[0]] + place.b1 * chart.uv[t[1]] + place.b2 * chart.uv[t[2]];
+  }
+
+  SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n};
+  insert_frontal(m, field);
+  smooth_in_plane(m, field, smoothing_sweeps);
+
+  PlaneMesh result;
+  result.tris = std::move(m.cdt.tris);
+  result.points.resize(m.cdt.points.size());
+  for (int v = 0; v < (int)result.points.size(); ++v)
+    result.points[v] = {m.cdt.points[v], v < n ? drawing.row[v] : -1, m.site[v].place};
+  return result;
+}
+
+}  // namespace
+
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part) {
+  try {
+    return mesh(chart, size, lines, part);
+  } catch (const GoalMissed& e) {
+    throw GoalMissed("part " + std::to_string(part) + ": " + e.what());
+  } catch (const NotAdmissible& e) {
+    throw NotAdmissible("part " + std::to_string(part) + ": " + e.what());
+  }
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmesh2d: mesh every chart in the plane under the metric of its map.
+#include <omp.h>
+
+#include <chrono>
+#include <exception>
+
+#include "formats/line_tables.h"
+#include "formats/plane_tables.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+// The size at the vertices of a chart.
+static std::vector<double> sizes_of(const Chart& chart, const std::vector<double>& size) {
+  std::vector<double> h;
+  for (int v : chart.mesh.vertex) {
+    if (!(size[v] > 0))
+      throw NotAdmissible("vertex " + std::to_string(v) + " has size " + std::to_string(size[v]));
+    h.push_back(size[v]);
+  }
+  return h;
+}
+
+int main(int argc, char** argv) {
+  std::string mesher = "frontal";
+  auto options = [&](CLI::App& app) {
+    app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
+        ->check(CLI::IsMember({"frontal", "delaunay", "meshadapt"}));
+  };
+  auto body = [&](Io& io) {
+    if (mesher != "frontal") throw BadUsage("--mesher " + mesher + " is not built yet");
+    Stream stream = io.read();
+    const std::vector<Chart> charts = read_charts(stream);
+    const Lines lines = read_lines(stream);
+    if (!stream.surface.vertex.has("size"))
+      throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
+    const auto& size = stream.surface.vertex.get<double>("size");
+
+    auto start = std::chrono::steady_clock::now();
+    int n = static_cast<int>(charts.size());
+    std::vector<PlaneMesh> meshes(n);
+    std::vector<std::exception_ptr> failed(n);
+#pragma omp parallel for schedule(dynamic)
+    for (int part = 0; part < n; ++part) {
+      try {
+        meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part);
+      } catch (...) {
+        failed[part] = std::current_exception();
+      }
+    }
+    for (const auto& e : failed)
+      if (e) std::rethrow_exception(e);
+    double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    std::size_t points = 0, triangles = 0;
+    for (const PlaneMesh& m : meshes) {
+      points += m.points.size();
+      triangles += m.tris.size();
+    }
+    io.say(std::to_string(n) + " charts, " + std::to_string(points) + " points, " +
+           std::to_string(triangles) + " triangles");
+    io.detail(std::to_string(static_cast<long>(triangles / seconds)) + " triangles per second on " +
+              std::to_string(omp_get_max_threads()) + " threads");
+    io.report["charts"] = n;
+    io.report["points"] = points;
+    io.report["triangles"] = triangles;
+    write_plane_meshes(stream, charts, meshes);
+    io.write(stream);
+  };
+  return run_tool(
+      argc, argv, "mmesh2d",
+      "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
+      "examples:\n  mmesh2d lines.ply -o plane.ply",
+      options, body);
+}
