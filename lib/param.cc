@@ -2,7 +2,6 @@
 #include "lib/param.h"
 
 #include <algorithm>
-#include <complex>
 #include <exception>
 #include <numbers>
 #include <string>
@@ -16,7 +15,6 @@
 namespace meshpipe {
 namespace {
 
-using Complex = std::complex<double>;
 using std::numbers::pi;
 
 /// A part's connectivity, and its loops with the longest first.
@@ -68,71 +66,114 @@ void scale_to_area(const SubMesh& part, std::vector<Vec2>& uv) {
   for (Vec2& p : uv) p = s * p;
 }
 
-/// Two border vertices far apart: the one farthest from the first, and the one farthest from that.
-std::array<int, 2> pins(const SubMesh& part, const std::vector<int>& loop) {
-  auto farthest_from = [&](int v) {
-    int best = v;
-    for (int h : loop) {
-      int w = origin(part.tris, h);
-      if (norm(part.points[w] - part.points[v]) > norm(part.points[best] - part.points[v])) best = w;
+/// The part with its holes filled: by fans of isosceles triangles around virtual centres (numbered after the
+/// part's own vertices), the angle at the centre being the edge's share of the loop. As a metric, not in
+/// space.
+struct Filled {
+  std::vector<Tri> tris;
+  std::vector<double> weights;    ///< of half-edges: half the cotangent of the opposite angle
+  std::vector<double> angle_sum;  ///< of the triangles around each vertex
+};
+
+Filled fill(const SubMesh& part, const Disk& disk) {
+  Filled f;
+  f.tris = part.tris;
+  f.weights.reserve(disk.opposite.size());
+  for (const Tri& t : part.tris)
+    for (double w : cotangent_weights(part.points[t[0]], part.points[t[1]], part.points[t[2]]))
+      f.weights.push_back(w);
+  for (std::size_t l = 1; l < disk.loops.size(); ++l)
+    for (int h : disk.loops[l]) {
+      double angle = std::clamp(2 * pi * edge_length(part, h) / disk.length[l], 1e-4, 0.75 * pi);
+      double rim = 0.5 / std::tan(angle), spoke = 0.5 * std::tan(angle / 2);
+      f.tris.push_back({target(part.tris, h), origin(part.tris, h), (int)(part.points.size() + l - 1)});
+      f.weights.insert(f.weights.end(), {rim, spoke, spoke});
     }
-    return best;
-  };
-  int a = farthest_from(origin(part.tris, loop[0])), b = farthest_from(a);
-  if (a == b) throw GoalMissed("the border is a single point in space");
-  return {a, b};
+  f.angle_sum.assign(part.points.size() + disk.loops.size() - 1, 0);
+  for (int h = 0; h < (int)f.weights.size(); ++h)
+    f.angle_sum[f.tris[h / 3][(h + 2) % 3]] += std::atan2(1, 2 * f.weights[h]);
+  return f;
 }
 
 std::vector<Vec2> conformal_map(const SubMesh& part, const Disk& disk) {
-  // With z = u + i v the conformal energy E_D(z) - A(z) is 1/2 z* M z for the Hermitian M = K + Q: K holds
-  // the cotangents, Q the signed area enclosed by the border, A = 1/2 sum Im(conj(z_a) z_b) over its edges a
-  // -> b. M is positive semidefinite whatever the angles, and definite once two vertices are held (at 0 and
-  // 1).
-  int n_points = (int)part.points.size();
-  auto [at_zero, at_one] = pins(part, disk.loops[0]);
-  std::vector<int> unknown(n_points + disk.loops.size() - 1);  // the virtual centres come last
-  int n = 0;
-  for (int v = 0; v < (int)unknown.size(); ++v) unknown[v] = v == at_zero || v == at_one ? -1 : n++;
-
-  std::vector<Entry<Complex>> matrix;
-  matrix.reserve(2 * disk.opposite.size());
+  const Filled filled = fill(part, disk);
+  const auto& rim = disk.loops[0];
+  int n_points = (int)filled.angle_sum.size(), n = 0;
+  std::vector<int> unknown(n_points, 0);
+  for (int h : rim) unknown[origin(part.tris, h)] = -1;
+  for (int& u : unknown)
+    if (u == 0) u = n++;
+  // The Laplacian of the inner vertices, factorised once; apply(x, y) adds all rows of the Laplacian of x to
+  // y
+  auto for_each_spring = [&](auto visit) {
+    for (int h = 0; h < (int)filled.weights.size(); ++h)
+      visit(origin(filled.tris, h), target(filled.tris, h), filled.weights[h]);
+  };
+  std::vector<Entry<double>> matrix;
   std::vector<double> diagonal(n, 0);
-  std::vector<Complex> z(n, 0);
-  auto add = [&](int a, int b, Complex m) {  // m at row a, column b, its conjugate at row b, column a
+  matrix.reserve(2 * filled.weights.size());
+  for_each_spring([&](int a, int b, double w) {
     int i = unknown[a], j = unknown[b];
-    if (i >= 0 && j >= 0)
-      matrix.push_back(i > j ? Entry<Complex>{i, j, m} : Entry<Complex>{j, i, std::conj(m)});
-    else if (i >= 0 && b == at_one)
-      z[i] -= m;
-    else if (j >= 0 && a == at_one)
-      z[j] -= std::conj(m);
-  };
-  auto spring = [&](int a, int b, double w) {
-    if (unknown[a] >= 0) diagonal[unknown[a]] += w;
-    if (unknown[b] >= 0) diagonal[unknown[b]] += w;
-    add(a, b, -w);
-  };
-  for (const Tri& t : part.tris) {
-    auto w = cotangent_weights(part.points[t[0]], part.points[t[1]], part.points[t[2]]);
-    for (int i = 0; i < 3; ++i) spring(t[i], t[(i + 1) % 3], w[i]);
-  }
-  for (int h : disk.loops[0]) add(origin(part.tris, h), target(part.tris, h), Complex(0, 0.5));
-  for (std::size_t l = 1; l < disk.loops.size(); ++l)
-    for (int h : disk.loops[l]) {
-      // the isosceles triangle on this edge whose angle at the centre is the edge's share of the loop
-      int a = origin(part.tris, h), b = target(part.tris, h), centre = n_points + (int)l - 1;
-      double angle = std::clamp(2 * pi * edge_length(part, h) / disk.length[l], 1e-4, 0.75 * pi);
-      spring(a, b, 0.5 / std::tan(angle));
-      spring(a, centre, 0.5 * std::tan(angle / 2));
-      spring(b, centre, 0.5 * std::tan(angle / 2));
-    }
+    if (i >= 0) diagonal[i] += w;
+    if (j >= 0) diagonal[j] += w;
+    if (i >= 0 && j >= 0) matrix.push_back({std::max(i, j), std::min(i, j), -w});
+  });
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
-  Factorisation<Complex>(n, matrix).solve(z);
+  Factorisation<double> laplacian(n, matrix);
+  // harmonic but for the `charge` of inner vertices, with the values that x has on the rim
+  auto extend = [&](const std::vector<double>& charge, std::vector<double>& x) {
+    std::vector<double> b(n);
+    for (int v = 0; v < n_points; ++v)
+      if (unknown[v] >= 0) b[unknown[v]] = charge[v];
+    for_each_spring([&](int v, int w, double weight) {
+      if (unknown[v] >= 0 && unknown[w] < 0) b[unknown[v]] += weight * x[w];
+      if (unknown[w] >= 0 && unknown[v] < 0) b[unknown[w]] += weight * x[v];
+    });
+    laplacian.solve(b);
+    for (int v = 0; v < n_points; ++v)
+      if (unknown[v] >= 0) x[v] = b[unknown[v]];
+  };
 
-  std::vector<Vec2> uv(n_points);
-  for (int v = 0; v < n_points; ++v)
-    if (unknown[v] >= 0) uv[v] = {z[unknown[v]].real(), z[unknown[v]].imag()};
-  uv[at_one] = {1, 0};
+  // The log of the scale, zero on the rim, that takes all curvature from the inside (the Yamabe equation) ...
+  std::vector<double> scale(n_points, 0), charge(n_points), turn(n_points);
+  for (int v = 0; v < n_points; ++v) charge[v] = filled.angle_sum[v] - 2 * pi;
+  extend(charge, scale);
+  // ... and by its flux brings it into the rim's turning (the Cherrier formula), which adds up to 2 pi
+  for (int v = 0; v < n_points; ++v) turn[v] = pi - filled.angle_sum[v];
+  for_each_spring([&](int a, int b, double w) {
+    turn[a] += w * (scale[a] - scale[b]);
+    turn[b] += w * (scale[b] - scale[a]);
+  });
+
+  // The polygon of these turns and the rim's own lengths l closes but for discretisation: the lengths are
+  // changed to l (1 - c . direction), the least change over l that closes it
+  std::vector<Vec2> direction;
+  double heading = 0, xx = 0, xy = 0, yy = 0;
+  Vec2 gap;
+  for (int h : rim) {
+    heading += turn[origin(part.tris, h)];
+    Vec2 d{std::cos(heading), std::sin(heading)};
+    double l = edge_length(part, h);
+    xx += l * d.x * d.x;
+    xy += l * d.x * d.y;
+    yy += l * d.y * d.y;
+    gap = gap + l * d;
+    direction.push_back(d);
+  }
+  double det = xx * yy - xy * xy;
+  Vec2 c{(yy * gap.x - xy * gap.y) / det, (xx * gap.y - xy * gap.x) / det}, at;
+  std::vector<double> x(n_points), y(n_points), none(n_points, 0);
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    x[origin(part.tris, rim[i])] = at.x;
+    y[origin(part.tris, rim[i])] = at.y;
+    double stretch = 1 - dot(c, direction[i]);
+    if (!(stretch > 0)) throw GoalMissed("the border of the conformal map does not close");
+    at = at + stretch * edge_length(part, rim[i]) * direction[i];
+  }
+  extend(none, x);
+  extend(none, y);
+  std::vector<Vec2> uv(part.points.size());
+  for (std::size_t v = 0; v < uv.size(); ++v) uv[v] = {x[v], y[v]};
   scale_to_area(part, uv);
   return uv;
 }
@@ -164,6 +205,15 @@ std::vector<Vec2> convex_map(const SubMesh& part, const Disk& disk) {
   solve_dirichlet(part.tris, weights, fixed, fans, uv);
   scale_to_area(part, uv);
   return uv;
+}
+
+/// A few of the pairs of vertices whose border edges cross.
+std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& crossings) {
+  constexpr std::size_t most = 4;
+  std::vector<std::array<int, 2>> few;
+  for (std::size_t k = 0; k < std::min(most, crossings.size()); ++k)
+    few.push_back(crossings[(2 * k + 1) * crossings.size() / (2 * std::min(most, crossings.size()))]);
+  return few;
 }
 
 bool one_to_one(const SubMesh& part, const Disk& disk, const std::vector<Vec2>& uv) {
@@ -216,20 +266,21 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
   try {
     uv = kind == MapKind::conformal ? conformal_map(part, disk) : convex_map(part, disk);
     report.flips_before = count_inverted(part.tris, uv);
-    report.overlap_before = !border_is_simple(part.tris, disk.opposite, uv);
-  } catch (const GoalMissed&) {  // singular to rounding
+    report.border_was_simple = border_is_simple(part.tris, disk.opposite, uv);
+    if (!report.border_was_simple) report.overlaps = sample(border_crossings(part.tris, disk.opposite, uv));
+  } catch (const GoalMissed&) {  // singular to rounding, or a border that does not close
     report.flips_before = (int)part.tris.size();
   }
-  bool valid = report.flips_before == 0 && !report.overlap_before;
+  bool valid = report.flips_before == 0 && report.border_was_simple;
   if (!valid && strict)
     throw GoalMissed("the map is not one-to-one: " + std::to_string(report.flips_before) + " of " +
                      std::to_string(part.tris.size()) + " triangles inverted or flat" +
-                     (report.overlap_before ? ", the border crosses itself" : ""));
+                     (report.border_was_simple ? "" : ", the border crosses itself"));
   constexpr int sweeps = 10;
   auto repair = [&] {
     return repair_stars(part.tris, disk.opposite, sweeps, uv) == 0 && one_to_one(part, disk, uv);
   };
-  if (!valid && !uv.empty() && !report.overlap_before) valid = repair();
+  if (!valid && !uv.empty() && report.border_was_simple) valid = repair();
   if (!valid && kind == MapKind::conformal) {
     report.used = MapKind::convex;
     uv = convex_map(part, disk);
@@ -245,7 +296,7 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports) {
   constexpr int most_rounds = 8;
-  constexpr double too_anisotropic = 20;
+  constexpr double too_anisotropic = 4;
   std::vector<Chart> charts;
   std::vector<char> waiting;
   reports.clear();
@@ -286,7 +337,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool
         }
       bool poor = reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic;
       if (!missed && !poor) continue;
-      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts)) {
+      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts, reports[p].overlaps)) {
         waiting[p] = 1;
         ++n_parts;
       } else if (missed) {
