@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -233,17 +234,25 @@ int burden(const Region& r) { return r.faces == 0 ? 0 : r.aspect() > 3 ? 2 : 1; 
 Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
   std::vector<Shared> shared = shared_borders(c, label, regions);
   Joiner joiner(c.mesh, c.opposite, label, std::move(regions));
+  std::vector<std::pair<int, int>> refused;  // sorted
   for (;;) {
     std::sort(shared.begin(), shared.end(), [](const Shared& p, const Shared& q) {
       return std::tuple(-p.weight, p.a, p.b) < std::tuple(-q.weight, q.a, q.b);
     });
     auto found = std::find_if(shared.begin(), shared.end(), [&](const Shared& s) {
+      auto place = std::lower_bound(refused.begin(), refused.end(), std::pair(s.a, s.b));
+      if (place != refused.end() && *place == std::pair(s.a, s.b)) return false;
       const Region r = joiner.joined(s.a, s.b);
       const auto& all = joiner.regions().region;
-      return r.maps_to_the_plane() && burden(r) < burden(all[s.a]) + burden(all[s.b]);
+      if (r.maps_to_the_plane() && burden(r) < burden(all[s.a]) + burden(all[s.b])) return true;
+      refused.insert(place, {s.a, s.b});
+      return false;
     });
     if (found == shared.end()) break;
-    joiner.join(found->a, found->b);
+    const int a = found->a, b = found->b;
+    joiner.join(a, b);
+    std::erase_if(refused,
+                  [&](auto& p) { return p.first == a || p.second == a || p.first == b || p.second == b; });
     shared = shared_borders(c, label, joiner.regions());
   }
   return joiner.regions();
@@ -295,11 +304,16 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   }
   const double balances[] = {0.3, 0.1, 0.5};
   std::vector<Labelling> tried(trials);
+  std::exception_ptr failure;  // must not leave the parallel region by itself
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < trials; ++i) {
-    const int k = ks[i % ks.size()], seed = options.seed + i;
-    tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
-  }
+  for (int i = 0; i < trials; ++i) try {
+      const int k = ks[i % ks.size()], seed = options.seed + i;
+      tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  if (failure) std::rethrow_exception(failure);
   auto best = tried.begin();
   for (auto l = tried.begin(); l != tried.end(); ++l)
     if (l->parts > 0 && (best->parts == 0 || *l < *best)) best = l;

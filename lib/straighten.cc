@@ -271,11 +271,14 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
 
   std::vector<double> field(surface.points.size(), 1);
   std::vector<char> active(surface.tris.size(), 0);
-  for (int t : bands.mesh.face) active[t] = 1;
   for (std::size_t i = 0; i < level.size(); ++i) {
     double f = bands.held[i] != Bands::free ? bands.held[i] : level[i];
     if (bands.apex[i] != 0 && f != 0) f = bands.apex[i] * std::max(1e-3, bands.apex[i] * f);
     field[bands.mesh.vertex[i]] = f;
+  }
+  for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
+    const Tri& v = surface.tris[t];
+    active[t] = field[v[0]] != 0 || field[v[1]] != 0 || field[v[2]] != 0;
   }
   const Measure before = measure(surface, opposite, bands.curve, curves.size());
 
