@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One-to-one maps of a part to the plane (the paper's section 2): conformal, and convex combination as the guarantee.
+// One-to-one maps of a part to the plane (the paper's section 2): conformal, and convex combination as the
+// guarantee.
 #pragma once
 #include "lib/chart.h"
 #include "lib/mesh.h"
@@ -10,33 +11,44 @@ enum class MapKind { conformal = 0, harmonic = 1, convex = 2 };
 
 struct ParamReport {
   MapKind used = MapKind::conformal;
-  int flips_before = 0;       ///< inverted or zero-area triangles of the map asked for
+  int flips_before = 0;                      ///< inverted or zero-area triangles of the map asked for
+  bool border_was_simple = true;             ///< of that map
+  std::vector<std::array<int, 2>> overlaps;  ///< pairs of the part's vertices where it crossed itself, a few
   double anisotropy_median = 1, anisotropy_p99 = 1, anisotropy_max = 1;  ///< sigma1 / sigma2 of the map
-  double area_scale = 1;      ///< p99 / p1 of the area scale
-  double smallest_area = 0;   ///< in the plane, over the chart's area
+  double area_scale = 1;                                                 ///< p99 / p1 of the area scale
+  double smallest_area = 0;  ///< in the plane, over the chart's area
 };
 
-/// Least-squares conformal map with a free border (Levy 2002, Desbrun 2002), one Hermitian factorisation.
-/// Other loops than the longest are left free. uv is scaled so that the plane area equals the area in space.
-/// Precondition: a disk with holes. May be invalid: check with count_inverted and border_is_simple.
+/// Conformal map with a free border by boundary first flattening (Sawhney and Crane 2017): the border keeps
+/// its length, so that the area scale varies as little as a conformal map allows, and limbs do not shrink
+/// exponentially as in least squares conformal maps with pins. One real factorisation, three solves. Loops
+/// other than the longest are filled by a fan of triangles around a virtual centre as for a round hole of the
+/// same perimeter. uv is scaled so that the plane area equals the area in space.
+/// Throws NotAdmissible if the part is not a disk with holes, GoalMissed if the border does not close.
+/// May be invalid: check with lib/injective.h.
 std::vector<Vec2> conformal_map(const SubMesh& part);
 
-/// Convex combination map onto the unit disk (then scaled to the part's area): arc length on the longest loop,
-/// other loops filled by a virtual centre, clamped cotangent weights. One-to-one up to rounding (Tutte, Floater).
+/// Convex combination map onto the unit disk (then scaled to the part's area): arc length on the longest
+/// loop, other loops filled by a virtual centre, clamped cotangent weights. One-to-one up to rounding (Tutte,
+/// Floater). Throws like conformal_map.
 std::vector<Vec2> convex_map(const SubMesh& part);
 
-/// Number of triangles whose image does not have positive orientation, by the exact predicate.
-int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv);
+/// Distortion of a map: the report's last five numbers. Triangles without area in space are left out.
+void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report);
 
-/// True if the loops' images are simple polygons that do not touch each other, by exact tests on a grid.
-bool border_is_simple(const SubMesh& part, const std::vector<int>& opposite, const std::vector<Vec2>& uv);
-
-/// Maps a part: the kind asked for, else repaired locally, else the next of conformal -> convex. The result is proved
-/// one-to-one (exact orientation of every triangle, simple border). Throws GoalMissed if no map is; never returns a bad one.
+/// Maps a part: the kind asked for, else repaired locally, else the next of conformal -> convex (neither with
+/// `strict`). The result is proved one-to-one (exact orientation of every triangle, simple border). Throws
+/// GoalMissed if no map is; never returns a bad one.
 std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, ParamReport& report);
 
-/// Maps every part of the surface, charts in parallel; splits a part that has no valid map (lib/cut.h) and maps the pieces.
-/// Sets face column `part` anew where it splits. reports has one entry a part.
-std::vector<Chart> map_surface(Surface& surface, MapKind kind, bool strict, std::vector<ParamReport>& reports);
+/// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part is cut in
+/// two by a short line (lib/bisect.h), between the places where its map overlaps itself if it does, and its
+/// halves are mapped in its place, if it has no valid map, or if the conformal one is not and the convex one
+/// in its place is too anisotropic: sigma1/sigma2 above 4 in more than one triangle of a hundred. (Limbs of a
+/// tree that cross in the plane are the usual reason; a circle map of them has a median of 5 to 10, and a cut
+/// costs one line of the lines that mrelax frees.) Such cuts append vertices and rewrite face column `part`;
+/// with `strict` there are none. reports has one entry a part.
+std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
+                               std::vector<ParamReport>& reports);
 
 }  // namespace meshpipe
