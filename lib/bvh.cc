@@ -12,17 +12,13 @@ constexpr int leaf_size = 4;
 constexpr int task_size = 4096;  // smaller subtrees are not worth a task
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double squared_distance(Vec3 p, const Box& box) {
-  const auto& [lo, hi] = box;
-  const double x = std::max({lo.x - p.x, 0.0, p.x - hi.x});
-  const double y = std::max({lo.y - p.y, 0.0, p.y - hi.y});
-  const double z = std::max({lo.z - p.z, 0.0, p.z - hi.z});
-  return x * x + y * y + z * z;
-}
+inline double outside(double p, double lo, double hi) { return std::max(std::max(lo - p, p - hi), 0.0); }
 
-Box join(const Box& a, const Box& b) {
-  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
-          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
+inline double squared_distance(const Vec3& p, const Box& box) {
+  const double x = outside(p.x, box.lo.x, box.hi.x);
+  const double y = outside(p.y, box.lo.y, box.hi.y);
+  const double z = outside(p.z, box.lo.z, box.hi.z);
+  return x * x + y * y + z * z;
 }
 
 /// Nodes of a tree over `count` items: every split halves, so the shape is known beforehand.
@@ -101,13 +97,6 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     return {0, 1 - t, t};
   }
   return {va / area, vb / area, vc / area};
-}
-
-Box box_of(const Mesh& mesh, int t) {
-  const Tri& v = mesh.tris[t];
-  const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]];
-  return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
-          {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}};
 }
 
 struct Bvh::Item {

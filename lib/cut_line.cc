@@ -16,15 +16,36 @@ double angle_of(Vec2 a) { return std::atan2(a.y, a.x); }
 
 /// What a line has to pass through: the centre of a child set or of a hole.
 struct Stop {
-  Vec2 at;
-  int child = -1;     ///< level, or -1
-  double radius = 0;  ///< of what no other piece of the line should touch
+  Vec2 at = {};
+  int child = -1;                  ///< level, or -1
+  std::vector<Vec2> outline = {};  ///< of what no other piece of the line should run over
+  double radius = 0;               ///< of the outline
 };
 
 double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
   const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0., 1.) : 0;
   return norm(a + t * d - p);
+}
+
+/// Length of a segment inside a stop's outline.
+double overlap(const Stop& stop, Vec2 a, Vec2 b) {
+  if (stop.outline.empty() || distance_to_segment(stop.at, a, b) > stop.radius) return 0;
+  const Vec2 d = b - a;
+  std::vector<double> cuts{0, 1};
+  for (std::size_t i = 0, j = stop.outline.size() - 1; i < stop.outline.size(); j = i++) {
+    const Vec2 p = stop.outline[j], q = stop.outline[i];
+    const double sp = cross(d, p - a), sq = cross(d, q - a);
+    if ((sp < 0) == (sq < 0)) continue;
+    const double at = dot(d, lerp(p, q, sp / (sp - sq)) - a) / dot(d, d);
+    if (at > 0 && at < 1) cuts.push_back(at);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  bool inside = encloses(stop.outline, a);
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < cuts.size(); i++, inside = !inside)
+    if (inside) sum += cuts[i + 1] - cuts[i];
+  return sum * norm(d);
 }
 
 /// Orders the stops of a path, but for its ends, so that it is short: sorted along the chord as in the paper,
@@ -43,8 +64,7 @@ void shorten(std::vector<Stop>& path) {
       double& c = cost[a * n + b];
       c = norm(path[a].at - path[b].at);
       for (int j = 1; j + 1 < n; j++)
-        if (j != a && j != b)
-          c += 8 * std::max(0., path[j].radius - distance_to_segment(path[j].at, path[a].at, path[b].at));
+        if (j != a && j != b) c += 8 * overlap(path[j], path[a].at, path[b].at);
       cost[b * n + a] = c;
     }
   auto d = [&](int a, int b) { return cost[order[a] * n + order[b]]; };
@@ -121,13 +141,14 @@ void lead_around(std::vector<Stop>& path) {
     const Vec2 a = path[i].at, d = path[i + 1].at - a;
     std::vector<std::pair<double, Vec2>> bends;
     for (std::size_t j = 1; j + 1 < path.size(); j++) {
-      const double r = path[j].radius;
-      if (j == i || j == i + 1 || distance_to_segment(path[j].at, a, path[i + 1].at) > 1.05 * r) continue;
+      if (j == i || j == i + 1 || !(overlap(path[j], a, path[i + 1].at) > 0)) continue;
       const double t = dot(path[j].at - a, d) / dot(d, d);
-      if (!(t > 0 && t < 1)) continue;
       Vec2 away = a + t * d - path[j].at;
-      if (norm(away) < 1e-6 * r) away = {-d.y, d.x};
-      bends.push_back({t, path[j].at + (1.3 * r / norm(away)) * away});
+      if (norm(away) < 1e-6 * path[j].radius) away = {-d.y, d.x};
+      away = (1 / norm(away)) * away;
+      double reach = 0;
+      for (Vec2 p : path[j].outline) reach = std::max(reach, dot(p - path[j].at, away));
+      bends.push_back({std::clamp(t, 0., 1.), path[j].at + 1.2 * reach * away});
     }
     std::stable_sort(bends.begin(), bends.end(), [](auto& x, auto& y) { return x.first < y.first; });
     for (auto& [t, p] : bends) out.push_back({p});
@@ -136,32 +157,43 @@ void lead_around(std::vector<Stop>& path) {
   path.swap(out);
 }
 
-/// The stops of a level, with a place for the line's ends before and after them.
-std::vector<Stop> stops_of(const std::vector<Level>& levels, const Level& level) {
-  std::vector<Stop> path(1);
-  for (int c : level.children) {
-    double r = 0;
-    for (Vec2 p : levels[c].border) r = std::max(r, norm(p - levels[c].centre));
-    path.push_back({levels[c].centre, c, r});
+/// Where most of the surface of a level is: what the line halves where there is nothing to pass through.
+Vec2 middle_of(const FilledDisk& disk, const Level& level) {
+  Vec2 sum;
+  double total = 0;
+  for (std::size_t i = 0; i < level.tris.size(); i++) {
+    const Tri& t = disk.tris[level.tris[i]];
+    const double area = norm(area_vector(disk.points[t[0]], disk.points[t[1]], disk.points[t[2]]));
+    total += area;
+    for (int v : level.corners[i]) sum = sum + (area / 3) * level.uv[v];
   }
-  for (int h : level.holes) path.push_back({level.uv[h], -1, 0});
-  std::vector<double*> radius(level.vertex.size(), nullptr);
+  return (1 / total) * sum;
+}
+
+/// The stops of a level, with a place for the line's ends before and after them.
+std::vector<Stop> stops_of(const FilledDisk& disk, const std::vector<Level>& levels, const Level& level) {
+  std::vector<Stop> path(1);
+  for (int c : level.children) path.push_back({levels[c].centre, c, levels[c].border});
+  for (int h : level.holes) path.push_back({level.uv[h]});
+  std::vector<int> stop_of(level.vertex.size(), -1);
   for (std::size_t i = 0; i < level.holes.size(); i++)
-    radius[level.holes[i]] = &path[1 + level.children.size() + i].radius;
-  for (const Tri& c : level.corners)  // a fan's triangles end in its centre
-    if (radius[c[2]]) *radius[c[2]] = std::max(*radius[c[2]], norm(level.uv[c[0]] - level.uv[c[2]]));
-  // a set without any is cut through its middle
-  if (path.size() == 1) path.push_back({});
+    stop_of[level.holes[i]] = 1 + level.children.size() + i;
+  for (const Tri& c : level.corners)  // a fan's triangles end in its centre, and follow each other
+    if (int s = stop_of[c[2]]; s >= 0) path[s].outline.push_back(level.uv[c[1]]);
+  for (Stop& s : path)
+    for (Vec2 p : s.outline) s.radius = std::max(s.radius, norm(p - s.at));
+  if (path.size() == 1) path.push_back({middle_of(disk, level)});
   path.push_back({});
   return path;
 }
 
 /// The line of every level, in its own disk; both ends lie far outside.
-std::vector<std::vector<Vec2>> draw(const std::vector<Level>& levels, double direction) {
+std::vector<std::vector<Vec2>> draw(const FilledDisk& disk, const std::vector<Level>& levels,
+                                    double direction) {
   std::vector<std::vector<Vec2>> lines(levels.size());
   std::vector<std::array<double, 2>> ends(levels.size());  // where the parent's line meets the set's circle
   for (std::size_t l = 0; l < levels.size(); l++) {
-    std::vector<Stop> path = stops_of(levels, levels[l]);
+    std::vector<Stop> path = stops_of(disk, levels, levels[l]);
     const bool root = levels[l].parent < 0;
     if (root) {
       Vec2 middle;
@@ -217,7 +249,7 @@ class Sides {
 
 std::vector<double> cut_line_field(const FilledDisk& disk, const std::vector<Level>& levels,
                                    double direction) {
-  const auto lines = draw(levels, direction);
+  const auto lines = draw(disk, levels, direction);
   // a vertex between levels is the mean of what they say, each as a distance in space: value over gradient
   std::vector<double> sum(disk.part_vertices, 0), weight(disk.part_vertices, 0);
   std::vector<double> value, gradient, area;

@@ -19,6 +19,9 @@ constexpr double least_weight = 1e-3;
 // a level resolves about four diameters of a tube (a factor e^-2 in length each); two more make a margin for
 // the natural condition where the system is cut off
 constexpr double depth_in_diameters = 6;
+// triangles this much smaller in area against the surface than at the border are withdrawn too, however
+// coarse the mesh: a factor e^-4 for each diameter of a tube, so four of them
+constexpr double least_stretch = 1e-7;
 constexpr std::size_t least_domain = 2000;
 constexpr std::size_t max_levels = 100000;
 
@@ -145,14 +148,14 @@ class LevelSolver {
 
   void solve(const Pending& set) {
     const int self = levels_.size();
-    const double area_limit = min_area_ * pi;
+    const double area_limit = min_area_ * pi, scale = 2 * pi / border_length(set);
+    const double stretch_limit = least_stretch * scale * scale;
     double depth = depth_in_diameters * border_length(set) / pi;
     bool truncated;
     for (;; depth *= 2) {
       truncated = gather(set, depth);
       map(set);
-      small_.assign(domain_.size(), 0);
-      for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = image(i) < area_limit;
+      find_small(area_limit, stretch_limit);
       keep_fans_whole();
       if (!truncated || !good_at_the_end()) break;
     }
@@ -221,6 +224,38 @@ class LevelSolver {
   double image(int i) const {
     Vec2 a = uv_[corners_[i][0]], b = uv_[corners_[i][1]], c = uv_[corners_[i][2]];
     return std::sqrt(3.) / 4 * std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+
+  /// The same of triangle t itself.
+  double size(int t) const {
+    const Vec3 a = disk_.points[disk_.tris[t][0]], b = disk_.points[disk_.tris[t][1]],
+               c = disk_.points[disk_.tris[t][2]];
+    return std::sqrt(3.) / 4 * std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+
+  /// Marks what is too small, by a logarithm averaged over some rings of triangles: the border of what is
+  /// withdrawn should not be ragged.
+  void find_small(double area_limit, double stretch_limit) {
+    std::vector<double> depth(domain_.size()), sum(vertex_.size());
+    std::vector<int> count(vertex_.size());
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      depth[i] =
+          std::log(std::max(area_limit, stretch_limit * size(domain_[i])) / std::max(image(i), 1e-300));
+    for (int round = 0; round < 4; round++) {
+      std::fill(sum.begin(), sum.end(), 0);
+      std::fill(count.begin(), count.end(), 0);
+      for (std::size_t i = 0; i < domain_.size(); i++)
+        for (int l : corners_[i]) {
+          sum[l] += depth[i];
+          count[l]++;
+        }
+      for (std::size_t i = 0; i < domain_.size(); i++) {
+        depth[i] = 0;
+        for (int l : corners_[i]) depth[i] += sum[l] / count[l] / 3;
+      }
+    }
+    small_.resize(domain_.size());
+    for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = depth[i] > 0;
   }
 
   /// A hole is resolved by one level as a whole: where one triangle of its fan is good, all are.

@@ -66,91 +66,64 @@ void scale_to_area(const SubMesh& part, std::vector<Vec2>& uv) {
   for (Vec2& p : uv) p = s * p;
 }
 
-/// The part with its holes filled: by fans of isosceles triangles around virtual centres (numbered after the
-/// part's own vertices), the angle at the centre being the edge's share of the loop. As a metric, not in
-/// space.
-struct Filled {
+/// A surface known by its angles only: the part, with its holes filled or not.
+struct Angles {
   std::vector<Tri> tris;
-  std::vector<double> weights;    ///< of half-edges: half the cotangent of the opposite angle
-  std::vector<double> angle_sum;  ///< of the triangles around each vertex
+  std::vector<double> weights;  ///< of half-edges: half the cotangent of the opposite angle
+  std::vector<double> sum;      ///< of the angles around each vertex
 };
 
-Filled fill(const SubMesh& part, const Disk& disk) {
-  Filled f;
-  f.tris = part.tris;
-  f.weights.reserve(disk.opposite.size());
-  for (const Tri& t : part.tris)
-    for (double w : cotangent_weights(part.points[t[0]], part.points[t[1]], part.points[t[2]]))
-      f.weights.push_back(w);
-  for (std::size_t l = 1; l < disk.loops.size(); ++l)
-    for (int h : disk.loops[l]) {
-      double angle = std::clamp(2 * pi * edge_length(part, h) / disk.length[l], 1e-4, 0.75 * pi);
-      double rim = 0.5 / std::tan(angle), spoke = 0.5 * std::tan(angle / 2);
-      f.tris.push_back({target(part.tris, h), origin(part.tris, h), (int)(part.points.size() + l - 1)});
-      f.weights.insert(f.weights.end(), {rim, spoke, spoke});
-    }
-  f.angle_sum.assign(part.points.size() + disk.loops.size() - 1, 0);
-  for (int h = 0; h < (int)f.weights.size(); ++h)
-    f.angle_sum[f.tris[h / 3][(h + 2) % 3]] += std::atan2(1, 2 * f.weights[h]);
-  return f;
+void add_triangle(Angles& angles, const Tri& t, const std::array<double, 3>& weights) {
+  angles.tris.push_back(t);
+  for (int i = 0; i < 3; ++i) {
+    angles.weights.push_back(weights[i]);
+    angles.sum[t[(i + 2) % 3]] += std::atan2(1, 2 * weights[i]);
+  }
 }
 
-std::vector<Vec2> conformal_map(const SubMesh& part, const Disk& disk) {
-  const Filled filled = fill(part, disk);
-  const auto& rim = disk.loops[0];
-  int n_points = (int)filled.angle_sum.size(), n = 0;
-  std::vector<int> unknown(n_points, 0);
-  for (int h : rim) unknown[origin(part.tris, h)] = -1;
-  for (int& u : unknown)
-    if (u == 0) u = n++;
-  // The Laplacian of the inner vertices, factorised once; apply(x, y) adds all rows of the Laplacian of x to
-  // y
-  auto for_each_spring = [&](auto visit) {
-    for (int h = 0; h < (int)filled.weights.size(); ++h)
-      visit(origin(filled.tris, h), target(filled.tris, h), filled.weights[h]);
-  };
+template <class Visit>
+void for_each_spring(const Angles& angles, Visit visit) {
+  for (int h = 0; h < (int)angles.weights.size(); ++h)
+    visit(origin(angles.tris, h), target(angles.tris, h), angles.weights[h]);
+}
+
+/// The Laplacian of the unknowns 0..n-1; unknown[v] < 0: v is held; vertices may share an unknown.
+Factorisation<double> laplacian(const Angles& angles, const std::vector<int>& unknown, int n) {
   std::vector<Entry<double>> matrix;
   std::vector<double> diagonal(n, 0);
-  matrix.reserve(2 * filled.weights.size());
-  for_each_spring([&](int a, int b, double w) {
+  matrix.reserve(2 * angles.weights.size());
+  for_each_spring(angles, [&](int a, int b, double w) {
     int i = unknown[a], j = unknown[b];
+    if (i == j) return;
     if (i >= 0) diagonal[i] += w;
     if (j >= 0) diagonal[j] += w;
     if (i >= 0 && j >= 0) matrix.push_back({std::max(i, j), std::min(i, j), -w});
   });
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
-  Factorisation<double> laplacian(n, matrix);
-  // harmonic but for the `charge` of inner vertices, with the values that x has on the rim
-  auto extend = [&](const std::vector<double>& charge, std::vector<double>& x) {
-    std::vector<double> b(n);
-    for (int v = 0; v < n_points; ++v)
-      if (unknown[v] >= 0) b[unknown[v]] = charge[v];
-    for_each_spring([&](int v, int w, double weight) {
-      if (unknown[v] >= 0 && unknown[w] < 0) b[unknown[v]] += weight * x[w];
-      if (unknown[w] >= 0 && unknown[v] < 0) b[unknown[w]] += weight * x[v];
-    });
-    laplacian.solve(b);
-    for (int v = 0; v < n_points; ++v)
-      if (unknown[v] >= 0) x[v] = b[unknown[v]];
-  };
+  return Factorisation<double>(n, matrix);
+}
 
-  // The log of the scale, zero on the rim, that takes all curvature from the inside (the Yamabe equation) ...
-  std::vector<double> scale(n_points, 0), charge(n_points), turn(n_points);
-  for (int v = 0; v < n_points; ++v) charge[v] = filled.angle_sum[v] - 2 * pi;
-  extend(charge, scale);
-  // ... and by its flux brings it into the rim's turning (the Cherrier formula), which adds up to 2 pi
-  for (int v = 0; v < n_points; ++v) turn[v] = pi - filled.angle_sum[v];
-  for_each_spring([&](int a, int b, double w) {
+/// How much the border turns at its vertices once the metric is scaled by exp(scale): its own turn and the
+/// flux of the scale (the Cherrier formula).
+std::vector<double> turns(const Angles& angles, const std::vector<double>& scale) {
+  std::vector<double> turn(scale.size());
+  for (std::size_t v = 0; v < turn.size(); ++v) turn[v] = pi - angles.sum[v];
+  for_each_spring(angles, [&](int a, int b, double w) {
     turn[a] += w * (scale[a] - scale[b]);
     turn[b] += w * (scale[b] - scale[a]);
   });
+  return turn;
+}
 
-  // The polygon of these turns and the rim's own lengths l closes but for discretisation: the lengths are
-  // changed to l (1 - c . direction), the least change over l that closes it
-  std::vector<Vec2> direction;
+/// The polygon of a loop with these turns and the lengths it has in space; places in the order of the loop.
+/// It closes but for discretisation: the lengths l are changed to l (1 - c . direction), the least change
+/// over l that closes it. Empty if a length would not stay positive.
+std::vector<Vec2> polygon_of(const SubMesh& part, const std::vector<int>& loop,
+                             const std::vector<double>& turn) {
+  std::vector<Vec2> direction, polygon;
   double heading = 0, xx = 0, xy = 0, yy = 0;
-  Vec2 gap;
-  for (int h : rim) {
+  Vec2 gap, at;
+  for (int h : loop) {
     heading += turn[origin(part.tris, h)];
     Vec2 d{std::cos(heading), std::sin(heading)};
     double l = edge_length(part, h);
@@ -161,17 +134,117 @@ std::vector<Vec2> conformal_map(const SubMesh& part, const Disk& disk) {
     direction.push_back(d);
   }
   double det = xx * yy - xy * xy;
-  Vec2 c{(yy * gap.x - xy * gap.y) / det, (xx * gap.y - xy * gap.x) / det}, at;
-  std::vector<double> x(n_points), y(n_points), none(n_points, 0);
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    x[origin(part.tris, rim[i])] = at.x;
-    y[origin(part.tris, rim[i])] = at.y;
+  Vec2 c{(yy * gap.x - xy * gap.y) / det, (xx * gap.y - xy * gap.x) / det};
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    polygon.push_back(at);
     double stretch = 1 - dot(c, direction[i]);
-    if (!(stretch > 0)) throw GoalMissed("the border of the conformal map does not close");
-    at = at + stretch * edge_length(part, rim[i]) * direction[i];
+    if (!(stretch > 0)) return {};
+    at = at + stretch * edge_length(part, loop[i]) * direction[i];
   }
-  extend(none, x);
-  extend(none, y);
+  return polygon;
+}
+
+/// Fills a hole by a fan of triangles around `centre`: of its polygon, if that is star-shaped, else of
+/// isosceles triangles whose angle at the centre is the edge's share of the loop.
+void fill_hole(const SubMesh& part, const std::vector<int>& loop, double length,
+               const std::vector<double>& turn, int centre, Angles& angles) {
+  std::vector<Vec2> polygon = polygon_of(part, loop, turn);
+  Vec2 middle;
+  for (Vec2 p : polygon) middle = middle + (1 / (double)loop.size()) * p;
+  bool star = !polygon.empty();
+  for (std::size_t i = 0; star && i < loop.size(); ++i) {
+    // the part is on the left of the loop and the hole on its right
+    Vec2 a = polygon[i] - middle, b = polygon[(i + 1) % loop.size()] - middle;
+    star = cross(b, a) > 0.01 * dot(b - a, b - a);
+  }
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    Tri t{target(part.tris, loop[i]), origin(part.tris, loop[i]), centre};
+    if (star) {
+      Vec2 a = polygon[i], b = polygon[(i + 1) % loop.size()];
+      add_triangle(angles, t, cotangent_weights({b.x, b.y, 0}, {a.x, a.y, 0}, {middle.x, middle.y, 0}));
+    } else {
+      double angle = std::clamp(2 * pi * edge_length(part, loop[i]) / length, 1e-4, 0.75 * pi);
+      double spoke = 0.5 * std::tan(angle / 2);
+      add_triangle(angles, t, {0.5 / std::tan(angle), spoke, spoke});
+    }
+  }
+}
+
+/// The part's angles, and those of its holes filled by what they would be in the plane if each were scaled as
+/// a whole: the flat metric that has one scale on each hole's border, and lets it turn by one round.
+Angles filled_angles(const SubMesh& part, const Disk& disk) {
+  Angles angles;
+  int n_holes = (int)disk.loops.size() - 1, n_points = (int)part.points.size();
+  angles.sum.assign(n_points + n_holes, 0);
+  for (const Tri& t : part.tris)
+    add_triangle(angles, t, cotangent_weights(part.points[t[0]], part.points[t[1]], part.points[t[2]]));
+  if (n_holes == 0) return angles;
+
+  std::vector<int> unknown(n_points + n_holes, n_holes);
+  std::vector<double> scale(n_holes, -2 * pi);  // the turns that are missing, then the scale
+  for (int h : disk.loops[0]) unknown[origin(part.tris, h)] = -1;
+  for (int l = 0; l < n_holes; ++l) {
+    unknown[n_points + l] = -1;
+    for (int h : disk.loops[l + 1]) {
+      unknown[origin(part.tris, h)] = l;
+      scale[l] -= pi - angles.sum[origin(part.tris, h)];
+    }
+  }
+  for (int v = 0; v < n_points; ++v)
+    if (unknown[v] == n_holes) {
+      unknown[v] = (int)scale.size() + 1;  // past n_holes, so that it is not taken for one that has none yet
+      scale.push_back(angles.sum[v] - 2 * pi);
+    }
+  for (int& u : unknown)
+    if (u > n_holes) --u;
+  laplacian(angles, unknown, (int)scale.size()).solve(scale);
+  std::vector<double> at(n_points + n_holes, 0);
+  for (std::size_t v = 0; v < at.size(); ++v)
+    if (unknown[v] >= 0) at[v] = scale[unknown[v]];
+  std::vector<double> turn = turns(angles, at);
+  for (int l = 0; l < n_holes; ++l)
+    fill_hole(part, disk.loops[l + 1], disk.length[l + 1], turn, n_points + l, angles);
+  return angles;
+}
+
+std::vector<Vec2> conformal_map(const SubMesh& part, const Disk& disk) {
+  const Angles angles = filled_angles(part, disk);
+  const auto& rim = disk.loops[0];
+  int n_points = (int)angles.sum.size(), n = 0;
+  std::vector<int> unknown(n_points, 0);
+  for (int h : rim) unknown[origin(part.tris, h)] = -1;
+  for (int& u : unknown)
+    if (u == 0) u = n++;
+  Factorisation<double> factorisation = laplacian(angles, unknown, n);
+  // x is harmonic but for the `charge` of inner vertices, with the values that it has on the rim
+  auto extend = [&](const std::vector<double>& charge, std::vector<double>& x) {
+    std::vector<double> b(n);
+    for (int v = 0; v < n_points; ++v)
+      if (unknown[v] >= 0) b[unknown[v]] = charge[v];
+    for_each_spring(angles, [&](int v, int w, double weight) {
+      if (unknown[v] >= 0 && unknown[w] < 0) b[unknown[v]] += weight * x[w];
+      if (unknown[w] >= 0 && unknown[v] < 0) b[unknown[w]] += weight * x[v];
+    });
+    factorisation.solve(b);
+    for (int v = 0; v < n_points; ++v)
+      if (unknown[v] >= 0) x[v] = b[unknown[v]];
+  };
+
+  // The log of the scale, zero on the rim, that takes all curvature from the inside (the Yamabe equation) and
+  // brings it into the rim, whose turns then add up to one round; and harmonic coordinates within the rim's
+  // polygon
+  std::vector<double> scale(n_points, 0), charge(n_points), x(n_points), y(n_points);
+  for (int v = 0; v < n_points; ++v) charge[v] = angles.sum[v] - 2 * pi;
+  extend(charge, scale);
+  std::vector<Vec2> polygon = polygon_of(part, rim, turns(angles, scale));
+  if (polygon.empty()) throw GoalMissed("the border of the conformal map does not close");
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    x[origin(part.tris, rim[i])] = polygon[i].x;
+    y[origin(part.tris, rim[i])] = polygon[i].y;
+  }
+  charge.assign(n_points, 0);
+  extend(charge, x);
+  extend(charge, y);
   std::vector<Vec2> uv(part.points.size());
   for (std::size_t v = 0; v < uv.size(); ++v) uv[v] = {x[v], y[v]};
   scale_to_area(part, uv);
@@ -234,7 +307,8 @@ std::vector<Vec2> convex_map(const SubMesh& part) { return convex_map(part, disk
 
 void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report) {
   std::vector<double> anisotropy, scale;
-  double chart_area = 0, smallest = HUGE_VAL;
+  double chart_area = 0, smallest = HUGE_VAL, least = HUGE_VAL, most = 0;
+  std::array<int, 2> extremes{0, 0};
   for (const Tri& t : part.tris) {
     Vec3 e = part.points[t[1]] - part.points[t[0]], f = part.points[t[2]] - part.points[t[0]];
     Vec2 p = uv[t[1]] - uv[t[0]], q = uv[t[2]] - uv[t[0]];
@@ -248,6 +322,8 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
     double keep = 0.5 * std::hypot(x.x + y.y, x.y - y.x), reverse = 0.5 * std::hypot(x.x - y.y, x.y + y.x);
     anisotropy.push_back(keep > reverse ? (keep + reverse) / (keep - reverse) : HUGE_VAL);
     scale.push_back(image / area);
+    if (scale.back() < least) least = scale.back(), extremes[0] = t[0];
+    if (scale.back() > most) most = scale.back(), extremes[1] = t[0];
   }
   if (anisotropy.empty()) return;
   report.anisotropy_median = quantile(anisotropy, 0.5);
@@ -255,6 +331,7 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
   report.anisotropy_max = quantile(anisotropy, 1);
   report.area_scale = quantile(scale, 0.99) / quantile(scale, 0.01);
   report.smallest_area = smallest / chart_area;
+  if (report.apart.empty()) report.apart.push_back(extremes);
 }
 
 std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, ParamReport& report) {
@@ -267,7 +344,7 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
     uv = kind == MapKind::conformal ? conformal_map(part, disk) : convex_map(part, disk);
     report.flips_before = count_inverted(part.tris, uv);
     report.border_was_simple = border_is_simple(part.tris, disk.opposite, uv);
-    if (!report.border_was_simple) report.overlaps = sample(border_crossings(part.tris, disk.opposite, uv));
+    if (!report.border_was_simple) report.apart = sample(border_crossings(part.tris, disk.opposite, uv));
   } catch (const GoalMissed&) {  // singular to rounding, or a border that does not close
     report.flips_before = (int)part.tris.size();
   }
@@ -296,7 +373,7 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports) {
   constexpr int most_rounds = 8;
-  constexpr double too_anisotropic = 4;
+  constexpr double too_anisotropic = 4, too_uneven = 1e8;
   std::vector<Chart> charts;
   std::vector<char> waiting;
   reports.clear();
@@ -335,9 +412,10 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool
         } catch (const GoalMissed&) {
           missed = true;
         }
-      bool poor = reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic;
+      bool poor = (reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic) ||
+                  reports[p].area_scale > too_uneven;
       if (!missed && !poor) continue;
-      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts, reports[p].overlaps)) {
+      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts, reports[p].apart)) {
         waiting[p] = 1;
         ++n_parts;
       } else if (missed) {

@@ -11,9 +11,11 @@ enum class MapKind { conformal = 0, harmonic = 1, convex = 2 };
 
 struct ParamReport {
   MapKind used = MapKind::conformal;
-  int flips_before = 0;                      ///< inverted or zero-area triangles of the map asked for
-  bool border_was_simple = true;             ///< of that map
-  std::vector<std::array<int, 2>> overlaps;  ///< pairs of the part's vertices where it crossed itself, a few
+  int flips_before = 0;           ///< inverted or zero-area triangles of the map asked for
+  bool border_was_simple = true;  ///< of that map
+  /// Pairs of the part's vertices that should not be in one chart: a few places where the border of that map
+  /// crossed itself, else the triangles of the least and of the largest area scale.
+  std::vector<std::array<int, 2>> apart;
   double anisotropy_median = 1, anisotropy_p99 = 1, anisotropy_max = 1;  ///< sigma1 / sigma2 of the map
   double area_scale = 1;                                                 ///< p99 / p1 of the area scale
   double smallest_area = 0;  ///< in the plane, over the chart's area
@@ -42,12 +44,16 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
 std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, ParamReport& report);
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part is cut in
-/// two by a short line (lib/bisect.h), between the places where its map overlaps itself if it does, and its
-/// halves are mapped in its place, if it has no valid map, or if the conformal one is not and the convex one
-/// in its place is too anisotropic: sigma1/sigma2 above 4 in more than one triangle of a hundred. (Limbs of a
-/// tree that cross in the plane are the usual reason; a circle map of them has a median of 5 to 10, and a cut
-/// costs one line of the lines that mrelax frees.) Such cuts append vertices and rewrite face column `part`;
-/// with `strict` there are none. reports has one entry a part.
+/// two by a short line (lib/bisect.h) between the places that should not be in one chart, and its halves are
+/// mapped in its place,
+///  - if it has no valid map;
+///  - if the conformal map is not valid and the convex one in its place has sigma1/sigma2 above 4 in more
+///  than one
+///    triangle of a hundred: limbs of a tree that cross in the plane are the usual reason, a circle map of
+///    them has a median of 5 to 10, and the cut is one more of the lines that mrelax frees;
+///  - if the area scale varies by more than 1e8 (p99 / p1), as it does along a narrow tube inside the part.
+/// Such cuts append vertices and rewrite face column `part`; with `strict` there are none.
+/// reports has one entry a part.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports);
 
