@@ -70,8 +70,11 @@ class Relaxer {
       smooth(2);
     }
     for (int i = 0; i < options_.sweeps; ++i) {
-      meet_count(target);
-      remove_irregular();
+      // edits unsettle the mesh, so they come first and the last sweeps only settle it
+      if (2 * i < options_.sweeps) {
+        meet_count(target);
+        remove_irregular();
+      }
       flip_to_regular();
       smooth(1);
       flip_to_shape();
