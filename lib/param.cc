@@ -412,15 +412,18 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool
         } catch (const GoalMissed&) {
           missed = true;
         }
-      bool poor = (reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic) ||
-                  reports[p].area_scale > too_uneven;
-      if (!missed && !poor) continue;
-      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts, reports[p].apart)) {
-        waiting[p] = 1;
-        ++n_parts;
-      } else if (missed) {
-        std::rethrow_exception(failure[p]);
+      bool uneven = !missed && reports[p].area_scale > too_uneven;
+      bool poor = !missed && reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic;
+      if (!missed && !poor && !uneven) continue;
+      int n = n_parts;
+      if (!strict && round < most_rounds) {
+        if (uneven) n_parts = cut_along_limbs(surface, p, n_parts);
+        if (n_parts == n && bisect_part(surface, p, n_parts, reports[p].apart)) ++n_parts;
       }
+      if (n_parts > n)
+        waiting[p] = 1;
+      else if (missed)
+        std::rethrow_exception(failure[p]);
     }
     if (n_parts == n_before) break;
   }
