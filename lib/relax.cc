@@ -140,12 +140,7 @@ class Relaxer {
   bool split(int h) {
     const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
     const Vec3 middle = lerp(at(a), at(b), 0.5);
-    // the walk starts where a wall is least likely to stand in between
-    Place place = walk_.closest(lifted_.place[held_[a] ? b : a], middle);
-    if (held_[a] || held_[b]) {
-      Place other = walk_.closest(lifted_.place[held_[a] ? a : b], middle);
-      if (norm(walk_.point(other) - middle) < norm(walk_.point(place) - middle)) place = other;
-    }
+    const Place place = place_near(middle, {a, b, c, d}, normal(h / 3) + normal(m_.opp[h] / 3));
     const Vec3 p = walk_.point(place);
     if (norm(p - middle) > 0.5 * norm(at(b) - at(a))) return false;
     const Vec3 facing = facing_at(place);
@@ -172,6 +167,24 @@ class Relaxer {
     lifted_.part.push_back(lifted_.part[low]);
     ++report_.splits;
     return true;
+  }
+
+  /// The place nearest to p that can be walked to from one of the vertices round it. A vertex on a model edge
+  /// has two sides, of which the one that faces along `facing` is meant; so a vertex that is free is asked
+  /// first.
+  Place place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const {
+    for (int v : round)
+      if (held_[v] == free_) return walk_.closest(lifted_.place[v], p);
+    Place best = lifted_.place[*round.begin()];
+    double least = 1e300;
+    for (int v : round)
+      for (const Place& start : {lifted_.place[v], walk_.across(lifted_.place[v])}) {
+        const Place q = walk_.closest(start, p);
+        const Vec3 d = walk_.point(q) - p;
+        const double score = dot(d, d) * (dot(walk_.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
+        if (score < least) least = score, best = q;
+      }
+    return best;
   }
 
   double interpolate(const Place& p) const {
