@@ -373,7 +373,7 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports) {
   constexpr int most_rounds = 8;
-  constexpr double too_anisotropic = 4, too_uneven = 1e8;
+  constexpr double too_anisotropic = 4, too_uneven = 1e6;
   std::vector<Chart> charts;
   std::vector<char> waiting;
   reports.clear();
