@@ -53,7 +53,7 @@ Connectivity connectivity_of(const Mesh& mesh) {
   for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
     ++c.edges;
     const int h = half_edge(uses[0]);
-    if (uses.size() > 2) return note(c.nonmanifold, c.first_nonmanifold, h / 3);
+    if (uses.size() > 2) return note(c.nonmanifold, c.first_nonmanifold, half_edge(uses.back()) / 3);
     if (uses.size() < 2) return;
     const int g = half_edge(uses[1]);
     if (origin(mesh.tris, h) == origin(mesh.tris, g)) return note(c.turned, c.first_turned, h / 3);
