@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 #include "lib/random.h"
 #include "lib/topology.h"
+#include "lib/weld.h"
 
 namespace meshpipe {
 namespace {
@@ -62,32 +62,6 @@ void add_disk(Mesh& mesh, Ring rim, double radius, double z, bool down) {
   for (int i = 0; i < outer.count; ++i) mesh.tris.push_back({outer.at(i), outer.at(i + 1), centre});
   if (down)
     for (std::size_t t = first; t < mesh.tris.size(); ++t) std::swap(mesh.tris[t][1], mesh.tris[t][2]);
-}
-
-/// Makes one vertex of all at the same place, numbered by first use.
-void weld(Mesh& mesh) {
-  const int n = (int)mesh.points.size();
-  std::vector<int> order(n), to(n, -1);
-  std::iota(order.begin(), order.end(), 0);
-  auto key = [&](int v) { return std::array{mesh.points[v].x, mesh.points[v].y, mesh.points[v].z}; };
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    const auto ka = key(a), kb = key(b);
-    return ka != kb ? ka < kb : a < b;
-  });
-  std::vector<int> same(n);
-  for (int i = 0; i < n; ++i)
-    same[order[i]] = i && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
-  std::vector<Vec3> points;
-  for (Tri& t : mesh.tris)
-    for (int& v : t) {
-      int& number = to[same[v]];
-      if (number < 0) {
-        number = (int)points.size();
-        points.push_back(mesh.points[v]);
-      }
-      v = number;
-    }
-  mesh.points = std::move(points);
 }
 
 /// The k^2 triangles of a triangle whose point number (i, j) is point(i, j), i + j <= k.
