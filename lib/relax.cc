@@ -35,6 +35,7 @@ class Relaxer {
     points_.tris.clear();
     points_.points = std::move(mesh.points);
     held_.resize(points_.points.size());
+    finer_.assign(held_.size(), 1);
     tried_.resize(held_.size());
     changed_.resize(held_.size());
     for (std::size_t v = 0; v < held_.size(); ++v) {
@@ -69,8 +70,11 @@ class Relaxer {
       smooth(2);
     }
     for (int i = 0; i < options_.sweeps; ++i) {
-      meet_count(target);
-      remove_irregular();
+      // edits unsettle the mesh, so they come first and the last sweeps only settle it
+      if (2 * i < options_.sweeps) {
+        meet_count(target);
+        remove_irregular();
+      }
       flip_to_regular();
       smooth(1);
       flip_to_shape();
@@ -83,7 +87,7 @@ class Relaxer {
 
  private:
   Vec3 at(int v) const { return points_.points[v]; }
-  double size_at(int v) const { return lifted_.size[v]; }
+  double size_at(int v) const { return lifted_.size[v] * finer_[v]; }
   double ratio(int a, int b) const { return 2 * norm(at(b) - at(a)) / (size_at(a) + size_at(b)); }
   /// Smooth normal of the reference at a place.
   Vec3 facing_at(const Place& p) const {
@@ -109,14 +113,15 @@ class Relaxer {
     return normalized(area_vector(at(v[0]), at(v[1]), at(v[2])));
   }
 
-  /// Triangles the size field asks for: the integral of dA / (sqrt(3)/4 h^2).
+  /// Triangles the size field asks for on the reference: the integral of dA / (sqrt(3)/4 h^2).
   double wanted_triangles() const {
+    if (!ref_size_) return (double)m_.live;
     double n = 0;
-    for (std::size_t t = 0; t < m_.tris.size(); ++t) {
-      if (m_.dead((int)t)) continue;
-      const Tri& v = m_.tris[t];
-      double h = (size_at(v[0]) + size_at(v[1]) + size_at(v[2])) / 3;
-      n += 0.5 * norm(area_vector(at(v[0]), at(v[1]), at(v[2]))) / (sqrt3 / 4 * h * h);
+    for (const Tri& t : reference_.tris) {
+      const double h = ((*ref_size_)[t[0]] + (*ref_size_)[t[1]] + (*ref_size_)[t[2]]) / 3;
+      n += 0.5 *
+           norm(area_vector(reference_.points[t[0]], reference_.points[t[1]], reference_.points[t[2]])) /
+           (sqrt3 / 4 * h * h);
     }
     return n;
   }
@@ -153,7 +158,8 @@ class Relaxer {
     const int low = m_.opp[h] / 3;
     points_.points.push_back(p);
     lifted_.place.push_back(place);
-    lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (size_at(a) + size_at(b)));
+    lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
+    finer_.push_back(std::min(finer_[a], finer_[b]));
     lifted_.kind.push_back(0);
     lifted_.line.push_back(-1);
     held_.push_back(free_);
@@ -531,41 +537,46 @@ class Relaxer {
     }
   }
 
-  /// Where triangles of the result intersect, the surface is too thin or too curved for their size: refine
-  /// there.
+  /// Where triangles of the result intersect, the surface is too thin or bends too much for their size:
+  /// refine there, and ask for smaller triangles from then on. Gives up when that does not help.
   void separate() {
+    const int most = m_.live + m_.live / 4 + 1000;
     for (int round = 0;; ++round) {
       Mesh now{points_.points, {}};
       std::vector<int> number;
       for (int t = 0; t < (int)m_.tris.size(); ++t)
         if (!m_.dead(t)) now.tris.push_back(m_.tris[t]), number.push_back(t);
-      auto pairs = self_intersections(now);
+      const auto pairs = self_intersections(now);
       report_.intersections = (int)pairs.size();
-      if (pairs.empty() || round == 10) return;
+      if (pairs.empty() || round == 12 || m_.live > most) return;
       std::vector<int> culprits;
       for (auto [s, t] : pairs) culprits.insert(culprits.end(), {number[s], number[t]});
       std::sort(culprits.begin(), culprits.end());
       culprits.erase(std::unique(culprits.begin(), culprits.end()), culprits.end());
       std::vector<int> around;
+      for (int t : culprits)
+        for (int v : m_.tris[t]) {
+          around.push_back(v);
+          m_.star(v, [&](int e) { around.push_back(m_.to(e)); });
+        }
+      std::sort(around.begin(), around.end());
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      for (int v : around) {
+        finer_[v] *= 0.8;
+        touch(v);
+      }
       for (int t : culprits) {
-        if (m_.dead(t)) continue;
         int longest = -1;
         double length = 0;
         for (int h = 3 * t; h < 3 * t + 3; ++h) {
           double l = norm(at(m_.to(h)) - at(m_.from(h)));
           if (!m_.hard[h] && l > length) length = l, longest = h;
         }
-        if (longest >= 0 && split(longest)) {
-          const int v = (int)m_.out.size() - 1;
-          m_.star(v, [&](int e) { around.push_back(m_.to(e)); });
-        }
-        for (int v : m_.tris[t]) around.push_back(v);
+        if (longest >= 0 && split(longest)) around.push_back((int)m_.out.size() - 1);
       }
-      for (int h = 0; h < (int)m_.opp.size(); ++h)
-        if (!m_.dead(h / 3) && h < m_.opp[h] && !m_.hard[h] && worst_flipped(h) < 0.9 * worst_now(h) &&
-            may_flip(h))
-          do_flip(h);
-      for (int v : around) improve(v);
+      flip_to_shape();
+      for (int repeat = 0; repeat < 3; ++repeat)
+        for (int v : around) improve(v);
     }
   }
 
@@ -617,7 +628,8 @@ class Relaxer {
   std::vector<Vec3> ref_normal_;  ///< at the reference's vertices, not of unit length
   std::vector<Vec3> facing_;      ///< the reference's normal at each vertex's place; zero on model edges
   enum : char { free_ = 0, slides = 1, fixed = 2 };
-  std::vector<char> held_;  ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<char> held_;     ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_,
       changed_;  ///< when a vertex was last tried to move, and when its star last changed
   int clock_ = 0;
