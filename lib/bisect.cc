@@ -7,6 +7,8 @@
 #include <tuple>
 
 #include "lib/cut.h"
+#include "lib/error.h"
+#include "lib/multiscale.h"
 #include "lib/sparse.h"
 #include "lib/topology.h"
 
@@ -163,6 +165,34 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
     return true;
   }
   return false;
+}
+
+int cut_along_limbs(Surface& surface, int part, int n_parts) {
+  // a surface of which only this part has a label, and a limit just below its aspect ratio; the labels of all
+  // go through the cut in a column of their own
+  Surface work = surface;
+  std::vector<int> only = work.face.get<int>("part");
+  work.face.set("whole", only);
+  for (int& label : only) label = label == part ? 0 : -1;
+  MultiscaleOptions options;
+  options.max_aspect = 0.9 * topology_of(split_by_label(work, only, 1)[0]).eta_geo;
+  work.face.set("part", std::move(only));
+  int pieces = 0;
+  try {
+    pieces = multiscale_cut(work, options);
+  } catch (const GoalMissed&) {
+    return n_parts;
+  }
+  constexpr int most = 4;  // a ragged part keeps its aspect ratio through many cuts
+  if (pieces > most) return n_parts;
+  std::vector<int> label = work.face.get<int>("whole");
+  const auto& piece = work.face.get<int>("part");
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (piece[t] > 0) label[t] = n_parts + piece[t] - 1;
+  work.face.set("part", std::move(label));
+  work.face.erase("whole");
+  surface = std::move(work);
+  return n_parts + pieces - 1;
 }
 
 }  // namespace meshpipe

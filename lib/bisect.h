@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cutting a part of genus 0 in two by a short line, whatever its shape.
+// Cutting a part of genus 0 in two: by a short line, whatever its shape, or along its limbs.
 #pragma once
 #include <array>
 #include <vector>
@@ -16,5 +16,11 @@ namespace meshpipe {
 /// connected sides but for rounding. The triangles above the level get the label `new_part`; neighbours are
 /// split conformingly. Returns false, and changes nothing, if no line will do.
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
+
+/// Cuts `part` by the multiscale partitioner (lib/multiscale.h) although its aspect ratio is admissible:
+/// along its limbs, so that none shrinks to nothing in a chart. Parts above the first get the labels n_parts,
+/// n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the partitioner cannot
+/// cut it.
+int cut_along_limbs(Surface& surface, int part, int n_parts);
 
 }  // namespace meshpipe

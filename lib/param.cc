@@ -372,8 +372,9 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 8;
-  constexpr double too_anisotropic = 4, too_uneven = 1e8;
+  constexpr int most_rounds = 8,
+                uneven_rounds = 3;  // unevenness is no failure: three cuts deep, then it stays
+  constexpr double too_anisotropic = 4, too_uneven = 1e6;
   std::vector<Chart> charts;
   std::vector<char> waiting;
   reports.clear();
@@ -412,15 +413,18 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool
         } catch (const GoalMissed&) {
           missed = true;
         }
-      bool poor = (reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic) ||
-                  reports[p].area_scale > too_uneven;
-      if (!missed && !poor) continue;
-      if (!strict && round < most_rounds && bisect_part(surface, p, n_parts, reports[p].apart)) {
-        waiting[p] = 1;
-        ++n_parts;
-      } else if (missed) {
-        std::rethrow_exception(failure[p]);
+      bool uneven = !missed && round < uneven_rounds && reports[p].area_scale > too_uneven;
+      bool poor = !missed && reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic;
+      if (!missed && !poor && !uneven) continue;
+      int n = n_parts;
+      if (!strict && round < most_rounds) {
+        if (uneven) n_parts = cut_along_limbs(surface, p, n_parts);
+        if (n_parts == n && bisect_part(surface, p, n_parts, reports[p].apart)) ++n_parts;
       }
+      if (n_parts > n)
+        waiting[p] = 1;
+      else if (missed)
+        std::rethrow_exception(failure[p]);
     }
     if (n_parts == n_before) break;
   }

@@ -44,14 +44,14 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
 std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, ParamReport& report);
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part is cut in
-/// two by a short line (lib/bisect.h) between the places that should not be in one chart, and its halves are
-/// mapped in its place,
-///  - if it has no valid map;
-///  - if the conformal map is not valid and the convex one in its place has sigma1/sigma2 above 4 in more
-///  than one
-///    triangle of a hundred: limbs of a tree that cross in the plane are the usual reason, a circle map of
-///    them has a median of 5 to 10, and the cut is one more of the lines that mrelax frees;
-///  - if the area scale varies by more than 1e8 (p99 / p1), as it does along a narrow tube inside the part.
+/// two and its halves are mapped in its place,
+///  - by a short line between the places that should not be in one chart, if it has no valid map;
+///  - by such a line, if the conformal map is not valid and the convex one in its place has sigma1/sigma2
+///  above 4 in
+///    more than one triangle of a hundred: limbs of a tree that cross in the plane are the usual reason, a
+///    circle map of them has a median of 5 to 10, and the cut is one more of the lines that mrelax frees;
+///  - along its limbs, if the area scale varies by more than 1e6 (p99 / p1), as it does along a narrow tube
+///  (lib/bisect.h).
 /// Such cuts append vertices and rewrite face column `part`; with `strict` there are none.
 /// reports has one entry a part.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
