@@ -183,6 +183,8 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   } catch (const GoalMissed&) {
     return n_parts;
   }
+  constexpr int most = 4;  // a ragged part keeps its aspect ratio through many cuts
+  if (pieces > most) return n_parts;
   std::vector<int> label = work.face.get<int>("whole");
   const auto& piece = work.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)

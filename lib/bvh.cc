@@ -114,6 +114,7 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
     items[t] = {{s.x, s.y, s.z}, t};
   }
   nodes_.resize(tree_size(n));
+  parent_.assign(nodes_.size(), 0);
 #pragma omp parallel if (n > 2 * task_size)
 #pragma omp single
   build(items.data(), 0, n, 0, 1);
@@ -147,6 +148,7 @@ void Bvh::build(Item* items, int first, int count, int node, int children) {
                    [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
   b.first = children;
   b.count = 0;
+  parent_[children] = parent_[children + 1] = node;
   // the two children stand side by side, then come the left one's descendants, then the right one's
   const int left = children + 2, right = left + tree_size(half) - 1;
   if (count > task_size) {
@@ -161,23 +163,20 @@ void Bvh::build(Item* items, int first, int count, int node, int children) {
   b.box = join(nodes_[children].box, nodes_[children + 1].box);
 }
 
-Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+void Bvh::search(int start, const Vec3& p, double& best, Hit& hit) const {
   struct Entry {
     double distance;
     int node;
   } stack[64];
-  // a bound that is the very distance must not be cut off by rounding
-  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
-  Place place;
   int n = 0;
-  stack[n++] = {squared_distance(p, nodes_[0].box), 0};
+  stack[n++] = {squared_distance(p, nodes_[start].box), start};
   while (n) {
     const Entry e = stack[--n];
     if (e.distance > best) continue;
     const Node& b = nodes_[e.node];
     if (b.count == 0) {
-      const Node &l = nodes_[b.first], &r = nodes_[b.first + 1];
-      const double dl = squared_distance(p, l.box), dr = squared_distance(p, r.box);
+      const double dl = squared_distance(p, nodes_[b.first].box),
+                   dr = squared_distance(p, nodes_[b.first + 1].box);
       const bool left_first = dl <= dr;
       const Entry far{left_first ? dr : dl, b.first + left_first};
       const Entry near{left_first ? dl : dr, b.first + !left_first};
@@ -191,14 +190,35 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
       const auto w = closest_on_triangle(p, x, y, z);
       const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
       const double dd = dot(d, d);
-      if (dd < best || (place.face < 0 && dd <= best)) {
+      if (dd < best || (hit.place.face < 0 && dd <= best)) {
         best = dd;
-        place = {order_[i], w[0], w[1], w[2]};
+        hit.place = {order_[i], w[0], w[1], w[2]};
+        hit.leaf = e.node;
       }
     }
   }
-  if (place.face < 0) return nearest(p);  // the bound was too small after all
-  return {std::sqrt(best), place};
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+  // a bound that is the very distance must not be cut off by rounding
+  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
+  Hit hit;
+  search(0, p, best, hit);
+  if (hit.place.face < 0) return nearest(p);  // the bound was too small after all
+  hit.distance = std::sqrt(best);
+  return hit;
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, const Hit& close_by) const {
+  double best = std::numeric_limits<double>::max();
+  Hit hit;
+  search(close_by.leaf, p, best, hit);
+  for (int node = hit.leaf; node > 0; node = parent_[node]) {
+    const int sibling = node % 2 ? node + 1 : node - 1;
+    if (squared_distance(p, nodes_[sibling].box) < best) search(sibling, p, best, hit);
+  }
+  hit.distance = std::sqrt(best);
+  return hit;
 }
 
 }  // namespace meshpipe

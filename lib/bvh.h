@@ -39,9 +39,12 @@ class Bvh {
   struct Hit {
     double distance = 0;
     Place place;
+    int leaf = 0;  ///< where in the tree
   };
   /// Nearest point of the mesh; `bound` is an upper bound on the distance that is already known.
   Hit nearest(Vec3 p, double bound = 1e300) const;
+  /// The same for a point close to one that was asked before: climbs from that one's leaf.
+  Hit nearest(Vec3 p, const Hit& close_by) const;
   /// Calls visit(t) for every triangle that may overlap the box: those of every leaf that does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;
@@ -55,8 +58,10 @@ class Bvh {
   };
   struct Item;
   void build(Item* items, int first, int count, int node, int children);
+  void search(int node, const Vec3& p, double& best, Hit& hit) const;
   const Mesh& mesh_;
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;  ///< the root is 0; siblings are an odd number and the next one
+  std::vector<int> parent_;
   std::vector<int> order_;
 };
 

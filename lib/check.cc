@@ -159,33 +159,23 @@ struct OneSided {
   }
 };
 
-/// Nearest distances of points that come close to each other one by one: the last triangle bounds the next
-/// search.
+/// Nearest distances of points that come close to each other one by one: each search starts where the last
+/// ended.
 class Seeker {
  public:
-  Seeker(const Mesh& mesh, const Bvh& tree) : mesh_(mesh), tree_(tree) {}
+  explicit Seeker(const Bvh& tree) : tree_(tree) {}
   double operator()(Vec3 p) {
-    double bound = 1e300;
-    if (last_ >= 0) {
-      const Tri& v = mesh_.tris[last_];
-      const Vec3 &a = mesh_.points[v[0]], &b = mesh_.points[v[1]], &c = mesh_.points[v[2]];
-      const auto w = closest_on_triangle(p, a, b, c);
-      bound = norm(w[0] * a + w[1] * b + w[2] * c - p);
-    }
-    const Bvh::Hit hit = tree_.nearest(p, bound);
-    last_ = hit.place.face;
-    return hit.distance;
+    last_ = last_.place.face < 0 ? tree_.nearest(p) : tree_.nearest(p, last_);
+    return last_.distance;
   }
 
  private:
-  const Mesh& mesh_;
   const Bvh& tree_;
-  int last_ = -1;
+  Bvh::Hit last_;
 };
 
 /// Distances of all vertices, taken in the order of the triangles that use them first.
-std::vector<double> vertex_distances(const Mesh& from, const Bvh& from_tree, const Mesh& to,
-                                     const Bvh& to_tree) {
+std::vector<double> vertex_distances(const Mesh& from, const Bvh& from_tree, const Bvh& to_tree) {
   std::vector<int> vertices;
   std::vector<char> seen(from.points.size(), 0);
   for (int t : from_tree.order())
@@ -198,22 +188,21 @@ std::vector<double> vertex_distances(const Mesh& from, const Bvh& from_tree, con
   const int n = (int)vertices.size();
 #pragma omp parallel for schedule(dynamic)
   for (int first = 0; first < n; first += chunk) {
-    Seeker distance(to, to_tree);
+    Seeker distance(to_tree);
     for (int i = first; i < std::min(n, first + chunk); ++i)
       distances[vertices[i]] = distance(from.points[vertices[i]]);
   }
   return distances;
 }
 
-OneSided distance_from(const Mesh& from, const Bvh& from_tree, const Mesh& to, const Bvh& to_tree,
-                       int samples) {
+OneSided distance_from(const Mesh& from, const Bvh& from_tree, const Bvh& to_tree, int samples) {
   const int n = (int)from.tris.size(), chunks = (n + chunk - 1) / chunk;
   const double total = total_area(from);
-  const std::vector<double> at_vertex = vertex_distances(from, from_tree, to, to_tree);
+  const std::vector<double> at_vertex = vertex_distances(from, from_tree, to_tree);
   std::vector<OneSided> part(chunks);
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < chunks; ++k) {
-    Seeker distance(to, to_tree);
+    Seeker distance(to_tree);
     for (int i = k * chunk; i < std::min(n, (k + 1) * chunk); ++i) {
       const Tri& t = from.tris[from_tree.order()[i]];
       const Vec3 &a = from.points[t[0]], &b = from.points[t[1]], &c = from.points[t[2]];
@@ -262,7 +251,7 @@ double border_distance(const Mesh& reference, const Mesh& mesh) {
   double worst = 0;
   for (auto [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
     const Bvh tree(*to);
-    Seeker distance(*to, tree);
+    Seeker distance(tree);
     for (const Tri& t : from->tris)
       for (int i = 0; i < 8; ++i)
         worst = std::max(worst, distance(lerp(from->points[t[0]], from->points[t[1]], i / 8.0)));
@@ -278,8 +267,8 @@ Distance distance_between(const Mesh& reference, const Mesh& mesh, int samples) 
 
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                           const Bvh& mesh_tree, int samples) {
-  const OneSided there = distance_from(mesh, mesh_tree, reference, reference_tree, samples);
-  const OneSided back = distance_from(reference, reference_tree, mesh, mesh_tree, samples);
+  const OneSided there = distance_from(mesh, mesh_tree, reference_tree, samples);
+  const OneSided back = distance_from(reference, reference_tree, mesh_tree, samples);
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   auto mean = [](const OneSided& o) { return o.weight > 0 ? o.sum / o.weight : o.largest; };
   auto rms = [](const OneSided& o) { return o.weight > 0 ? std::sqrt(o.squares / o.weight) : o.largest; };

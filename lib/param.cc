@@ -372,7 +372,8 @@ std::vector<Vec2> map_part(const SubMesh& part, MapKind kind, bool strict, Param
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool strict,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 8,
+                uneven_rounds = 3;  // unevenness is no failure: three cuts deep, then it stays
   constexpr double too_anisotropic = 4, too_uneven = 1e6;
   std::vector<Chart> charts;
   std::vector<char> waiting;
@@ -412,7 +413,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, MapKind kind, bool
         } catch (const GoalMissed&) {
           missed = true;
         }
-      bool uneven = !missed && reports[p].area_scale > too_uneven;
+      bool uneven = !missed && round < uneven_rounds && reports[p].area_scale > too_uneven;
       bool poor = !missed && reports[p].used != kind && reports[p].anisotropy_p99 > too_anisotropic;
       if (!missed && !poor && !uneven) continue;
       int n = n_parts;

@@ -43,6 +43,7 @@ TEST(bvh, nearest_is_that_of_all_triangles) {
   for (const Mesh& m : {torus(0.4, 1500), sphere(20), branching_tree(2, 0, 0.8, 1500, 1)}) {
     const Bvh bvh(m);
     Random random(1);
+    Bvh::Hit last = bvh.nearest({9, 9, 9});
     for (int k = 0; k < 200; ++k) {
       const Vec3 p = 3.0 * random.in_ball();
       double best = 1e300;
@@ -50,6 +51,8 @@ TEST(bvh, nearest_is_that_of_all_triangles) {
       const auto hit = bvh.nearest(p);
       EXPECT_DOUBLE_EQ(hit.distance, best);
       EXPECT_DOUBLE_EQ(distance_to(m, hit.place.face, p), best);
+      last = bvh.nearest(p, last);
+      EXPECT_EQ(last.distance, hit.distance);
       // with the exact bound, a loose one, and one that is wrong
       EXPECT_DOUBLE_EQ(bvh.nearest(p, best).distance, best);
       EXPECT_DOUBLE_EQ(bvh.nearest(p, 2 * best).distance, best);
