@@ -36,7 +36,7 @@ const std::vector<Reader>& readers() {
 const std::vector<Writer>& writers() {
   static const std::vector<Writer> all = {
       {".mply", write_stream}, {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj},
-      {".off", write_off},     {".msh", write_msh}, {".vtu", write_vtu},
+      {".off", write_off},     {".msh", write_msh2}, {".msh2", write_msh2}, {".msh4", write_msh4}, {".vtu", write_vtu},
   };
   return all;
 }

@@ -27,6 +27,13 @@ class Text {
   bool next_line();
   /// The next word of the line; empty at its end.
   std::string_view word();
+  /// The next word, on whatever line it is; empty at the end of the text.
+  std::string_view next_word();
+  /// The next word, on whatever line it is, as a number or an int.
+  double next_number(const char* what);
+  int next_integer(const char* what);
+  /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
+  void skip(std::size_t n);
   /// The next word again.
   std::string_view peek() const;
   /// What is left of the line, without blanks at either end.
