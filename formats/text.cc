@@ -62,6 +62,8 @@ std::string_view Text::rest() {
   return r;
 }
 
+bool Text::line_ends() const { return without_leading_blanks(left_).empty(); }
+
 double Text::number(const char* what) {
   left_ = without_leading_blanks(left_);
   const char* const end = left_.data() + left_.size();
@@ -136,8 +138,9 @@ int Text::count(const char* what, std::size_t least) {
 
 void Text::need_line(const char* what, int i, int n) {
   if (next_line()) return;
-  const std::string which = i < 0 ? "" : " " + std::to_string(i) + " of " + std::to_string(n);
-  fail("the file ends where " + (what + which) + " is due");
+  std::string which = what;
+  if (i >= 0) which += ' ' + std::to_string(i) + " of " + std::to_string(n);
+  fail("the file ends where " + which + " is due");
 }
 
 void Text::fail_at(std::size_t line, const std::string& what) const {
