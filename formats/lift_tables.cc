@@ -91,6 +91,7 @@ Surface read_reference(const Stream& stream) {
     s.tris.push_back({a[t], b[t], c[t]});
   }
   s.vertex.rows = vertex.rows;
+  if (vertex.has("size")) s.vertex.set("size", vertex.get<double>("size"));
   for (const char* name : {"patch", "part", "origin"}) s.face.set(name, face.get<int>(name));
   s.face.set("model", face.get<std::uint8_t>("model"));
   return s;
@@ -107,6 +108,7 @@ void write_reference(Stream& stream, const Surface& reference) {
   vertex.set("x", std::move(xyz[0]));
   vertex.set("y", std::move(xyz[1]));
   vertex.set("z", std::move(xyz[2]));
+  if (reference.vertex.has("size")) vertex.set("size", reference.vertex.get<double>("size"));
   stream.set(std::move(vertex));
 
   const std::size_t n = reference.tris.size();

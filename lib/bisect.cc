@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "lib/cut.h"
+#include "lib/error.h"
+#include "lib/multiscale.h"
 #include "lib/sparse.h"
 #include "lib/topology.h"
 
@@ -20,14 +23,14 @@ std::vector<double> lumped_area(const Mesh& mesh) {
   return mass;
 }
 
-/// The second eigenvector of the Laplacian with free borders, by inverse iteration on L + s M. Both sides of
-/// its zero level are connected (Fiedler 1975; the weights are positive).
-std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& mass) {
+/// L + s M with free borders, s M far below the first eigenvalue of L that is not zero, (pi / length)^2, and
+/// enough to make the matrix definite. Positive weights: its fields have no extremes but where they are
+/// driven.
+Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass) {
   int n = (int)mesh.points.size();
   std::vector<double> diagonal(n);
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
-  // well below the eigenvalue sought (pi / length)^2, and enough to make the matrix definite
-  for (int v = 0; v < n; ++v) diagonal[v] = 0.1 * mass[v] / area;
+  for (int v = 0; v < n; ++v) diagonal[v] = 0.01 * mass[v] / area;
   std::vector<Entry<double>> matrix;
   for (const Tri& t : mesh.tris) {
     auto w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
@@ -39,8 +42,14 @@ std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& 
     }
   }
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
-  Factorisation<double> factorisation(n, matrix);
+  return Factorisation<double>(n, matrix);
+}
 
+/// By inverse iteration. Both sides of its zero level are connected (Fiedler 1975).
+std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& mass,
+                                   const Factorisation<double>& laplacian) {
+  int n = (int)mesh.points.size();
+  double area = std::accumulate(mass.begin(), mass.end(), 0.0);
   // from the distance to a far vertex; the constant vector is taken out each time
   int far = 0;
   for (int v = 0; v < n; ++v)
@@ -55,7 +64,7 @@ std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& 
     double size = std::sqrt(square);
     if (!(size > 0)) break;
     for (int v = 0; v < n; ++v) x[v] *= mass[v] / size;
-    factorisation.solve(x);
+    laplacian.solve(x);
   }
   return x;
 }
@@ -96,30 +105,56 @@ bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
 
 }  // namespace
 
-bool bisect_part(Surface& surface, int part, int new_part) {
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart) {
   const auto& label = surface.face.get<int>("part");
   std::vector<int> only(label.size());
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
-  std::vector<double> mass = lumped_area(mesh), field = fiedler_vector(mesh, mass);
-
-  // levels by the share of the area below them, the shortest first
-  std::vector<int> order(field.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return field[a] < field[b]; });
-  double area = std::accumulate(mass.begin(), mass.end(), 0.0), below = 0;
-  std::vector<std::pair<double, double>> levels;  // length, level
-  double share = 0.3;
-  for (int v : order) {
-    below += mass[v];
-    for (; share < 0.71 && below >= share * area; share += 0.05)
-      levels.push_back({level_length(mesh, field, field[v]), field[v]});
+  std::vector<double> mass = lumped_area(mesh);
+  Factorisation<double> laplacian = free_laplacian(mesh, mass);
+  std::vector<std::vector<double>> fields;
+  for (auto [source, sink] : apart) {
+    auto& field = fields.emplace_back(mesh.points.size(), 0);
+    field[source] = 1;
+    field[sink] = -1;
+    laplacian.solve(field);
   }
-  std::sort(levels.begin(), levels.end());
-  for (auto [length, level] : levels) {
-    if (!halves_well(mesh, field, level)) continue;
+  if (fields.empty()) fields.push_back(fiedler_vector(mesh, mass, laplacian));
+
+  struct Line {
+    double cost;
+    std::size_t field;
+    double level;
+    bool operator<(const Line& l) const {
+      return std::tie(cost, field, level) < std::tie(l.cost, l.field, l.level);
+    }
+  };
+  std::vector<Line> lines;
+  double area = std::accumulate(mass.begin(), mass.end(), 0.0);
+  std::vector<int> order(mesh.points.size());
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    // levels by the share of the area below them
+    const auto& field = fields[f];
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(),
+              [&](int a, int b) { return std::tie(field[a], a) < std::tie(field[b], b); });
+    constexpr int shares = 50;
+    double below = 0;
+    int next_share = 1;
+    for (int v : order) {
+      below += mass[v];
+      for (; next_share < shares && below >= next_share * area / shares; ++next_share) {
+        double smaller = area * std::min(next_share, shares - next_share) / shares;
+        lines.push_back({level_length(mesh, field, field[v]) / std::sqrt(smaller), f, field[v]});
+      }
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  for (const Line& line : lines) {
+    const auto& field = fields[line.field];
+    if (!halves_well(mesh, field, line.level)) continue;
     std::vector<double> whole(surface.points.size(), 1);
-    for (std::size_t v = 0; v < field.size(); ++v) whole[mesh.vertex[v]] = field[v] - level;
+    for (std::size_t v = 0; v < field.size(); ++v) whole[mesh.vertex[v]] = field[v] - line.level;
     std::vector<char> active(only.size());
     for (std::size_t t = 0; t < only.size(); ++t) active[t] = only[t] == 0;
     std::vector<int> side;
@@ -130,6 +165,34 @@ bool bisect_part(Surface& surface, int part, int new_part) {
     return true;
   }
   return false;
+}
+
+int cut_along_limbs(Surface& surface, int part, int n_parts) {
+  // a surface of which only this part has a label, and a limit just below its aspect ratio; the labels of all
+  // go through the cut in a column of their own
+  Surface work = surface;
+  std::vector<int> only = work.face.get<int>("part");
+  work.face.set("whole", only);
+  for (int& label : only) label = label == part ? 0 : -1;
+  MultiscaleOptions options;
+  options.max_aspect = 0.9 * topology_of(split_by_label(work, only, 1)[0]).eta_geo;
+  work.face.set("part", std::move(only));
+  int pieces = 0;
+  try {
+    pieces = multiscale_cut(work, options);
+  } catch (const GoalMissed&) {
+    return n_parts;
+  }
+  constexpr int most = 4;  // a ragged part keeps its aspect ratio through many cuts
+  if (pieces > most) return n_parts;
+  std::vector<int> label = work.face.get<int>("whole");
+  const auto& piece = work.face.get<int>("part");
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (piece[t] > 0) label[t] = n_parts + piece[t] - 1;
+  work.face.set("part", std::move(label));
+  work.face.erase("whole");
+  surface = std::move(work);
+  return n_parts + pieces - 1;
 }
 
 }  // namespace meshpipe

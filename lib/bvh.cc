@@ -12,17 +12,13 @@ constexpr int leaf_size = 4;
 constexpr int task_size = 4096;  // smaller subtrees are not worth a task
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double squared_distance(Vec3 p, const Box& box) {
-  const auto& [lo, hi] = box;
-  const double x = std::max({lo.x - p.x, 0.0, p.x - hi.x});
-  const double y = std::max({lo.y - p.y, 0.0, p.y - hi.y});
-  const double z = std::max({lo.z - p.z, 0.0, p.z - hi.z});
-  return x * x + y * y + z * z;
-}
+inline double outside(double p, double lo, double hi) { return std::max(std::max(lo - p, p - hi), 0.0); }
 
-Box join(const Box& a, const Box& b) {
-  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
-          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
+inline double squared_distance(const Vec3& p, const Box& box) {
+  const double x = outside(p.x, box.lo.x, box.hi.x);
+  const double y = outside(p.y, box.lo.y, box.hi.y);
+  const double z = outside(p.z, box.lo.z, box.hi.z);
+  return x * x + y * y + z * z;
 }
 
 /// Nodes of a tree over `count` items: every split halves, so the shape is known beforehand.
@@ -103,13 +99,6 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return {va / area, vb / area, vc / area};
 }
 
-Box box_of(const Mesh& mesh, int t) {
-  const Tri& v = mesh.tris[t];
-  const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]];
-  return {{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
-          {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}};
-}
-
 struct Bvh::Item {
   std::array<double, 3> centre;
   int tri;
@@ -125,6 +114,7 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
     items[t] = {{s.x, s.y, s.z}, t};
   }
   nodes_.resize(tree_size(n));
+  parent_.assign(nodes_.size(), 0);
 #pragma omp parallel if (n > 2 * task_size)
 #pragma omp single
   build(items.data(), 0, n, 0, 1);
@@ -158,6 +148,7 @@ void Bvh::build(Item* items, int first, int count, int node, int children) {
                    [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
   b.first = children;
   b.count = 0;
+  parent_[children] = parent_[children + 1] = node;
   // the two children stand side by side, then come the left one's descendants, then the right one's
   const int left = children + 2, right = left + tree_size(half) - 1;
   if (count > task_size) {
@@ -172,23 +163,20 @@ void Bvh::build(Item* items, int first, int count, int node, int children) {
   b.box = join(nodes_[children].box, nodes_[children + 1].box);
 }
 
-Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+void Bvh::search(int start, const Vec3& p, double& best, Hit& hit) const {
   struct Entry {
     double distance;
     int node;
   } stack[64];
-  // a bound that is the very distance must not be cut off by rounding
-  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
-  Place place;
   int n = 0;
-  stack[n++] = {squared_distance(p, nodes_[0].box), 0};
+  stack[n++] = {squared_distance(p, nodes_[start].box), start};
   while (n) {
     const Entry e = stack[--n];
     if (e.distance > best) continue;
     const Node& b = nodes_[e.node];
     if (b.count == 0) {
-      const Node &l = nodes_[b.first], &r = nodes_[b.first + 1];
-      const double dl = squared_distance(p, l.box), dr = squared_distance(p, r.box);
+      const double dl = squared_distance(p, nodes_[b.first].box),
+                   dr = squared_distance(p, nodes_[b.first + 1].box);
       const bool left_first = dl <= dr;
       const Entry far{left_first ? dr : dl, b.first + left_first};
       const Entry near{left_first ? dl : dr, b.first + !left_first};
@@ -202,14 +190,35 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
       const auto w = closest_on_triangle(p, x, y, z);
       const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
       const double dd = dot(d, d);
-      if (dd < best || (place.face < 0 && dd <= best)) {
+      if (dd < best || (hit.place.face < 0 && dd <= best)) {
         best = dd;
-        place = {order_[i], w[0], w[1], w[2]};
+        hit.place = {order_[i], w[0], w[1], w[2]};
+        hit.leaf = e.node;
       }
     }
   }
-  if (place.face < 0) return nearest(p);  // the bound was too small after all
-  return {std::sqrt(best), place};
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+  // a bound that is the very distance must not be cut off by rounding
+  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
+  Hit hit;
+  search(0, p, best, hit);
+  if (hit.place.face < 0) return nearest(p);  // the bound was too small after all
+  hit.distance = std::sqrt(best);
+  return hit;
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, const Hit& close_by) const {
+  double best = std::numeric_limits<double>::max();
+  Hit hit;
+  search(close_by.leaf, p, best, hit);
+  for (int node = hit.leaf; node > 0; node = parent_[node]) {
+    const int sibling = node % 2 ? node + 1 : node - 1;
+    if (squared_distance(p, nodes_[sibling].box) < best) search(sibling, p, best, hit);
+  }
+  hit.distance = std::sqrt(best);
+  return hit;
 }
 
 }  // namespace meshpipe

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A bounding-volume hierarchy over the triangles of a mesh: nearest point, and the triangles in a box.
 #pragma once
+#include <algorithm>
+
 #include "lib/chart.h"
 #include "lib/mesh.h"
 
@@ -14,10 +16,18 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
 struct Box {
   Vec3 lo, hi;
 };
-Box box_of(const Mesh& mesh, int t);
+inline Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+inline Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+inline Box join(const Box& a, const Box& b) { return {lower(a.lo, b.lo), upper(a.hi, b.hi)}; }
+inline Box box_of(const Mesh& mesh, int t) {
+  const Vec3 &a = mesh.points[mesh.tris[t][0]], &b = mesh.points[mesh.tris[t][1]],
+             &c = mesh.points[mesh.tris[t][2]];
+  return {lower(lower(a, b), c), upper(upper(a, b), c)};
+}
+/// Without branches, as they could not be predicted.
 inline bool overlap(const Box& a, const Box& b) {
-  return a.lo.x <= b.hi.x && a.hi.x >= b.lo.x && a.lo.y <= b.hi.y && a.hi.y >= b.lo.y && a.lo.z <= b.hi.z &&
-         a.hi.z >= b.lo.z;
+  return (a.lo.x <= b.hi.x) & (a.hi.x >= b.lo.x) & (a.lo.y <= b.hi.y) & (a.hi.y >= b.lo.y) &
+         (a.lo.z <= b.hi.z) & (a.hi.z >= b.lo.z);
 }
 
 /// Built by median splits in O(n log n), in parallel, the same tree at any number of threads. Queries do not
@@ -29,9 +39,12 @@ class Bvh {
   struct Hit {
     double distance = 0;
     Place place;
+    int leaf = 0;  ///< where in the tree
   };
   /// Nearest point of the mesh; `bound` is an upper bound on the distance that is already known.
   Hit nearest(Vec3 p, double bound = 1e300) const;
+  /// The same for a point close to one that was asked before: climbs from that one's leaf.
+  Hit nearest(Vec3 p, const Hit& close_by) const;
   /// Calls visit(t) for every triangle that may overlap the box: those of every leaf that does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;
@@ -45,8 +58,10 @@ class Bvh {
   };
   struct Item;
   void build(Item* items, int first, int count, int node, int children);
+  void search(int node, const Vec3& p, double& best, Hit& hit) const;
   const Mesh& mesh_;
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;  ///< the root is 0; siblings are an odd number and the next one
+  std::vector<int> parent_;
   std::vector<int> order_;
 };
 

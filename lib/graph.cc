@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,8 @@ std::vector<int> partition_graph(const Graph& graph, int k, double imbalance, in
   options[METIS_OPTION_SEED] = seed;  // always given: without it METIS draws on whatever state rand() is in
   options[METIS_OPTION_NITER] = 20;
   options[METIS_OPTION_UFACTOR] = std::max<idx_t>(1, (idx_t)std::lround(1000 * imbalance));
+  static std::mutex one_at_a_time;  // METIS draws from rand()
+  std::lock_guard lock(one_at_a_time);
   int status = METIS_PartGraphRecursive(&vertices, &constraints, start.data(), adjacency.data(),
                                         vertex_weight.data(), nullptr, edge_weight.data(), &parts, nullptr,
                                         nullptr, options, &cut, result.data());

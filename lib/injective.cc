@@ -65,10 +65,13 @@ int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv) {
   return (int)std::count_if(tris.begin(), tris.end(), [&](const Tri& t) { return inverted(t, uv); });
 }
 
-bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
-                      const std::vector<Vec2>& uv) {
+namespace {
+
+/// The border edges in the order of its loops, and the number of loops that turn counter-clockwise.
+std::vector<Segment> border(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                            const std::vector<Vec2>& uv, int& counter_clockwise) {
   std::vector<Segment> segments;
-  int counter_clockwise = 0;
+  counter_clockwise = 0;
   for (const auto& loop : boundary_loops(opposite)) {
     std::vector<Vec2> polygon;
     for (int h : loop) {
@@ -78,7 +81,29 @@ bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& oppo
     }
     counter_clockwise += turn(polygon) > 0;
   }
+  return segments;
+}
+
+}  // namespace
+
+bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                      const std::vector<Vec2>& uv) {
+  int counter_clockwise;
+  std::vector<Segment> segments = border(tris, opposite, uv, counter_clockwise);
   return counter_clockwise == 1 && SegmentTree(segments).crossings().empty();
+}
+
+std::vector<std::array<int, 2>> border_crossings(const std::vector<Tri>& tris,
+                                                 const std::vector<int>& opposite,
+                                                 const std::vector<Vec2>& uv) {
+  int counter_clockwise;
+  std::vector<Segment> segments = border(tris, opposite, uv, counter_clockwise);
+  std::vector<std::array<int, 2>> pairs = SegmentTree(segments).crossings();
+  for (auto& [s, t] : pairs) {
+    s = segments[s].from;
+    t = segments[t].from;
+  }
+  return pairs;
 }
 
 int repair_stars(const std::vector<Tri>& tris, const std::vector<int>& opposite, int sweeps,

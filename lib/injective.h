@@ -18,6 +18,11 @@ int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv);
 bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
                       const std::vector<Vec2>& uv);
 
+/// Origins of the pairs of border edges that meet elsewhere than at a common end.
+std::vector<std::array<int, 2>> border_crossings(const std::vector<Tri>& tris,
+                                                 const std::vector<int>& opposite,
+                                                 const std::vector<Vec2>& uv);
+
 /// Part I's local cavity check: moves inner vertices of inverted triangles into the kernel of their star, in
 /// at most `sweeps` sweeps, each only where that leaves the star without an inverted triangle. Returns the
 /// number of inverted triangles that remain. Border vertices do not move.

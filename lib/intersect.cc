@@ -139,17 +139,22 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh) {
   const int n = (int)mesh.tris.size();
-  constexpr int chunk = 4096;
-  const int chunks = (n + chunk - 1) / chunk;
+  // a few triangles that are neighbours in the tree look for partners together
+  constexpr int group = 4, chunk = 1024;
+  const int chunks = (n + group * chunk - 1) / (group * chunk);
   std::vector<std::vector<std::pair<int, int>>> found(chunks);
 #pragma omp parallel for schedule(dynamic)
   for (int c = 0; c < chunks; ++c)
-    for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
-      const int s = bvh.order()[i];
-      const Box box = box_of(mesh, s);
-      bvh.overlapping(box, [&](int t) {
-        if (s < t && overlap(box, box_of(mesh, t)) && triangles_intersect(mesh, s, t))
-          found[c].push_back({s, t});
+    for (int first = c * group * chunk; first < std::min(n, (c + 1) * group * chunk); first += group) {
+      const int size = std::min(group, n - first);
+      const int* members = &bvh.order()[first];
+      Box boxes[group], all = box_of(mesh, members[0]);
+      for (int i = 0; i < size; ++i) all = join(all, boxes[i] = box_of(mesh, members[i]));
+      bvh.overlapping(all, [&](int t) {
+        const Box box = box_of(mesh, t);
+        for (int i = 0; i < size; ++i)
+          if (members[i] < t && overlap(boxes[i], box) && triangles_intersect(mesh, members[i], t))
+            found[c].push_back({members[i], t});
       });
     }
   std::vector<std::pair<int, int>> all;

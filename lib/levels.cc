@@ -19,6 +19,9 @@ constexpr double least_weight = 1e-3;
 // a level resolves about four diameters of a tube (a factor e^-2 in length each); two more make a margin for
 // the natural condition where the system is cut off
 constexpr double depth_in_diameters = 6;
+// triangles this much smaller in area against the surface than at the border are withdrawn too, however
+// coarse the mesh: a factor e^-4 for each diameter of a tube, so four of them
+constexpr double least_stretch = 1e-7;
 constexpr std::size_t least_domain = 2000;
 constexpr std::size_t max_levels = 100000;
 
@@ -26,9 +29,10 @@ constexpr std::size_t max_levels = 100000;
 struct Pending {
   int parent = -1;
   Vec2 centre;
-  std::vector<int> seeds;   // triangles that touch what is resolved
-  std::vector<int> vertex;  // vertices with known values
-  std::vector<Vec2> uv;     // the values, in the new frame
+  std::vector<int> seeds;     // triangles that touch what is resolved
+  std::vector<int> loop;      // half-edges of its border, in order
+  std::vector<Vec2> border;   // their origins in the parent's disk
+  std::vector<double> angle;  // and on the own circle
 };
 
 class LevelSolver {
@@ -41,7 +45,7 @@ class LevelSolver {
         place_(disk.tris.size(), -1),
         visited_(disk.tris.size(), -1),
         known_(disk.points.size(), 0),
-        local_(disk.points.size(), -1),
+        passed_(3 * disk.tris.size(), 0),
         barycentre_(disk.tris.size()) {
     for (std::size_t t = 0; t < disk.tris.size(); t++) {
       const Tri& c = disk.tris[t];
@@ -62,19 +66,18 @@ class LevelSolver {
  private:
   Pending root() {
     Pending set;
-    double length = 0, total = 0;
-    const std::size_t n = disk_.rim.size();
-    auto step = [&](std::size_t i) {
-      return norm(disk_.points[disk_.rim[(i + 1) % n]] - disk_.points[disk_.rim[i]]);
-    };
-    for (std::size_t i = 0; i < n; i++) total += step(i);
-    for (std::size_t i = 0; i < n; i++) {
-      double a = 2 * pi * length / total;
-      set.vertex.push_back(disk_.rim[i]);
-      set.uv.push_back({std::cos(a), std::sin(a)});
-      known_[disk_.rim[i]] = 1;
-      length += step(i);
+    for (std::size_t h = 0; h < disk_.opposite.size(); h++)
+      if (disk_.opposite[h] < 0) {
+        set.loop = border_loop(h);
+        break;
+      }
+    const double total = border_length(set);
+    double at = 0;
+    for (int h : set.loop) {
+      set.angle.push_back(2 * pi * at / total);
+      at += length(h);
     }
+    for (int v : disk_.rim) known_[v] = 1;
     for (std::size_t t = 0; t < disk_.tris.size(); t++)
       if (touches_known(t)) set.seeds.push_back(t);
     return set;
@@ -86,13 +89,25 @@ class LevelSolver {
   }
   bool unresolved(int t) const { return t >= 0 && owner_[t] < 0; }
 
-  /// Length in space of the set's border; ragged as it is.
+  bool on_border(int h) const { return disk_.opposite[h] < 0 || owner_[disk_.opposite[h] / 3] >= 0; }
+
+  /// The border of the unresolved set to the left of h, from h on.
+  std::vector<int> border_loop(int h) const {
+    std::vector<int> loop;
+    int e = h;
+    do {
+      loop.push_back(e);
+      for (e = next(e); !on_border(e);) e = next(disk_.opposite[e]);
+    } while (e != h);
+    return loop;
+  }
+
+  double length(int h) const {
+    return norm(disk_.points[target(disk_.tris, h)] - disk_.points[origin(disk_.tris, h)]);
+  }
   double border_length(const Pending& set) const {
     double sum = 0;
-    for (int t : set.seeds)
-      for (int h = 3 * t; h < 3 * t + 3; h++)
-        if (disk_.opposite[h] < 0 || owner_[disk_.opposite[h] / 3] >= 0)
-          sum += norm(disk_.points[target(disk_.tris, h)] - disk_.points[origin(disk_.tris, h)]);
+    for (int h : set.loop) sum += length(h);
     return sum;
   }
 
@@ -133,20 +148,24 @@ class LevelSolver {
 
   void solve(const Pending& set) {
     const int self = levels_.size();
-    const double area_limit = min_area_ * pi / 4 * (set.parent < 0 ? 4 : 1);
+    const double area_limit = min_area_ * pi, scale = 2 * pi / border_length(set);
+    const double stretch_limit = least_stretch * scale * scale;
     double depth = depth_in_diameters * border_length(set) / pi;
     bool truncated;
     for (;; depth *= 2) {
       truncated = gather(set, depth);
       map(set);
-      small_.assign(domain_.size(), 0);
-      for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = image(i) < area_limit;
+      find_small(area_limit, stretch_limit);
       keep_fans_whole();
       if (!truncated || !good_at_the_end()) break;
     }
     keep_what_touches_the_border();
     std::vector<int> set_of;
     int n_sets = find_sets(set_of, truncated);
+    while (withdraw_holes(set_of, n_sets)) {
+      keep_what_touches_the_border();
+      n_sets = find_sets(set_of, truncated);
+    }
     if (std::count(small_.begin(), small_.end(), 0) == 0) {
       // nothing left to resolve in this frame that another would resolve better: take the level as it is
       gather(set, 1e300);
@@ -158,33 +177,45 @@ class LevelSolver {
     levels_.push_back(level_of(set, self));
     for (int s = 0; s < n_sets; s++) withdraw(s, set_of, self);
     for (int t : domain_) place_[t] = -1;
-    for (int v : vertex_) local_[v] = -1;
     domain_.clear();
+  }
+
+  /// Numbers the corners of the domain: a vertex where its triangles form several fans, a pinch of the
+  /// border, is one for each.
+  void number_corners() {
     vertex_.clear();
+    corners_.assign(domain_.size(), {-1, -1, -1});
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      for (int k = 0; k < 3; k++) {
+        if (corners_[i][k] >= 0) continue;
+        const int first = 3 * domain_[i] + k, number = vertex_.size();
+        vertex_.push_back(disk_.tris[domain_[i]][k]);
+        // half-edges from this vertex: counter-clockwise to the end of the fan or round, then clockwise
+        int h = first;
+        do {
+          corners_[place_[h / 3]][h % 3] = number;
+          h = disk_.opposite[prev(h)];
+        } while (h >= 0 && place_[h / 3] >= 0 && h != first);
+        if (h == first) continue;
+        for (h = disk_.opposite[first]; h >= 0 && place_[h / 3] >= 0; h = disk_.opposite[h]) {
+          h = next(h);
+          corners_[place_[h / 3]][h % 3] = number;
+        }
+      }
   }
 
   void map(const Pending& set) {
-    for (int v : vertex_) local_[v] = -1;
-    vertex_.clear();
-    corners_.resize(domain_.size());
+    number_corners();
     std::vector<double> weights(3 * domain_.size());
     for (std::size_t i = 0; i < domain_.size(); i++)
-      for (int k = 0; k < 3; k++) {
-        int v = disk_.tris[domain_[i]][k];
-        if (local_[v] < 0) {
-          local_[v] = vertex_.size();
-          vertex_.push_back(v);
-        }
-        corners_[i][k] = local_[v];
-        weights[3 * i + k] = disk_.weights[3 * domain_[i] + k];
-      }
+      std::copy_n(disk_.weights.begin() + 3 * domain_[i], 3, weights.begin() + 3 * i);
     fixed_.assign(vertex_.size(), 0);
     uv_.assign(vertex_.size(), {});
-    for (std::size_t i = 0; i < set.vertex.size(); i++)
-      if (int l = local_[set.vertex[i]]; l >= 0) {
-        fixed_[l] = 1;
-        uv_[l] = set.uv[i];
-      }
+    for (std::size_t i = 0; i < set.loop.size(); i++) {
+      const int h = set.loop[i], l = corners_[place_[h / 3]][h % 3];
+      fixed_[l] = 1;
+      uv_[l] = {std::cos(set.angle[i]), std::sin(set.angle[i])};
+    }
     solve_dirichlet(corners_, weights, fixed_, {}, uv_);
   }
 
@@ -193,6 +224,38 @@ class LevelSolver {
   double image(int i) const {
     Vec2 a = uv_[corners_[i][0]], b = uv_[corners_[i][1]], c = uv_[corners_[i][2]];
     return std::sqrt(3.) / 4 * std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+
+  /// The same of triangle t itself.
+  double size(int t) const {
+    const Vec3 a = disk_.points[disk_.tris[t][0]], b = disk_.points[disk_.tris[t][1]],
+               c = disk_.points[disk_.tris[t][2]];
+    return std::sqrt(3.) / 4 * std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+
+  /// Marks what is too small, by a logarithm averaged over some rings of triangles: the border of what is
+  /// withdrawn should not be ragged.
+  void find_small(double area_limit, double stretch_limit) {
+    std::vector<double> depth(domain_.size()), sum(vertex_.size());
+    std::vector<int> count(vertex_.size());
+    for (std::size_t i = 0; i < domain_.size(); i++)
+      depth[i] =
+          std::log(std::max(area_limit, stretch_limit * size(domain_[i])) / std::max(image(i), 1e-300));
+    for (int round = 0; round < 4; round++) {
+      std::fill(sum.begin(), sum.end(), 0);
+      std::fill(count.begin(), count.end(), 0);
+      for (std::size_t i = 0; i < domain_.size(); i++)
+        for (int l : corners_[i]) {
+          sum[l] += depth[i];
+          count[l]++;
+        }
+      for (std::size_t i = 0; i < domain_.size(); i++) {
+        depth[i] = 0;
+        for (int l : corners_[i]) depth[i] += sum[l] / count[l] / 3;
+      }
+    }
+    small_.resize(domain_.size());
+    for (std::size_t i = 0; i < domain_.size(); i++) small_[i] = depth[i] > 0;
   }
 
   /// A hole is resolved by one level as a whole: where one triangle of its fan is good, all are.
@@ -308,15 +371,49 @@ class LevelSolver {
     return n;
   }
 
+  /// Where most of a set's surface is: a point that everything deep inside collapses to.
+  Vec2 centre_of(const std::vector<int>& set_of, int s) const {
+    Vec2 sum;
+    double total = 0;
+    for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (set_of[i] != s) continue;
+      const Tri& c = disk_.tris[domain_[i]];
+      const double area = norm(area_vector(disk_.points[c[0]], disk_.points[c[1]], disk_.points[c[2]]));
+      total += area;
+      sum = sum + area * image_centre(i);
+    }
+    return (1 / total) * sum;
+  }
+
+  /// A hole close to a set is hard to pass through on the way to it: makes the neighbourhood of such holes
+  /// small, so that both come apart in a level of their own. Returns whether there were any.
+  bool withdraw_holes(const std::vector<int>& set_of, int n_sets) {
+    std::vector<Vec2> centres(n_sets);
+    for (int s = 0; s < n_sets; s++) centres[s] = centre_of(set_of, s);
+    bool any = false;
+    for (std::size_t f = 0; f + 1 < disk_.fan_begin.size(); f++) {
+      const int begin = disk_.fan_begin[f], end = disk_.fan_begin[f + 1];
+      if (place_[begin] < 0 || small_[place_[begin]]) continue;  // whole, or not at all
+      const Vec2 centre = uv_[corners_[place_[begin]][2]];
+      double r = 0;
+      for (int t = begin; t < end; t++) r = std::max(r, norm(uv_[corners_[place_[t]][0]] - centre));
+      if (r > 0.2) continue;
+      if (std::none_of(centres.begin(), centres.end(), [&](Vec2 c) { return norm(c - centre) < 2 * r; }))
+        continue;
+      for (std::size_t i = 0; i < domain_.size(); i++)
+        if (norm(image_centre(i) - centre) < 2 * r) small_[i] = 1;
+      for (int t = begin; t < end; t++) small_[place_[t]] = 1;
+      any = true;
+    }
+    return any;
+  }
+
   Level level_of(const Pending& set, int self) {
     Level level;
     level.parent = set.parent;
     level.centre = set.centre;
-    if (set.parent >= 0)
-      for (int t : set.seeds)
-        for (int k = 0; k < 3; k++)
-          if (int o = disk_.opposite[3 * t + k]; o < 0 || owner_[o / 3] >= 0)
-            level.border.push_back({uv_[corners_[place_[t]][k]], uv_[corners_[place_[t]][(k + 1) % 3]]});
+    level.border = set.border;
+    level.angle = set.angle;
     std::vector<int> to(vertex_.size(), -1);
     for (std::size_t i = 0; i < domain_.size(); i++) {
       if (small_[i]) continue;
@@ -342,36 +439,63 @@ class LevelSolver {
   void withdraw(int s, const std::vector<int>& set_of, int parent) {
     Pending child;
     child.parent = parent;
-    // where most of the set's surface is: a point that everything deep inside collapses to
-    double total = 0;
+    double longest = 0;
+    int deepest = -1;
+    std::vector<int> loop;
     for (std::size_t i = 0; i < domain_.size(); i++) {
       if (set_of[i] != s) continue;
-      int t = domain_[i];
-      const Tri& c = disk_.tris[t];
-      double area = norm(area_vector(disk_.points[c[0]], disk_.points[c[1]], disk_.points[c[2]]));
-      total += area;
-      child.centre =
-          child.centre + (area / 3) * (uv_[corners_[i][0]] + uv_[corners_[i][1]] + uv_[corners_[i][2]]);
-      if (!touches_known(t)) continue;
-      child.seeds.push_back(t);
-      for (int v : c)
-        if (known_[v] == 1) {
-          known_[v] = 2;
-          child.vertex.push_back(v);
+      const int t = domain_[i];
+      if (deepest < 0 || distance_[i] > distance_[deepest]) deepest = i;
+      if (touches_known(t)) child.seeds.push_back(t);
+      for (int h = 3 * t; h < 3 * t + 3; h++)
+        if (on_border(h) && !passed_[h]) {
+          loop = border_loop(h);
+          double sum = 0;
+          for (int e : loop) {
+            sum += length(e);
+            passed_[e] = 1;
+          }
+          if (sum > longest) {
+            longest = sum;
+            child.loop = loop;
+          }
         }
     }
-    child.centre = (1 / total) * child.centre;
-    Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
-    for (int v : child.vertex) {
-      known_[v] = 1;
-      Vec2 p = uv_[local_[v]];
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      child.uv.push_back(p);
-    }
-    double size = norm(high - low);
-    for (Vec2& p : child.uv) p = (size > 0 ? 1 / size : 1) * (p - child.centre);
+    for (int t : child.seeds) passed_[3 * t] = passed_[3 * t + 1] = passed_[3 * t + 2] = 0;
+    for (int h : child.loop) child.border.push_back(uv_[corners_[place_[h / 3]][h % 3]]);
+    child.centre = centre_of(set_of, s);
+    if (!encloses(child.border, child.centre)) child.centre = image_centre(deepest);
+    child.angle = angles_around(child);
     queue_.push_back(std::move(child));
+  }
+
+  /// The border's vertices on the own circle: in the direction in which the parent's disk shows them from the
+  /// centre, so that lines go straight on; where the border is ragged and turns back, half way between the
+  /// largest angle before and the smallest one after.
+  std::vector<double> angles_around(const Pending& set) const {
+    const std::size_t n = set.loop.size();
+    std::vector<double> angle(3 * n + 1), arc(n + 1, 0);
+    angle[0] = 0;
+    for (std::size_t i = 0; i < 3 * n; i++) {
+      const Vec2 a = set.border[i % n] - set.centre, b = set.border[(i + 1) % n] - set.centre;
+      angle[i + 1] = angle[i] + std::atan2(cross(a, b), dot(a, b));
+    }
+    for (std::size_t i = 0; i < n; i++) arc[i + 1] = arc[i] + length(set.loop[i]);
+    const bool winds_once = std::abs(angle[n] - 2 * pi) < 1;
+    std::vector<double> before = angle, after = angle;
+    for (std::size_t i = 1; i < angle.size(); i++) before[i] = std::max(before[i], before[i - 1]);
+    for (std::size_t i = angle.size() - 1; i-- > 0;) after[i] = std::min(after[i], after[i + 1]);
+    // with a share of the length, so that no two coincide
+    const double share = winds_once ? 0.1 : 1;
+    std::vector<double> out(n);
+    for (std::size_t i = 0; i < n; i++)
+      out[i] = (1 - share) * (before[n + i] + after[n + i] - before[n] - after[n]) / 2 +
+               share * 2 * pi * arc[i] / arc[n];
+    return out;
+  }
+
+  Vec2 image_centre(int i) const {
+    return (1. / 3) * (uv_[corners_[i][0]] + uv_[corners_[i][1]] + uv_[corners_[i][2]]);
   }
 
   const FilledDisk& disk_;
@@ -380,8 +504,8 @@ class LevelSolver {
   std::vector<int> owner_;  // level that resolves the triangle, or -1
   std::vector<int> place_;  // in the domain of the level at work, or -1
   std::vector<int> visited_;
-  std::vector<char> known_;  // vertex of a resolved triangle or on the rim (2: listed already)
-  std::vector<int> local_;   // number in the level at work, or -1
+  std::vector<char> known_;   // vertex of a resolved triangle or on the rim
+  std::vector<char> passed_;  // half-edges of the borders of sets
   std::vector<Vec3> barycentre_;
   std::vector<Pending> queue_;
   std::vector<Level> levels_;
@@ -394,6 +518,15 @@ class LevelSolver {
 };
 
 }  // namespace
+
+bool encloses(const std::vector<Vec2>& polygon, Vec2 p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    Vec2 a = polygon[j], b = polygon[i];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) * (b.x - a.x) / (b.y - a.y)) inside = !inside;
+  }
+  return inside;
+}
 
 FilledDisk fill_holes(const Mesh& part) {
   FilledDisk disk;

@@ -19,6 +19,9 @@ struct FilledDisk : Mesh {
   std::vector<int> fan_begin;  ///< first triangle of each hole's fan, and the end
 };
 
+/// Is the point inside the polygon (even-odd)?
+bool encloses(const std::vector<Vec2>& polygon, Vec2 p);
+
 /// Precondition: one component, genus 0, N_B >= 1, no pinched vertex.
 FilledDisk fill_holes(const Mesh& part);
 
@@ -27,14 +30,15 @@ FilledDisk fill_holes(const Mesh& part);
 /// underflow.
 struct Level {
   int parent = -1;
-  Vec2 centre;  ///< of this set, in the parent's frame
+  Vec2 centre;  ///< a point of this set, in the parent's disk
   std::vector<int> children;
   std::vector<int> tris;     ///< triangles of the disk, by number
   std::vector<Tri> corners;  ///< their corners as places in `vertex`
   std::vector<int> vertex;   ///< vertices of the disk, by number
   std::vector<Vec2> uv;
-  std::vector<int> holes;                   ///< places in `vertex` of the virtual centres resolved here
-  std::vector<std::array<Vec2, 2>> border;  ///< of the set, in its own frame; empty for the root
+  std::vector<int> holes;     ///< places in `vertex` of the virtual centres resolved here
+  std::vector<Vec2> border;   ///< of the set in the parent's disk, counter-clockwise; empty for the root
+  std::vector<double> angle;  ///< of the border's vertices on the own circle, rising by less than 2 pi
 };
 
 /// Level 0 maps the rim to the unit circle. Triangles whose image is smaller than `min_area` times the

@@ -132,7 +132,10 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
         double apart = std::abs(length[found[j].index] - length[found[k].index]);
         if (c.closed) apart = std::min(apart, total - apart);
         if (apart > 0.5 * size[v[found[k].index]]) break;
-        sharpest = found[j].turn < 1.1 * found[k].turn;
+        // much closer than h even corners that are equally sharp cannot both be kept
+        sharpest = apart > 0.15 * size[v[found[k].index]]
+                       ? found[j].turn < 1.1 * found[k].turn
+                       : found[j].turn < found[k].turn || (found[j].turn == found[k].turn && j > k);
       }
     }
     if (sharpest) corner[v[found[k].index]] = 1;

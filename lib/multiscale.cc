@@ -117,48 +117,95 @@ bool better(const Assessment& a, const Assessment& b) {
   return cost(a) < cost(b);
 }
 
-/// A few damped Jacobi steps for the Laplacian in a band around the zero level take the corners out of it.
-std::vector<double> smoothed(const Part& part, std::vector<double> field, int steps) {
+/// May the vertex change sides without changing the topology of either? It may if its neighbours of one side
+/// follow each other around it, and those of the other too.
+bool is_simple(const Part& part, const std::vector<double>& field, int corner) {
   const std::vector<Tri>& tris = part.mesh.tris;
-  constexpr int rings = 4;
-  std::vector<char> band(field.size(), 0);
-  std::vector<int> active;
-  for (int ring = 1; ring <= rings; ring++) {
+  const auto positive = [&](int v) { return field[v] > 0; };
+  int changes = 0, h = corner;
+  do {  // counter-clockwise over the triangles of the vertex; h leaves it
+    changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
+    h = part.opposite[prev(h)];
+  } while (h >= 0 && h != corner);
+  if (h == corner) return changes == 2;
+  for (h = part.opposite[corner]; h >= 0; h = part.opposite[h]) {
+    h = next(h);
+    changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
+  }
+  return changes == 1;
+}
+
+/// Shortens the zero level where it is bent: rounds of six damped Jacobi steps for the Laplacian, each
+/// starting from the distance to the level, cut off at two edge lengths so that the other side of a strip is
+/// not felt. No vertex changes sides where that would change the topology.
+void straighten(const Part& part, std::vector<double>& field, int rounds) {
+  const std::vector<Tri>& tris = part.mesh.tris;
+  const std::vector<Vec3>& p = part.mesh.points;
+  const std::size_t n = field.size();
+  std::vector<int> corner(n);
+  std::vector<double> length(n, 0), sum(n), weight(n), slope(n);
+  for (std::size_t h = 0; h < part.opposite.size(); h++) {
+    const int v = origin(tris, h);
+    corner[v] = h;
+    length[v] += norm(p[target(tris, h)] - p[v]);
+    weight[v]++;
+  }
+  for (std::size_t v = 0; v < n; v++) length[v] /= weight[v];
+  std::vector<char> ring(n);
+  std::vector<int> active, members;
+  auto mixed = [&](const Tri& c) {
+    return (field[c[0]] > 0) != (field[c[1]] > 0) || (field[c[1]] > 0) != (field[c[2]] > 0);
+  };
+  for (int round = 0; round < rounds; round++) {
+    // the level's triangles give distances, two rings around them move
+    std::fill(ring.begin(), ring.end(), 0);
     active.clear();
-    for (std::size_t t = 0; t < tris.size(); t++) {
-      const Tri& c = tris[t];
-      bool in = ring == 1 ? (field[c[0]] > 0) != (field[c[1]] > 0) || (field[c[1]] > 0) != (field[c[2]] > 0)
-                          : band[c[0]] || band[c[1]] || band[c[2]];
-      if (in) active.push_back(t);
-    }
-    for (int t : active)
-      for (int v : tris[t]) band[v] = 1;
-  }
-  // vertices that are only on the band's outer edge hold their values
-  std::fill(band.begin(), band.end(), 0);
-  for (int t : active)
-    for (int v : tris[t]) band[v] = 1;
-  std::vector<int> members;
-  for (std::size_t v = 0; v < field.size(); v++)
-    if (band[v]) members.push_back(v);
-  std::vector<double> sum(field.size()), weight(field.size());
-  for (int step = 0; step < steps; step++) {
-    for (int v : members) sum[v] = weight[v] = 0;
-    for (int t : active)
-      for (int k = 0; k < 3; k++) {
-        int a = tris[t][k], b = tris[t][(k + 1) % 3];
-        double w = part.disk.weights[3 * t + k];
-        sum[a] += w * field[b];
-        sum[b] += w * field[a];
-        weight[a] += w;
-        weight[b] += w;
+    members.clear();
+    for (std::size_t t = 0; t < tris.size(); t++)
+      if (const Tri& c = tris[t]; mixed(c)) {
+        const double twice = norm(area_vector(p[c[0]], p[c[1]], p[c[2]]));
+        const double rise = norm(field[c[0]] * (p[c[2]] - p[c[1]]) + field[c[1]] * (p[c[0]] - p[c[2]]) +
+                                 field[c[2]] * (p[c[1]] - p[c[0]]));
+        for (int v : c) {
+          if (!ring[v]) sum[v] = weight[v] = 0;
+          ring[v] = 1;
+          sum[v] += rise;
+          weight[v] += twice;
+        }
       }
-    for (int v : members) {
-      double f = 0.5 * field[v] + 0.5 * sum[v] / weight[v];
-      if (f != 0) field[v] = f;
+    for (std::size_t v = 0; v < n; v++) {
+      double d = 2 * length[v];
+      if (ring[v] && sum[v] > 0) d = std::min(d, std::abs(field[v]) * weight[v] / sum[v]);
+      field[v] = std::copysign(std::max(d, 1e-6 * length[v]), field[v]);
+    }
+    for (std::size_t t = 0; t < tris.size(); t++)
+      if (ring[tris[t][0]] || ring[tris[t][1]] || ring[tris[t][2]]) active.push_back(t);
+    for (int t : active)
+      for (int v : tris[t])
+        if (ring[v] < 2) {
+          ring[v] = 2;
+          members.push_back(v);
+        }
+    for (int step = 0; step < 6; step++) {
+      for (int v : members) sum[v] = weight[v] = 0;
+      for (int t : active)
+        for (int k = 0; k < 3; k++) {
+          const int a = tris[t][k], b = tris[t][(k + 1) % 3];
+          const double w = part.disk.weights[3 * t + k];
+          sum[a] += w * field[b];
+          sum[b] += w * field[a];
+          weight[a] += w;
+          weight[b] += w;
+        }
+      for (int v : members) {
+        const double f = 0.5 * field[v] + 0.5 * sum[v] / weight[v];
+        if (f != 0 && ((f > 0) == (field[v] > 0) || is_simple(part, field, corner[v])))
+          field[v] = f;
+        else
+          field[v] *= 0.5;
+      }
     }
   }
-  return field;
 }
 
 /// The last resort: across the part, half way from its rim to its farthest vertex. It always shortens the
@@ -193,7 +240,7 @@ std::vector<double> across(const Part& part) {
   return distance;
 }
 
-/// The best field over all directions, smoothed as far as its topology allows.
+/// The best field over all directions, straightened.
 std::vector<double> best_field(const Part& part, const MultiscaleOptions& options, int& n_levels) {
   const std::vector<Level> levels = laplace_levels(part.disk, options.min_area, options.min_set);
   n_levels = levels.size();
@@ -213,12 +260,7 @@ std::vector<double> best_field(const Part& part, const MultiscaleOptions& option
     drop_fragments(part, best);
     best_is = assess(part, best);
   }
-  for (int steps : {24, 6, 2}) {
-    std::vector<double> smooth = smoothed(part, best, steps);
-    drop_fragments(part, smooth);
-    Assessment is = assess(part, smooth);
-    if (is.valid && is.loops <= best_is.loops && is.smaller_share >= best_is.smaller_share / 2) return smooth;
-  }
+  straighten(part, best, 12);
   return best;
 }
 

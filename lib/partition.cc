@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -26,12 +27,14 @@ struct Component {
   Region whole;
 };
 
-/// How a labelling compares: fewer parts first, then the cheaper cut.
+/// How a labelling compares: fewer parts first, long ones counted twice, then the cheaper cut.
 struct Labelling {
   std::vector<int> label;
-  int parts = 0;
+  int burden = 0, parts = 0;
   std::int64_t cost = 0;
-  bool operator<(const Labelling& o) const { return std::tie(parts, cost) < std::tie(o.parts, o.cost); }
+  bool operator<(const Labelling& o) const {
+    return std::tie(burden, parts, cost) < std::tie(o.burden, o.parts, o.cost);
+  }
 };
 
 /// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
@@ -86,25 +89,20 @@ Graph dual_graph(const Component& c, const std::vector<int>& triangles, const st
   return g;
 }
 
-int relabel_by_component(const Component& c, std::vector<int>& label) {
-  std::vector<int> component;
-  int n = components(opposite_within(c.mesh.tris, c.opposite, label), component);
-  label.swap(component);
-  return n;
-}
-
 /// Borders between labels: (a, b, weight), a < b, each pair once, sorted.
 struct Shared {
   int a, b;
   std::int64_t weight;
 };
-std::vector<Shared> shared_borders(const Component& c, const std::vector<int>& label) {
+std::vector<Shared> shared_borders(const Component& c, const std::vector<int>& label,
+                                   const Regions& regions) {
   std::vector<Shared> s;
-  for (int h = 0; h < (int)c.opposite.size(); ++h) {
-    int o = c.opposite[h];
-    if (o > h && label[h / 3] != label[o / 3])
-      s.push_back({std::min(label[h / 3], label[o / 3]), std::max(label[h / 3], label[o / 3]), c.weight[h]});
-  }
+  for (const auto& border : regions.border)
+    for (int h : border)
+      if (int o = c.opposite[h]; o > h) {
+        auto [a, b] = std::minmax(label[h / 3], label[o / 3]);
+        s.push_back({a, b, c.weight[h]});
+      }
   std::sort(s.begin(), s.end(),
             [](const Shared& p, const Shared& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
   std::size_t n = 0;
@@ -117,18 +115,17 @@ std::vector<Shared> shared_borders(const Component& c, const std::vector<int>& l
   return s;
 }
 
-/// Hands connected pieces of fewer triangles or less area than given to the neighbour with the longest shared
-/// border.
-void absorb_fragments(const Component& c, std::vector<int>& label, int min_faces, double min_area) {
-  int n = relabel_by_component(c, label);
-  std::vector<int> faces(n, 0), into(n);
-  std::vector<double> area(n, 0);
+/// Hands pieces of fewer triangles or less area than given to the neighbour with the longest shared border.
+/// Returns true if there was one.
+bool absorb_fragments(const Component& c, std::vector<int>& label, const Regions& regions, int min_faces,
+                      double min_area) {
+  std::vector<Region> piece = regions.region;
+  auto small = [&](const Region& r) { return r.faces < min_faces || r.area < min_area; };
+  if (std::none_of(piece.begin(), piece.end(), small)) return false;
+  const int n = (int)piece.size();
+  std::vector<int> into(n);
   std::iota(into.begin(), into.end(), 0);
-  for (std::size_t t = 0; t < label.size(); ++t) ++faces[label[t]], area[label[t]] += c.area[t];
-  bool any = false;
-  for (int l = 0; l < n; ++l) any |= faces[l] < min_faces || area[l] < min_area;
-  if (!any) return;
-  const std::vector<Shared> shared = shared_borders(c, label);
+  const std::vector<Shared> shared = shared_borders(c, label, regions);
   auto root = [&](int l) {
     while (into[l] != l) l = into[l] = into[into[l]];
     return l;
@@ -136,8 +133,7 @@ void absorb_fragments(const Component& c, std::vector<int>& label, int min_faces
   for (;;) {
     int smallest = -1;
     for (int l = 0; l < n; ++l)
-      if (into[l] == l && (faces[l] < min_faces || area[l] < min_area) &&
-          (smallest < 0 || area[l] < area[smallest]))
+      if (into[l] == l && small(piece[l]) && (smallest < 0 || piece[l].area < piece[smallest].area))
         smallest = l;
     if (smallest < 0) break;
     std::vector<std::int64_t> with(n, 0);
@@ -146,56 +142,52 @@ void absorb_fragments(const Component& c, std::vector<int>& label, int min_faces
       if (a != b && (a == smallest || b == smallest)) with[a == smallest ? b : a] += s.weight;
     }
     int best = (int)(std::max_element(with.begin(), with.end()) - with.begin());
-    if (with[best] == 0) break;  // alone
+    if (with[best] == 0) break;  // it is all there is
     into[smallest] = best;
-    faces[best] += faces[smallest];
-    area[best] += area[smallest];
+    piece[best].faces += piece[smallest].faces;
+    piece[best].area += piece[smallest].area;
   }
   for (int& l : label) l = root(l);
+  return true;
 }
 
-/// Where a region lies on the border of itself at a vertex, gives its smaller fan there to the neighbour.
-void open_pinches(const Component& c, std::vector<int>& label) {
-  for (int pass = 0; pass < 8; ++pass) {
-    struct Fan {
-      int label, vertex, size, half_edge;
-    };
+/// Where a region touches itself at a vertex, gives its smaller fan there to the neighbour. Returns true if
+/// there was one.
+bool open_pinches(const Component& c, std::vector<int>& label, const Regions& regions) {
+  struct Fan {
+    int vertex, size, half_edge;
+  };
+  bool changed = false;
+  for (int l = 0; l < (int)regions.region.size(); ++l) {
+    if (!regions.region[l].pinched) continue;
+    auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == l; };
     std::vector<Fan> fans;
-    for (int h = 0; h < (int)c.opposite.size(); ++h) {
-      auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == label[h / 3]; };
-      if (inside(h)) continue;
+    for (int h : regions.border[l]) {
       int size = 1;  // of the fan of triangles around the origin of border half-edge h
       for (int g = prev(h); inside(g); g = prev(c.opposite[g])) ++size;
-      fans.push_back({label[h / 3], origin(c.mesh.tris, h), size, h});
+      fans.push_back({origin(c.mesh.tris, h), size, h});
     }
     std::sort(fans.begin(), fans.end(), [](const Fan& p, const Fan& q) {
-      return std::tie(p.vertex, p.label, p.size, p.half_edge) <
-             std::tie(q.vertex, q.label, q.size, q.half_edge);
+      return std::tie(p.vertex, p.size, p.half_edge) < std::tie(q.vertex, q.size, q.half_edge);
     });
-    bool changed = false;
     for (std::size_t i = 0; i + 1 < fans.size(); ++i) {
       const Fan& f = fans[i];
-      if (f.vertex != fans[i + 1].vertex || f.label != fans[i + 1].label || label[f.half_edge / 3] != f.label)
-        continue;
-      // across the fan's first edge, or its last one where the first is on the border
+      if (f.vertex != fans[i + 1].vertex || label[f.half_edge / 3] != l) continue;
+      // to what lies across the fan's first edge, or its last one where the first is on the border
       int last = prev(f.half_edge);
-      while (c.opposite[last] >= 0 && label[c.opposite[last] / 3] == f.label) last = prev(c.opposite[last]);
-      int o = c.opposite[f.half_edge] >= 0 ? c.opposite[f.half_edge] : c.opposite[last];
-      if (o < 0 || label[o / 3] == f.label) continue;
-      int to = label[o / 3], h = f.half_edge;
-      for (int k = 0; k < f.size; ++k) {
-        label[h / 3] = to;
-        h = c.opposite[prev(h)];
-        if (h < 0) break;
-      }
+      while (inside(last)) last = prev(c.opposite[last]);
+      const int o = c.opposite[f.half_edge] >= 0 ? c.opposite[f.half_edge] : c.opposite[last];
+      if (o < 0 || label[o / 3] == l) continue;
+      for (int k = 0, h = f.half_edge; k < f.size && h >= 0; ++k, h = c.opposite[prev(h)])
+        label[h / 3] = label[o / 3];
       changed = true;
     }
-    if (!changed) return;
   }
+  return changed;
 }
 
-/// Cuts the triangles into k by METIS; into halves by their numbers if it leaves them together.
-void bisect(const Component& c, const std::vector<int>& triangles, std::vector<int>& label, int n_labels,
+/// Halves the triangles by METIS, or by their numbers if it leaves them together.
+void bisect(const Component& c, const std::vector<int>& triangles, std::vector<int>& label, int new_label,
             int seed) {
   std::vector<int> local(c.mesh.tris.size(), -1);
   for (std::size_t i = 0; i < triangles.size(); ++i) local[triangles[i]] = (int)i;
@@ -203,21 +195,24 @@ void bisect(const Component& c, const std::vector<int>& triangles, std::vector<i
   if (std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) == part.end())
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = 2 * i < part.size();
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (part[i]) label[triangles[i]] = n_labels;
+    if (part[i]) label[triangles[i]] = new_label;
 }
 
 /// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
 /// parts of the wrong topology bisected. Returns the parts, or 0 regions if it does not get there.
 Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
-  const double total = std::accumulate(c.area.begin(), c.area.end(), 0.0);
   const int n_faces = (int)c.mesh.tris.size();
-  double min_area = 0.01 * total;
+  double min_area = 0.01 * c.whole.area;
   int min_faces = std::min(20, n_faces / 10);
+  auto regions_of_pieces = [&] {
+    const int n = separate_pieces(c.opposite, label);
+    return find_regions(c.mesh, c.opposite, label, n);
+  };
   for (int round = 0; round < 60; ++round, min_area *= 0.25, min_faces /= 2) {
-    absorb_fragments(c, label, min_faces, min_area);
-    if (round < 20) open_pinches(c, label);
-    int n = relabel_by_component(c, label);
-    Regions r = find_regions(c.mesh, c.opposite, label, n);
+    Regions r = regions_of_pieces();
+    if (absorb_fragments(c, label, r, min_faces, min_area)) r = regions_of_pieces();
+    for (int i = 0; i < 8 && open_pinches(c, label, r); ++i) r = regions_of_pieces();
+    int n = (int)r.region.size();
     std::vector<int> bad(n, -1);
     std::vector<std::vector<int>> triangles;
     for (int l = 0; l < n; ++l)
@@ -230,57 +225,99 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
   return {};
 }
 
-/// Joins neighbours, those with the longest shared border first, while their union maps to the plane.
-void merge(const Component& c, std::vector<int>& label, Regions regions, int max_faces) {
-  std::vector<Shared> shared = shared_borders(c, label);
+/// A part counts twice if it is so long that the multiscale partitioner will have to cut it: eta > 4, where
+/// the border along the triangles' edges is about 15 % longer than it will be.
+int burden(const Region& r) { return r.faces == 0 ? 0 : r.aspect() > 3 ? 2 : 1; }
+
+/// Joins neighbours, those with the longest shared border first, while their union maps to the plane and is a
+/// lesser burden.
+Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
+  std::vector<Shared> shared = shared_borders(c, label, regions);
   Joiner joiner(c.mesh, c.opposite, label, std::move(regions));
+  std::vector<std::pair<int, int>> refused;  // sorted
   for (;;) {
     std::sort(shared.begin(), shared.end(), [](const Shared& p, const Shared& q) {
       return std::tuple(-p.weight, p.a, p.b) < std::tuple(-q.weight, q.a, q.b);
     });
     auto found = std::find_if(shared.begin(), shared.end(), [&](const Shared& s) {
-      Region r = joiner.joined(s.a, s.b);
-      return r.maps_to_the_plane() && (max_faces == 0 || r.faces <= max_faces);
+      auto place = std::lower_bound(refused.begin(), refused.end(), std::pair(s.a, s.b));
+      if (place != refused.end() && *place == std::pair(s.a, s.b)) return false;
+      const Region r = joiner.joined(s.a, s.b);
+      const auto& all = joiner.regions().region;
+      if (r.maps_to_the_plane() && burden(r) < burden(all[s.a]) + burden(all[s.b])) return true;
+      refused.insert(place, {s.a, s.b});
+      return false;
     });
     if (found == shared.end()) break;
-    joiner.join(found->a, found->b);
-    shared = shared_borders(c, label);
+    const int a = found->a, b = found->b;
+    joiner.join(a, b);
+    std::erase_if(refused,
+                  [&](auto& p) { return p.first == a || p.second == a || p.first == b || p.second == b; });
+    shared = shared_borders(c, label, joiner.regions());
   }
+  return joiner.regions();
 }
 
-Labelling finish(const Component& c, std::vector<int> label, int seed, int max_faces) {
+/// Parts only an edge wide somewhere make bad charts: an edge inside a part with both ends on borders costs
+/// twice its length.
+std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, const Regions& regions) {
+  std::vector<char> on_border(c.mesh.points.size(), 0);
+  for (const auto& border : regions.border)
+    for (int h : border) on_border[origin(c.mesh.tris, h)] = 1;
+  std::int64_t cost = 0;
+  for (int h = 0; h < (int)c.opposite.size(); ++h)
+    if (on_border[origin(c.mesh.tris, h)] && on_border[target(c.mesh.tris, h)])
+      if (int o = c.opposite[h]; o > h && label[o / 3] == label[h / 3]) cost += 2 * c.weight[h];
+  return cost;
+}
+
+Labelling finish(const Component& c, std::vector<int> label, int seed) {
   Labelling l;
   Regions r = make_admissible(c, label, seed);
   if (r.region.empty()) return l;
-  merge(c, label, std::move(r), max_faces);
-  l.parts = relabel_by_component(c, label);
-  for (const Shared& s : shared_borders(c, label)) l.cost += s.weight;
+  r = merge(c, label, std::move(r));
+  for (const Region& x : r.region) {
+    l.parts += x.faces > 0;
+    l.burden += burden(x);
+  }
+  for (const Shared& s : shared_borders(c, label, r)) l.cost += s.weight;
+  l.cost += bridge_cost(c, label, r);
+  separate_pieces(c.opposite, label);
   l.label = std::move(label);
   return l;
 }
 
-/// Tries several numbers of parts, balances and seeds, and keeps the labelling with the fewest parts and the
-/// shortest cut.
+/// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
 Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   const int n = (int)c.mesh.tris.size();
   std::vector<int> all(n);
   std::iota(all.begin(), all.end(), 0);
   const Graph graph = dual_graph(c, all, all);
 
-  // METIS takes about 0.4 us a triangle; the budget keeps large surfaces near linear
-  const int trials = std::clamp(1500000 / n, 8, 64);
-  const int most = 2 * c.whole.genus() + 2;
-  std::vector<int> ks;
-  for (int k = 2; k <= most; k += std::max(1, k / 4)) ks.push_back(k);
-  if (c.whole.genus() == 0) ks = {2};
-  const double balances[] = {0.3, 0.1, 0.5};
-  Labelling best;
-  for (int i = 0; i < trials; ++i) {
-    int k = ks[i % ks.size()], seed = options.seed + i;
-    Labelling l = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed, 0);
-    if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+  // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear. Joining neighbours
+  // afterwards makes the number of parts asked for uncritical: about G + 2 does best
+  const int trials = std::clamp(500000 / n, 6, 40), genus = c.whole.genus();
+  std::vector<int> ks{genus + 2};
+  for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
+    ks.push_back(genus + 2 + d);
+    ks.push_back(genus + 2 - d);
   }
-  return best;
+  const double balances[] = {0.3, 0.1, 0.5};
+  std::vector<Labelling> tried(trials);
+  std::exception_ptr failure;  // must not leave the parallel region by itself
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < trials; ++i) try {
+      const int k = ks[i % ks.size()], seed = options.seed + i;
+      tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
+  if (failure) std::rethrow_exception(failure);
+  auto best = tried.begin();
+  for (auto l = tried.begin(); l != tried.end(); ++l)
+    if (l->parts > 0 && (best->parts == 0 || *l < *best)) best = l;
+  return std::move(*best);
 }
 
 Component make_component(const Surface& surface, SubMesh sub) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact signs of the geometric determinants (Shewchuk 1997): a floating-point filter, then expansion arithmetic.
+// Exact signs of the geometric determinants (Shewchuk 1997): a floating-point filter, then expansion
+// arithmetic.
 #pragma once
 #include "lib/vec.h"
 

@@ -14,11 +14,21 @@ void walk_border(const Mesh& mesh, const std::vector<int>& opposite, const std::
   region.border = (int)border.size();
   region.loops = 0;
   region.pinched = false;
+  region.longest_loop = 0;
   for (int i = 0; i < (int)border.size(); ++i) {
     int& o = outgoing[origin(mesh.tris, border[i])];
     region.pinched |= o >= 0;
     o = i;
   }
+  double length = 0;
+  auto add = [&](int h) {
+    length += norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+  };
+  auto close = [&] {
+    ++region.loops;
+    region.longest_loop = std::max(region.longest_loop, length);
+    length = 0;
+  };
   auto next_on_border = [&](int h) {
     int g = next(h);
     while (opposite[g] >= 0 && inside(opposite[g] / 3)) g = next(opposite[g]);
@@ -30,18 +40,21 @@ void walk_border(const Mesh& mesh, const std::vector<int>& opposite, const std::
     std::vector<char> seen(sorted.size(), 0);
     for (std::size_t i = 0; i < sorted.size(); ++i) {
       if (seen[i]) continue;
-      ++region.loops;
       for (std::size_t k = i; !seen[k];) {
         seen[k] = 1;
+        add(sorted[k]);
         k = std::lower_bound(sorted.begin(), sorted.end(), next_on_border(sorted[k])) - sorted.begin();
       }
+      close();
     }
   } else {
     for (int h : border) {
       if (outgoing[origin(mesh.tris, h)] < 0) continue;
-      ++region.loops;
-      for (int g = h; outgoing[origin(mesh.tris, g)] >= 0; g = next_on_border(g))
+      for (int g = h; outgoing[origin(mesh.tris, g)] >= 0; g = next_on_border(g)) {
         outgoing[origin(mesh.tris, g)] = -1;
+        add(g);
+      }
+      close();
     }
   }
   for (int h : border) outgoing[origin(mesh.tris, h)] = -1;
@@ -57,13 +70,16 @@ Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const s
   std::vector<int> of_vertex(mesh.points.size(), -1);
   constexpr int on_border = -2;
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    const Tri& corner = mesh.tris[t];
     ++r.region[label[t]].faces;
+    r.region[label[t]].area +=
+        0.5 * norm(area_vector(mesh.points[corner[0]], mesh.points[corner[1]], mesh.points[corner[2]]));
     for (int i = 0; i < 3; ++i) {
-      int h = 3 * t + i, v = mesh.tris[t][i];
+      int h = 3 * t + i, v = corner[i];
       if (of_vertex[v] != on_border) of_vertex[v] = label[t];
       if (opposite[h] >= 0 && label[opposite[h] / 3] == label[t]) continue;
       r.border[label[t]].push_back(h);
-      of_vertex[v] = of_vertex[mesh.tris[t][(i + 1) % 3]] = on_border;
+      of_vertex[v] = of_vertex[corner[(i + 1) % 3]] = on_border;
     }
   }
   for (int l : of_vertex)
@@ -73,6 +89,28 @@ Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const s
     walk_border(
         mesh, opposite, r.border[l], outgoing, [&](int t) { return label[t] == l; }, r.region[l]);
   return r;
+}
+
+int separate_pieces(const std::vector<int>& opposite, std::vector<int>& label) {
+  std::vector<int> piece(label.size(), -1), stack;
+  int n = 0;
+  for (int seed = 0; seed < (int)label.size(); ++seed) {
+    if (piece[seed] >= 0) continue;
+    piece[seed] = n;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      int t = stack.back();
+      stack.pop_back();
+      for (int h = 3 * t; h < 3 * t + 3; ++h)
+        if (int o = opposite[h] / 3; opposite[h] >= 0 && piece[o] < 0 && label[o] == label[t]) {
+          piece[o] = n;
+          stack.push_back(o);
+        }
+    }
+    ++n;
+  }
+  label.swap(piece);
+  return n;
 }
 
 Joiner::Joiner(const Mesh& mesh, const std::vector<int>& opposite, std::vector<int>& label, Regions regions)
@@ -91,6 +129,7 @@ Region Joiner::joined(int a, int b) {
       (opposite_[h] >= 0 && inside(opposite_[h] / 3) ? shared_ : outer_).push_back(h);
   Region r;
   r.faces = regions_.region[a].faces + regions_.region[b].faces;
+  r.area = regions_.region[a].area + regions_.region[b].area;
   r.inside = regions_.region[a].inside + regions_.region[b].inside;
   // a vertex of the shared border comes inside unless the outer border passes it; each is the origin of one
   // shared half-edge of either region then

@@ -14,9 +14,15 @@ struct Region {
   int inside = 0;        ///< vertices with their whole star in the region
   int loops = 0;         ///< closed walks of border half-edges
   bool pinched = false;  ///< a vertex that lies on the border more than once
+  double area = 0;
+  double longest_loop = 0;
   /// Eq. (2), the border's vertices counted once for each fan: V = inside + border, E = (3 F + border) / 2.
   int genus() const { return (2 - inside - (border - faces) / 2 - loops) / 2; }
   bool maps_to_the_plane() const { return !pinched && loops > 0 && genus() == 0; }
+  /// The paper's estimate of the aspect ratio, eta = pi A / L^2.
+  double aspect() const {
+    return longest_loop > 0 ? 3.14159265358979323846 * area / (longest_loop * longest_loop) : 0;
+  }
 };
 
 /// The regions of a labelled surface: row l of both is label l.
@@ -28,6 +34,10 @@ struct Regions {
 /// Regions of the labels 0..n-1 of an oriented manifold without pinched vertices; linear.
 Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& label,
                      int n);
+
+/// Gives the edge-connected pieces of the labels the numbers 0..n-1, by their first triangles; returns n.
+int separate_pieces(const std::vector<int>& opposite, std::vector<int>& label);
+
 
 /// Joins regions one pair after another; looks only at their borders.
 class Joiner {

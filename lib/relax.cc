@@ -35,17 +35,26 @@ class Relaxer {
     points_.tris.clear();
     points_.points = std::move(mesh.points);
     held_.resize(points_.points.size());
+    finer_.assign(held_.size(), 1);
     tried_.resize(held_.size());
     changed_.resize(held_.size());
     for (std::size_t v = 0; v < held_.size(); ++v) {
       int line = mesh.line[v];
       if (line >= 0 && line_kind[line] != interface_line) held_[v] = slides;
     }
+    ref_normal_.resize(reference.points.size());
+    for (const Tri& t : reference.tris) {
+      const Vec3 n = area_vector(reference.points[t[0]], reference.points[t[1]], reference.points[t[2]]);
+      for (int v : t) ref_normal_[v] = ref_normal_[v] + n;
+    }
+    facing_.resize(held_.size());
+    for (std::size_t v = 0; v < held_.size(); ++v) facing_[v] = facing_at(lifted_.place[v]);
     std::vector<std::uint8_t> ends(held_.size());
     for (int h = 0; h < (int)m_.hard.size(); ++h)
       if (m_.hard[h] && h > m_.opp[h])
         for (int v : {m_.from(h), m_.to(h)}) {
           held_[v] = std::max<char>(held_[v], slides);
+          if (m_.opp[h] >= 0) facing_[v] = {};  // a crease faces two ways
           if (ends[v] < 3) ++ends[v];
         }
     for (std::size_t v = 0; v < held_.size(); ++v)
@@ -61,8 +70,11 @@ class Relaxer {
       smooth(2);
     }
     for (int i = 0; i < options_.sweeps; ++i) {
-      meet_count(target);
-      remove_irregular();
+      // edits unsettle the mesh, so they come first and the last sweeps only settle it
+      if (2 * i < options_.sweeps) {
+        meet_count(target);
+        remove_irregular();
+      }
       flip_to_regular();
       smooth(1);
       flip_to_shape();
@@ -75,21 +87,41 @@ class Relaxer {
 
  private:
   Vec3 at(int v) const { return points_.points[v]; }
-  double size_at(int v) const { return lifted_.size[v]; }
+  double size_at(int v) const { return lifted_.size[v] * finer_[v]; }
   double ratio(int a, int b) const { return 2 * norm(at(b) - at(a)) / (size_at(a) + size_at(b)); }
+  /// Smooth normal of the reference at a place.
+  Vec3 facing_at(const Place& p) const {
+    const Tri& v = reference_.tris[p.face];
+    return normalized(p.b0 * ref_normal_[v[0]] + p.b1 * ref_normal_[v[1]] + p.b2 * ref_normal_[v[2]]);
+  }
+  /// How well a triangle with corners p, q, r agrees with the reference's normals at them: the cosine. A fold
+  /// would be < 0.
+  static double agreement(Vec3 p, Vec3 q, Vec3 r, Vec3 facing) {
+    const Vec3 n = area_vector(p, q, r);
+    const double l = norm(n) * norm(facing);
+    return l > 0 ? dot(n, facing) / l : 1;
+  }
+  double agreement(int a, int b, int c) const {
+    return agreement(at(a), at(b), at(c), facing_[a] + facing_[b] + facing_[c]);
+  }
+  /// An operation may not leave a triangle that agrees less than this, unless one was worse before.
+  static constexpr double least_agreement = 0.5;
+  static bool folds(double before, double after) { return after < std::min(before, least_agreement) - 1e-12; }
+
   Vec3 normal(int t) const {
     const Tri& v = m_.tris[t];
     return normalized(area_vector(at(v[0]), at(v[1]), at(v[2])));
   }
 
-  /// Triangles the size field asks for: the integral of dA / (sqrt(3)/4 h^2).
+  /// Triangles the size field asks for on the reference: the integral of dA / (sqrt(3)/4 h^2).
   double wanted_triangles() const {
+    if (!ref_size_) return (double)m_.live;
     double n = 0;
-    for (std::size_t t = 0; t < m_.tris.size(); ++t) {
-      if (m_.dead((int)t)) continue;
-      const Tri& v = m_.tris[t];
-      double h = (size_at(v[0]) + size_at(v[1]) + size_at(v[2])) / 3;
-      n += 0.5 * norm(area_vector(at(v[0]), at(v[1]), at(v[2]))) / (sqrt3 / 4 * h * h);
+    for (const Tri& t : reference_.tris) {
+      const double h = ((*ref_size_)[t[0]] + (*ref_size_)[t[1]] + (*ref_size_)[t[2]]) / 3;
+      n += 0.5 *
+           norm(area_vector(reference_.points[t[0]], reference_.points[t[1]], reference_.points[t[2]])) /
+           (sqrt3 / 4 * h * h);
     }
     return n;
   }
@@ -113,27 +145,25 @@ class Relaxer {
   bool split(int h) {
     const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
     const Vec3 middle = lerp(at(a), at(b), 0.5);
-    // the walk starts where a wall is least likely to stand in between
-    Place place = walk_.closest(lifted_.place[held_[a] ? b : a], middle);
-    if (held_[a] || held_[b]) {
-      Place other = walk_.closest(lifted_.place[held_[a] ? a : b], middle);
-      if (norm(walk_.point(other) - middle) < norm(walk_.point(place) - middle)) place = other;
-    }
+    const Place place = place_near(middle, {a, b, c, d}, normal(h / 3) + normal(m_.opp[h] / 3));
     const Vec3 p = walk_.point(place);
-    const Vec3 n0 = normal(h / 3), n1 = normal(m_.opp[h] / 3);
     if (norm(p - middle) > 0.5 * norm(at(b) - at(a))) return false;
-    const Vec3 corners[4][3] = {{at(a), p, at(c)}, {p, at(b), at(c)}, {at(b), p, at(d)}, {p, at(a), at(d)}};
-    for (int i = 0; i < 4; ++i) {
-      Vec3 n = normalized(area_vector(corners[i][0], corners[i][1], corners[i][2]));
-      if (dot(n, i < 2 ? n0 : n1) < 0.3 && dot(n, n0 + n1) < 0.5) return false;
-    }
+    const Vec3 facing = facing_at(place);
+    const double before = std::min(agreement(a, b, c), agreement(b, a, d));
+    const int ring[5] = {a, d, b, c, a};
+    for (int i = 0; i < 4; ++i)
+      if (folds(before,
+                agreement(p, at(ring[i]), at(ring[i + 1]), facing + facing_[ring[i]] + facing_[ring[i + 1]])))
+        return false;
     const int low = m_.opp[h] / 3;
     points_.points.push_back(p);
     lifted_.place.push_back(place);
-    lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (size_at(a) + size_at(b)));
+    lifted_.size.push_back(ref_size_ ? interpolate(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
+    finer_.push_back(std::min(finer_[a], finer_[b]));
     lifted_.kind.push_back(0);
     lifted_.line.push_back(-1);
     held_.push_back(free_);
+    facing_.push_back(facing);
     tried_.push_back(0);
     changed_.push_back(0);
     for (int v : {m_.split(h), a, b, c, d}) touch(v);
@@ -143,6 +173,24 @@ class Relaxer {
     lifted_.part.push_back(lifted_.part[low]);
     ++report_.splits;
     return true;
+  }
+
+  /// The place nearest to p that can be walked to from one of the vertices round it. A vertex on a model edge
+  /// has two sides, of which the one that faces along `facing` is meant; so a vertex that is free is asked
+  /// first.
+  Place place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const {
+    for (int v : round)
+      if (held_[v] == free_) return walk_.closest(lifted_.place[v], p);
+    Place best = lifted_.place[*round.begin()];
+    double least = 1e300;
+    for (int v : round)
+      for (const Place& start : {lifted_.place[v], walk_.across(lifted_.place[v])}) {
+        const Place q = walk_.closest(start, p);
+        const Vec3 d = walk_.point(q) - p;
+        const double score = dot(d, d) * (dot(walk_.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
+        if (score < least) least = score, best = q;
+      }
+    return best;
   }
 
   double interpolate(const Place& p) const {
@@ -175,26 +223,29 @@ class Relaxer {
       place = walk_.closest(lifted_.place[b], lerp(at(a), at(b), 0.5));
       p = walk_.point(place);
     }
-    double now = 0, after = 0;
+    const Vec3 facing = held_[b] ? facing_[b] : facing_at(place);
+    double now = 0, after = 0, agreed = 1, agrees = 1;
     bool ok = true;
     auto around = [&](int v) {
       m_.star(v, [&](int e) {
         const Vec3 x = at(v), y = at(m_.to(e)), z = at(m_.apex(e));
         now = std::max(now, shape_energy(x, y, z));
+        agreed = std::min(agreed, agreement(v, m_.to(e), m_.apex(e)));
         if (e / 3 == h / 3 || e / 3 == m_.opp[h] / 3) return;
         after = std::max(after, shape_energy(p, y, z));
-        if (dot(normalized(area_vector(p, y, z)), normalized(area_vector(x, y, z))) < 0.6) ok = false;
+        agrees = std::min(agrees, agreement(p, y, z, facing + facing_[m_.to(e)] + facing_[m_.apex(e)]));
         if (norm(y - p) > longest * 0.5 * (size_at(m_.to(e)) + size_at(b)) && norm(y - p) > norm(y - x))
           ok = false;
       });
     };
     around(a);
     around(b);
-    if (!ok || (after > worst && after > now)) return false;
+    if (!ok || (after > worst && after > now) || folds(agreed, agrees)) return false;
     if (held_[c] && held_[d] && held_[b]) return false;
     m_.collapse(h);
     points_.points[b] = p;
     lifted_.place[b] = place;
+    facing_[b] = facing;
     touch(b);
     m_.star(b, [&](int e) { touch(m_.to(e)), touch(m_.apex(e)); });
     ++report_.collapses;
@@ -247,6 +298,9 @@ class Relaxer {
     const Vec3 m0 = normalized(area_vector(at(a), at(d), at(c))),
                m1 = normalized(area_vector(at(b), at(c), at(d)));
     if (dot(m0, n0 + n1) <= 0 || dot(m1, n0 + n1) <= 0) return false;
+    if (folds(std::min(agreement(a, b, c), agreement(b, a, d)),
+              std::min(agreement(a, d, c), agreement(b, c, d))))
+      return false;
     return dot(m0, m1) >= std::min(dot(n0, n1), 0.9) - 1e-12;
   }
 
@@ -295,23 +349,30 @@ class Relaxer {
 
   // --- move ---
 
-  /// Sum over the star of v, if it were at p; infinite if a triangle turns away from what it is now.
-  double star_energy(int v, Vec3 p) const {
-    double e = 0;
-    const Vec3 x = at(v);
+  /// Energy of the star of v if it were at p with this normal of the reference, and how badly its triangles
+  /// then agree.
+  struct StarState {
+    double energy = 0, agreement = 1;
+  };
+  StarState star_state(int v, Vec3 p, Vec3 facing) const {
+    StarState s;
     const double h = size_at(v), a0 = sqrt3 / 4 * h * h;
     m_.star(v, [&](int g) {
       const Vec3 y = at(m_.to(g)), z = at(m_.apex(g));
       const Vec3 n = area_vector(p, y, z);
-      if (dot(n, area_vector(x, y, z)) < 0.5 * norm(n) * norm(area_vector(x, y, z))) e = 1e30;
       const double area = 0.5 * norm(n);
-      e += shape_energy(p, y, z) + (area > 0 ? size_weight * (area / a0 + a0 / area) : 1e30);
+      s.energy += shape_energy(p, y, z) + (area > 0 ? size_weight * (area / a0 + a0 / area) : 1e30);
+      s.agreement =
+          std::min(s.agreement, agreement(p, y, z, facing + facing_[m_.to(g)] + facing_[m_.apex(g)]));
     });
-    return e;
+    return s;
   }
 
   static constexpr double size_weight = 0.1;
   static constexpr double settled = 3e-3;  ///< a step below this share of the size is none
+
+  /// On a border the reference has a normal; on a model edge it has two, so none.
+  Vec3 border_facing(int v, const Place& place) const { return m_.on_border(v) ? facing_at(place) : Vec3{}; }
 
   /// The same for a vertex on a border or model edge, which slides along it: a parabola through three
   /// energies.
@@ -326,15 +387,21 @@ class Relaxer {
     const Vec3 direction = normalized(ahead - behind);
     if (reach <= 0) return false;
     auto place_at = [&](double s) { return walk_.slide(lifted_.place[v], x + s * direction); };
-    auto energy = [&](double s) { return star_energy(v, walk_.point(place_at(s))); };
-    const double e0 = star_energy(v, x), left = energy(-probe), right = energy(probe);
-    if (e0 >= 1e30 || left >= 1e30 || right >= 1e30) return false;
+    auto state = [&](double s) {
+      const Place p = place_at(s);
+      return star_state(v, walk_.point(p), border_facing(v, p));
+    };
+    const StarState now = star_state(v, x, facing_[v]);
+    const double e0 = now.energy, left = state(-probe).energy, right = state(probe).energy;
     const double bend = left - 2 * e0 + right;
     double s = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
     s = std::clamp(s, -0.4 * reach, 0.4 * reach);
-    if (std::abs(s) < 1e-3 * size || energy(s) > e0 * (1 - 1e-4)) return false;
+    if (!(std::abs(s) >= settled * size)) return false;
+    const StarState then = state(s);
+    if (then.energy > e0 * (1 - 1e-4) || folds(now.agreement, then.agreement)) return false;
     lifted_.place[v] = place_at(s);
     points_.points[v] = walk_.point(lifted_.place[v]);
+    facing_[v] = border_facing(v, lifted_.place[v]);
     ++report_.moves;
     return true;
   }
@@ -393,12 +460,15 @@ class Relaxer {
     const double length = norm(step);
     if (length < settled * size) return false;
     if (length > 0.5 * size) step = (0.5 * size / length) * step;
-    const double before = star_energy(v, x);
+    const StarState before = star_state(v, x, facing_[v]);
     for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
       Place place = walk_.closest(lifted_.place[v], x + step.x * s + step.y * t);
       const Vec3 p = walk_.point(place);
-      if (star_energy(v, p) < before) {
+      const Vec3 facing = facing_at(place);
+      const StarState after = star_state(v, p, facing);
+      if (after.energy < before.energy && !folds(before.agreement, after.agreement)) {
         points_.points[v] = p;
+        facing_[v] = facing;
         lifted_.place[v] = place;
         if (ref_size_) lifted_.size[v] = interpolate(place);
         ++report_.moves;
@@ -467,41 +537,46 @@ class Relaxer {
     }
   }
 
-  /// Where triangles of the result intersect, the surface is too thin or too curved for their size: refine
-  /// there.
+  /// Where triangles of the result intersect, the surface is too thin or bends too much for their size:
+  /// refine there, and ask for smaller triangles from then on. Gives up when that does not help.
   void separate() {
+    const int most = m_.live + m_.live / 4 + 1000;
     for (int round = 0;; ++round) {
       Mesh now{points_.points, {}};
       std::vector<int> number;
       for (int t = 0; t < (int)m_.tris.size(); ++t)
         if (!m_.dead(t)) now.tris.push_back(m_.tris[t]), number.push_back(t);
-      auto pairs = self_intersections(now);
+      const auto pairs = self_intersections(now);
       report_.intersections = (int)pairs.size();
-      if (pairs.empty() || round == 10) return;
+      if (pairs.empty() || round == 12 || m_.live > most) return;
       std::vector<int> culprits;
       for (auto [s, t] : pairs) culprits.insert(culprits.end(), {number[s], number[t]});
       std::sort(culprits.begin(), culprits.end());
       culprits.erase(std::unique(culprits.begin(), culprits.end()), culprits.end());
       std::vector<int> around;
+      for (int t : culprits)
+        for (int v : m_.tris[t]) {
+          around.push_back(v);
+          m_.star(v, [&](int e) { around.push_back(m_.to(e)); });
+        }
+      std::sort(around.begin(), around.end());
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      for (int v : around) {
+        finer_[v] *= 0.8;
+        touch(v);
+      }
       for (int t : culprits) {
-        if (m_.dead(t)) continue;
         int longest = -1;
         double length = 0;
         for (int h = 3 * t; h < 3 * t + 3; ++h) {
           double l = norm(at(m_.to(h)) - at(m_.from(h)));
           if (!m_.hard[h] && l > length) length = l, longest = h;
         }
-        if (longest >= 0 && split(longest)) {
-          const int v = (int)m_.out.size() - 1;
-          m_.star(v, [&](int e) { around.push_back(m_.to(e)); });
-        }
-        for (int v : m_.tris[t]) around.push_back(v);
+        if (longest >= 0 && split(longest)) around.push_back((int)m_.out.size() - 1);
       }
-      for (int h = 0; h < (int)m_.opp.size(); ++h)
-        if (!m_.dead(h / 3) && h < m_.opp[h] && !m_.hard[h] && worst_flipped(h) < 0.9 * worst_now(h) &&
-            may_flip(h))
-          do_flip(h);
-      for (int v : around) improve(v);
+      flip_to_shape();
+      for (int repeat = 0; repeat < 3; ++repeat)
+        for (int v : around) improve(v);
     }
   }
 
@@ -550,8 +625,11 @@ class Relaxer {
   SurfaceWalk walk_;
   EditMesh m_;
   Mesh points_;
+  std::vector<Vec3> ref_normal_;  ///< at the reference's vertices, not of unit length
+  std::vector<Vec3> facing_;      ///< the reference's normal at each vertex's place; zero on model edges
   enum : char { free_ = 0, slides = 1, fixed = 2 };
-  std::vector<char> held_;  ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<char> held_;     ///< per vertex: free, on a border or model edge, or a corner
+  std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_,
       changed_;  ///< when a vertex was last tried to move, and when its star last changed
   int clock_ = 0;

@@ -2,6 +2,7 @@
 #include "lib/straighten.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "lib/cut.h"
 #include "lib/regions.h"
@@ -11,80 +12,154 @@
 namespace meshpipe {
 namespace {
 
-/// The triangles of parts a and b near their interface, on their own numbers.
-struct Band {
-  SubMesh mesh;
-  std::vector<char> rim;     // of the vertices: next to what is cut off
-  std::vector<char> pinned;  // of the vertices: the interface is a model edge here
-  std::vector<signed char>
-      apex;         // of the vertices: the side (+1 a, -1 b) of a triangle on a pinned edge, or 0
-  double edge = 0;  // mean length of an interface edge
+/// A maximal run of interface edges between parts a < b, a on its left; closed, or from border or junction to
+/// another.
+struct Curve {
+  int a, b;
+  std::vector<int> half_edges;
 };
 
-bool is_model(const std::vector<std::uint8_t>* model, int h) { return model && (*model)[h / 3] >> h % 3 & 1; }
+enum class Role { moves, stays, other };
 
-const std::vector<std::uint8_t>* model_of(const Surface& s) {
-  return s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
+struct Limits {
+  int n_parts;
+  double snap;
+  int max_faces;
+};
+
+/// How far to diffuse, in mean edge lengths of the curve, and how often.
+struct Attempt {
+  double width;
+  int steps;
+};
+constexpr Attempt attempts[] = {{4, 5}, {3, 1}, {1.5, 1}};
+
+/// What happens near the curves that are straightened together: each has a band of triangles of its own.
+struct Bands {
+  SubMesh mesh;                   // of all bands
+  std::vector<int> curve;         // of each triangle of the surface: its band, or -1
+  std::vector<double> held;       // of each vertex of the bands: the value it is held at, or free
+  std::vector<signed char> apex;  // the side (+1 a, -1 b) of a triangle on an interface edge that stays, or 0
+  static constexpr double free = 2;
+};
+
+bool is_model(const Surface& s, int h) {
+  return s.face.has("model") && s.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1;
 }
 
-/// Interface half-edges, with part a on their left.
-std::vector<int> interface_of(const std::vector<int>& opposite, const std::vector<int>& part, int a, int b) {
-  std::vector<int> r;
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (part[h / 3] == a && opposite[h] >= 0 && part[opposite[h] / 3] == b) r.push_back(h);
-  return r;
+double length_of(const Mesh& m, int h) {
+  return norm(m.points[target(m.tris, h)] - m.points[origin(m.tris, h)]);
 }
 
-double length_of(const Mesh& m, const std::vector<int>& half_edges) {
-  double l = 0;
-  for (int h : half_edges) l += norm(m.points[target(m.tris, h)] - m.points[origin(m.tris, h)]);
-  return l;
-}
-
-Band make_band(const Surface& s, const std::vector<int>& opposite, const std::vector<int>& interface, int a,
-               int b) {
-  constexpr int rings = 14;  // about 12 edges wide; the diffused indicator has its value there
+std::vector<Curve> find_curves(const Surface& s, const std::vector<int>& opposite) {
   const std::vector<int>& part = s.face.get<int>("part");
-  const std::vector<std::uint8_t>* model = model_of(s);
-  std::vector<char> reached(s.points.size(), 0);
-  std::vector<int> in_band(s.tris.size(), -1);
-  for (int h : interface) reached[origin(s.tris, h)] = reached[target(s.tris, h)] = 1;
-  std::vector<int> rest;
-  for (int t = 0; t < (int)s.tris.size(); ++t)
-    if (part[t] == a || part[t] == b) rest.push_back(t);
-  for (int ring = 0; ring < rings && !rest.empty(); ++ring) {
-    std::vector<int> found;
+  struct Piece {
+    int a, b, from, half_edge;
+    auto key() const { return std::tie(a, b, from); }
+  };
+  std::vector<Piece> pieces;
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] >= 0 && part[h / 3] < part[opposite[h] / 3])
+      pieces.push_back({part[h / 3], part[opposite[h] / 3], origin(s.tris, h), h});
+  auto less = [](const Piece& p, const Piece& q) { return p.key() < q.key(); };
+  std::sort(pieces.begin(), pieces.end(), less);
+
+  std::vector<int> follower(pieces.size(), -1);
+  std::vector<char> follows(pieces.size(), 0), used(pieces.size(), 0);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece next{pieces[i].a, pieces[i].b, target(s.tris, pieces[i].half_edge), 0};
+    auto it = std::lower_bound(pieces.begin(), pieces.end(), next, less);
+    if (it == pieces.end() || it->key() != next.key()) continue;
+    follower[i] = (int)(it - pieces.begin());
+    follows[follower[i]] = 1;
+  }
+  std::vector<Curve> curves;
+  for (bool closed : {false, true})
+    for (int i = 0; i < (int)pieces.size(); ++i) {
+      if (used[i] || (!closed && follows[i])) continue;
+      Curve c{pieces[i].a, pieces[i].b, {}};
+      for (int k = i; k >= 0 && !used[k]; k = follower[k]) {
+        used[k] = 1;
+        c.half_edges.push_back(pieces[k].half_edge);
+      }
+      curves.push_back(std::move(c));
+    }
+  return curves;
+}
+
+/// Vertices go to the curve that reaches them first through its own two parts; a triangle is in the band of
+/// its vertices.
+Bands make_bands(const Surface& s, const std::vector<int>& opposite, const std::vector<Curve>& curves,
+                 const std::vector<Role>& role) {
+  constexpr int rings = 14;  // the diffused indicator has its value there
+  constexpr int nobody = -1, blocked = -2;
+  const std::vector<int>& part = s.face.get<int>("part");
+  std::vector<int> owner(s.points.size(), nobody);
+  for (int c = 0; c < (int)curves.size(); ++c)
+    if (role[c] != Role::other)
+      for (int h : curves[c].half_edges)
+        owner[origin(s.tris, h)] = owner[target(s.tris, h)] = role[c] == Role::moves ? c : blocked;
+  auto of = [&](int t, int c) { return part[t] == curves[c].a || part[t] == curves[c].b; };
+
+  std::vector<int> rest(s.tris.size());
+  for (int t = 0; t < (int)rest.size(); ++t) rest[t] = t;
+  std::vector<std::pair<int, int>> claims;
+  for (int ring = 0; ring < rings; ++ring) {
+    claims.clear();
     std::erase_if(rest, [&](int t) {
       const Tri& v = s.tris[t];
-      if (!reached[v[0]] && !reached[v[1]] && !reached[v[2]]) return false;
-      found.push_back(t);
-      in_band[t] = 0;
+      const int most = std::max({owner[v[0]], owner[v[1]], owner[v[2]]});
+      if (most < 0) return false;
+      for (int x : v)
+        if (owner[x] == nobody && of(t, most)) claims.push_back({x, most});
       return true;
     });
-    for (int t : found)
-      for (int v : s.tris[t]) reached[v] = 1;
+    if (claims.empty()) break;
+    for (auto [v, c] : claims)
+      if (owner[v] == nobody) owner[v] = c;
   }
-  Band band;
-  band.mesh = std::move(split_by_label(s, in_band, 1)[0]);
-  const int n = (int)band.mesh.vertex.size();
+
+  Bands bands;
+  bands.curve.assign(s.tris.size(), -1);
+  std::vector<int> in_band(s.tris.size(), -1);
+  for (std::size_t t = 0; t < s.tris.size(); ++t) {
+    const Tri& v = s.tris[t];
+    const int c = owner[v[0]];
+    if (c >= 0 && owner[v[1]] == c && owner[v[2]] == c && of((int)t, c)) bands.curve[t] = c, in_band[t] = 0;
+  }
+  bands.mesh = std::move(split_by_label(s, in_band, 1)[0]);
+
+  // at the rim the sides stay what they are, and the curve stays where it leaves the band or is a model edge
+  enum { rim = 1, side_a = 2, side_b = 4, on_level = 8 };
   std::vector<char> marks(s.points.size(), 0);
-  for (int t : rest)
-    for (int v : s.tris[t]) marks[v] |= 1;
   std::vector<signed char> apex(s.points.size(), 0);
-  for (int h : interface)
-    if (is_model(model, h)) {
-      marks[origin(s.tris, h)] |= 2;
-      marks[target(s.tris, h)] |= 2;
-      apex[origin(s.tris, prev(h))] = 1;
-      apex[origin(s.tris, prev(opposite[h]))] = -1;
+  for (std::size_t t = 0; t < s.tris.size(); ++t)
+    for (int v : s.tris[t]) {
+      const int c = owner[v];
+      if (c < 0 || !of((int)t, c)) continue;
+      if (bands.curve[t] < 0) marks[v] |= rim;
+      marks[v] |= part[t] == curves[c].a ? side_a : side_b;
     }
-  for (int v = 0; v < n; ++v) {
-    band.rim.push_back(marks[band.mesh.vertex[v]] & 1);
-    band.pinned.push_back((marks[band.mesh.vertex[v]] & 2) != 0);
-    band.apex.push_back(apex[band.mesh.vertex[v]]);
+  for (int c = 0; c < (int)curves.size(); ++c) {
+    if (role[c] != Role::moves) continue;
+    for (int h : curves[c].half_edges)
+      if (is_model(s, h) || bands.curve[h / 3] < 0 || bands.curve[opposite[h] / 3] < 0) {
+        marks[origin(s.tris, h)] |= on_level;
+        marks[target(s.tris, h)] |= on_level;
+        apex[origin(s.tris, prev(h))] = 1;
+        apex[origin(s.tris, prev(opposite[h]))] = -1;
+      }
   }
-  band.edge = length_of(s, interface) / (double)interface.size();
-  return band;
+  for (int v : bands.mesh.vertex) {
+    const int m = marks[v];
+    const bool both = (m & side_a) && (m & side_b);
+    bands.held.push_back(m & on_level || (m & rim && both) ? 0.0
+                         : !(m & rim)                      ? Bands::free
+                         : m & side_a                      ? 1.0
+                                                           : -1.0);
+    bands.apex.push_back(apex[v]);
+  }
+  return bands;
 }
 
 /// Mean of the sign of a linear field over a triangle.
@@ -93,38 +168,42 @@ double mean_sign(double x, double y, double z) {
   if ((x >= 0) == (y >= 0)) std::swap(x, z);
   if ((x >= 0) == (y >= 0)) return x >= 0 ? 1 : -1;
   if ((x >= 0) == (z >= 0)) std::swap(x, y);
-  double alone = x / (x - y) * (x / (x - z));
+  const double alone = x / (x - y) * (x / (x - z));
   return (x >= 0 ? 1 : -1) * (2 * alone - 1);
 }
 
-/// `steps` times: one implicit heat step (M + t K) s = M sign(s), M lumped, K with clamped cotangents.
-std::vector<double> diffuse(const Band& band, std::vector<double> sign, double width, int steps) {
-  const std::vector<Tri>& tris = band.mesh.tris;
-  const std::vector<Vec3>& p = band.mesh.points;
+/// Threshold dynamics: so many implicit heat steps (M + t K) s = M sign(s), M lumped, K with clamped
+/// cotangents, starting from `sign` on the bands' triangles (+1 in a, -1 in b). `time` is t of each triangle.
+std::vector<double> diffuse(const Bands& bands, std::vector<double> sign, const std::vector<double>& time,
+                            int steps) {
+  constexpr double stiff = 1e6;
+  const std::vector<Tri>& tris = bands.mesh.tris;
+  const std::vector<Vec3>& p = bands.mesh.points;
   const int n = (int)p.size();
-  const double t = width * width * band.edge * band.edge;
   std::vector<Entry<double>> entries;
-  std::vector<double> area(tris.size());
-  std::vector<double> diagonal(n, 0);
+  std::vector<double> area(tris.size()), diagonal(n, 0), s;
   for (std::size_t k = 0; k < tris.size(); ++k) {
     const Tri& v = tris[k];
     area[k] = 0.5 * norm(area_vector(p[v[0]], p[v[1]], p[v[2]]));
-    std::array<double, 3> w = cotangent_weights(p[v[0]], p[v[1]], p[v[2]], 1e-3);
+    const std::array<double, 3> w = cotangent_weights(p[v[0]], p[v[1]], p[v[2]], 1e-3);
     for (int i = 0; i < 3; ++i) {
-      int x = v[i], y = v[(i + 1) % 3];
-      diagonal[x] += area[k] / 3 + t * w[i];
-      diagonal[y] += t * w[i];
-      entries.push_back({std::max(x, y), std::min(x, y), -t * w[i]});
+      const int x = v[i], y = v[(i + 1) % 3];
+      diagonal[x] += area[k] / 3 + time[k] * w[i];
+      diagonal[y] += time[k] * w[i];
+      entries.push_back({std::max(x, y), std::min(x, y), -time[k] * w[i]});
     }
   }
-  constexpr double stiff = 1e6;  // pinned to the level
-  for (int v = 0; v < n; ++v) entries.push_back({v, v, diagonal[v] * (band.pinned[v] ? stiff : 1)});
+  for (int v = 0; v < n; ++v) {
+    if (bands.held[v] != Bands::free) diagonal[v] *= stiff;
+    entries.push_back({v, v, diagonal[v]});
+  }
   const Factorisation<double> heat(n, entries);
-  std::vector<double> s;
   for (int step = 0; step < steps; ++step) {
     s.assign(n, 0);
     for (std::size_t k = 0; k < tris.size(); ++k)
       for (int v : tris[k]) s[v] += area[k] / 3 * sign[k];
+    for (int v = 0; v < n; ++v)
+      if (bands.held[v] != Bands::free) s[v] = diagonal[v] * bands.held[v];
     heat.solve(s);
     for (std::size_t k = 0; k < tris.size(); ++k)
       sign[k] = mean_sign(s[tris[k][0]], s[tris[k][1]], s[tris[k][2]]);
@@ -132,103 +211,220 @@ std::vector<double> diffuse(const Band& band, std::vector<double> sign, double w
   return s;
 }
 
-/// Hands all pieces of a but the largest to b, and the other way round.
-void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, std::vector<int>& part, int a,
-                         int b) {
-  std::vector<int> piece;
-  const int n = components(opposite_within(mesh.tris, opposite, part), piece);
+/// Pieces of a part other than its largest lie inside a band: they change to its other part.
+void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& band,
+                         const std::vector<Curve>& curves, std::vector<int>& part, int n_parts) {
+  std::vector<int> piece = part;
+  const int n = separate_pieces(opposite, piece);
+  if (n == n_parts) return;
   std::vector<double> area(n, 0);
-  std::vector<int> of(n);
+  std::vector<int> of(n), largest(n_parts, -1);
   for (std::size_t t = 0; t < part.size(); ++t) {
     const Tri& v = mesh.tris[t];
     area[piece[t]] += norm(area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]));
     of[piece[t]] = part[t];
   }
-  int largest[2] = {-1, -1};
   for (int i = 0; i < n; ++i)
-    if (of[i] == a || of[i] == b)
-      if (int& l = largest[of[i] == b]; l < 0 || area[i] > area[l]) l = i;
+    if (int& l = largest[of[i]]; l < 0 || area[i] > area[l]) l = i;
   for (std::size_t t = 0; t < part.size(); ++t)
-    if ((part[t] == a || part[t] == b) && piece[t] != largest[part[t] == b]) part[t] = part[t] == a ? b : a;
+    if (band[t] >= 0 && piece[t] != largest[part[t]])
+      part[t] = curves[band[t]].a + curves[band[t]].b - part[t];
 }
 
-/// Tries one smoothing of the interface; leaves the surface changed and returns true if the result is
-/// admissible and shorter.
-bool try_straighten(Surface& s, const Band& band, int a, int b, double old_length, int n_pinned, int n_parts,
-                    double snap, int max_faces, double width, int steps) {
-  std::vector<double> sign;
-  for (int t : band.mesh.face) sign.push_back(s.face.get<int>("part")[t] == a ? 1 : -1);
-  std::vector<double> level = diffuse(band, std::move(sign), width, steps);
+/// Length of each curve inside its band, and the number of its model edges.
+struct Measure {
+  std::vector<double> length;
+  std::vector<int> model_edges;
+};
+Measure measure(const Surface& s, const std::vector<int>& opposite, const std::vector<int>& band,
+                std::size_t n_curves) {
+  const std::vector<int>& part = s.face.get<int>("part");
+  Measure m{std::vector<double>(n_curves, 0), std::vector<int>(n_curves, 0)};
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    const int o = opposite[h];
+    if (o < h || part[h / 3] == part[o / 3] || band[h / 3] < 0 || band[h / 3] != band[o / 3]) continue;
+    m.length[band[h / 3]] += length_of(s, h);
+    m.model_edges[band[h / 3]] += is_model(s, h);
+  }
+  return m;
+}
 
-  std::vector<double> field(s.points.size(), 1);
-  std::vector<char> active(s.tris.size(), 0), of_a(s.points.size(), 0);
-  for (int t : band.mesh.face) {
-    active[t] = 1;
-    if (s.face.get<int>("part")[t] == a)
-      for (int v : s.tris[t]) of_a[v] = 1;
+/// Straightens the chosen curves at once. If all is well, changes the surface and returns an empty list;
+/// otherwise returns the curves at fault.
+std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposite,
+                                const std::vector<Curve>& curves, const std::vector<Role>& role,
+                                const Attempt& attempt, const Limits& limits) {
+  const int n_parts = limits.n_parts, max_faces = limits.max_faces;
+  Bands bands = make_bands(surface, opposite, curves, role);
+  if (bands.mesh.tris.empty()) return {};
+  std::vector<double> sign, time, scale(curves.size(), 0);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (int h : curves[c].half_edges)
+      scale[c] += length_of(surface, h) / (double)curves[c].half_edges.size();
+    scale[c] *= scale[c] * attempt.width * attempt.width;
   }
+  for (int t : bands.mesh.face) {
+    sign.push_back(surface.face.get<int>("part")[t] == curves[bands.curve[t]].a ? 1 : -1);
+    time.push_back(scale[bands.curve[t]]);
+  }
+  const std::vector<double> level = diffuse(bands, std::move(sign), time, attempt.steps);
+
+  std::vector<double> field(surface.points.size(), 1);
+  std::vector<char> active(surface.tris.size(), 0);
   for (std::size_t i = 0; i < level.size(); ++i) {
-    double f = level[i];
-    int v = band.mesh.vertex[i];
-    if (band.rim[i] && (f >= 0) != of_a[v]) return false;  // it ran out of the band
-    if (band.pinned[i])
-      f = 0;
-    else if (band.apex[i] != 0)
-      f = band.apex[i] * std::max(1e-3, band.apex[i] * f);
-    field[v] = f;
+    double f = bands.held[i] != Bands::free ? bands.held[i] : level[i];
+    if (bands.apex[i] != 0 && f != 0) f = bands.apex[i] * std::max(1e-3, bands.apex[i] * f);
+    field[bands.mesh.vertex[i]] = f;
   }
+  for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
+    const Tri& v = surface.tris[t];
+    active[t] = field[v[0]] != 0 || field[v[1]] != 0 || field[v[2]] != 0;
+  }
+  const Measure before = measure(surface, opposite, bands.curve, curves.size());
+
+  Surface s = surface;
+  constexpr auto band_column = "straighten band";
+  s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
-  cut_by_scalar_field(s, field, active, side, snap);
+  cut_by_scalar_field(s, field, active, side, limits.snap);
+  const std::vector<int> band = s.face.get<int>(band_column);
+  s.face.erase(band_column);
   std::vector<int>& part = s.face.get<int>("part");
   for (std::size_t t = 0; t < part.size(); ++t)
-    if (side[t] >= 0) part[t] = side[t] ? a : b;
+    if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
-  keep_largest_pieces(s, opposite, part, a, b);
-  const Regions r = find_regions(s, opposite, part, n_parts);
-  if (!r.region[a].maps_to_the_plane() || !r.region[b].maps_to_the_plane()) return false;
-  if (max_faces > 0)
-    for (const Region& x : r.region)
-      if (x.faces > max_faces) return false;
-  const std::vector<int> interface = interface_of(opposite, part, a, b);
-  int pinned = 0;
-  for (int h : interface) pinned += is_model(model_of(s), h);
-  return pinned >= n_pinned && length_of(s, interface) < old_length;
+  const std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
+  keep_largest_pieces(s, after, band, curves, part, n_parts);
+  std::vector<int> piece = part;
+  std::vector<char> broken(n_parts, 0);
+  if (separate_pieces(after, piece) != n_parts) {
+    std::vector<int> seen(n_parts, -1);
+    for (std::size_t t = 0; t < part.size(); ++t) {
+      if (seen[part[t]] < 0) seen[part[t]] = piece[t];
+      broken[part[t]] |= seen[part[t]] != piece[t];
+    }
+  }
+  const Regions r = find_regions(s, after, part, n_parts);
+  for (int p = 0; p < n_parts; ++p)
+    broken[p] |= !r.region[p].maps_to_the_plane() || (max_faces > 0 && r.region[p].faces > max_faces);
+  const Measure now = measure(s, after, band, curves.size());
+  std::vector<int> at_fault, near_fault;
+  for (int c = 0; c < (int)curves.size(); ++c) {
+    if (role[c] != Role::moves) continue;
+    if (now.length[c] >= before.length[c] || now.model_edges[c] < before.model_edges[c])
+      at_fault.push_back(c);
+    else if (broken[curves[c].a] || broken[curves[c].b])
+      near_fault.push_back(c);
+  }
+  if (at_fault.empty()) at_fault = near_fault;
+  if (at_fault.empty() && std::find(broken.begin(), broken.end(), 1) == broken.end())
+    surface = std::move(s);
+  else if (at_fault.empty())  // a bound on the triangles of a third part
+    for (int c = 0; c < (int)curves.size(); ++c)
+      if (role[c] == Role::moves) at_fault.push_back(c);
+  return at_fault;
 }
 
-void straighten_pair(Surface& s, int a, int b, int n_parts, double snap, int max_faces) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
-  const std::vector<int> interface = interface_of(opposite, s.face.get<int>("part"), a, b);
-  int pinned = 0;
-  for (int h : interface) pinned += is_model(model_of(s), h);
-  if (pinned == (int)interface.size()) return;
-  const Band band = make_band(s, opposite, interface, a, b);
-  const double length = length_of(s, interface);
-  struct Attempt {
-    double width;  // in edges
-    int steps;
-  };
-  for (Attempt t : {Attempt{4, 5}, Attempt{3, 1}, Attempt{1.5, 1}}) {
-    Surface copy = s;
-    if (!try_straighten(copy, band, a, b, length, pinned, n_parts, snap, max_faces, t.width, t.steps))
-      continue;
-    s = std::move(copy);
-    return;
+/// Pairs of parts whose curves share a junction get different colours; curves of a colour are straightened
+/// together.
+struct PairColour {
+  int a, b, colour;
+  auto key() const { return std::tie(a, b); }
+};
+std::vector<PairColour> colour_pairs(const Surface& s, const std::vector<Curve>& curves) {
+  std::vector<PairColour> pairs;
+  for (const Curve& c : curves) pairs.push_back({c.a, c.b, -1});
+  auto less = [](const PairColour& p, const PairColour& q) { return p.key() < q.key(); };
+  std::sort(pairs.begin(), pairs.end(), less);
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), [](auto& p, auto& q) { return p.key() == q.key(); }),
+              pairs.end());
+  std::vector<std::pair<int, int>> ends;  // (vertex, pair)
+  for (const Curve& c : curves) {
+    const int pair =
+        (int)(std::lower_bound(pairs.begin(), pairs.end(), PairColour{c.a, c.b, 0}, less) - pairs.begin());
+    ends.push_back({origin(s.tris, c.half_edges.front()), pair});
+    ends.push_back({target(s.tris, c.half_edges.back()), pair});
   }
+  std::sort(ends.begin(), ends.end());
+  std::vector<std::vector<int>> conflicts(pairs.size());
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = i + 1; j < ends.size() && ends[j].first == ends[i].first; ++j)
+      if (ends[i].second != ends[j].second) {
+        conflicts[ends[i].second].push_back(ends[j].second);
+        conflicts[ends[j].second].push_back(ends[i].second);
+      }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    auto taken = [&](int colour) {
+      return std::any_of(conflicts[i].begin(), conflicts[i].end(),
+                         [&](int j) { return pairs[j].colour == colour; });
+    };
+    for (pairs[i].colour = 0; taken(pairs[i].colour);) ++pairs[i].colour;
+  }
+  return pairs;
+}
+
+/// A curve by the ends of an edge in its middle: unlike half-edges these last while other curves are
+/// straightened.
+using Handle = std::pair<int, int>;
+
+Handle handle_of(const Mesh& m, const Curve& c) {
+  const int h = c.half_edges[c.half_edges.size() / 2];
+  return {origin(m.tris, h), target(m.tris, h)};
+}
+
+/// Straightens these curves at once, without those that turn out to be at fault; returns the latter.
+std::vector<Handle> straighten_together(Surface& s, const std::vector<Handle>& handles,
+                                        const Attempt& attempt, const Limits& limits) {
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const std::vector<Curve> curves = find_curves(s, opposite);
+  std::vector<Role> role(curves.size(), Role::other);
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    for (int h : curves[c].half_edges)
+      if (std::binary_search(handles.begin(), handles.end(), Handle{origin(s.tris, h), target(s.tris, h)})) {
+        role[c] = Role::moves;
+        pairs.push_back({curves[c].a, curves[c].b});
+      }
+  std::sort(pairs.begin(), pairs.end());
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    if (role[c] == Role::other &&
+        std::binary_search(pairs.begin(), pairs.end(), std::pair(curves[c].a, curves[c].b)))
+      role[c] = Role::stays;
+  std::vector<Handle> failed;
+  while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
+    const std::vector<int> faults = try_straighten(s, opposite, curves, role, attempt, limits);
+    if (faults.empty()) break;
+    for (int c : faults) {
+      role[c] = Role::stays;
+      failed.push_back(handle_of(s, curves[c]));
+    }
+  }
+  std::sort(failed.begin(), failed.end());
+  return failed;
 }
 
 }  // namespace
 
 void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
-  const std::vector<int>& part = surface.face.get<int>("part");
-  std::vector<std::pair<int, int>> pairs;
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] >= 0 && part[h / 3] < part[opposite[h] / 3])
-      pairs.push_back({part[h / 3], part[opposite[h] / 3]});
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  for (auto [a, b] : pairs) straighten_pair(surface, a, b, n_parts, snap, max_faces);
+  const Limits limits{n_parts, snap, max_faces};
+  auto curves_of = [&] {
+    return find_curves(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
+  };
+  const std::vector<PairColour> pairs = colour_pairs(surface, curves_of());
+  int n_colours = 0;
+  for (const PairColour& p : pairs) n_colours = std::max(n_colours, p.colour + 1);
+  for (int colour = 0; colour < n_colours; ++colour) {
+    std::vector<Handle> open;
+    for (const Curve& c : curves_of())
+      for (const PairColour& p : pairs)
+        if (p.a == c.a && p.b == c.b && p.colour == colour) open.push_back(handle_of(surface, c));
+    std::sort(open.begin(), open.end());
+    // all together, those at fault again and more gently, in the end one by one
+    for (const Attempt& attempt : attempts) open = straighten_together(surface, open, attempt, limits);
+    for (const Handle& one : open)
+      if (straighten_together(surface, {one}, attempts[1], limits).size() > 0)
+        straighten_together(surface, {one}, attempts[2], limits);
+  }
 }
 
 }  // namespace meshpipe

@@ -10,16 +10,16 @@ namespace meshpipe {
 
 SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model)
     : mesh_(mesh),
-      neighbour_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
+      opposite_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
+      neighbour_(opposite_),
       normals_(mesh.tris.size()) {
   walls_at_.resize(mesh.points.size());
-  const std::vector<int> opposite = neighbour_;
-  for (int h = 0; h < (int)opposite.size(); ++h) {
-    const bool wall = opposite[h] < 0 || (!model.empty() && (model[h / 3] >> (h % 3) & 1));
+  for (int h = 0; h < (int)opposite_.size(); ++h) {
+    const bool wall = opposite_[h] < 0 || (!model.empty() && (model[h / 3] >> (h % 3) & 1));
     if (!wall) continue;
     neighbour_[h] = -1;
-    if (opposite[h] >= 0) neighbour_[opposite[h]] = -1;
-    if (opposite[h] > h) continue;  // count an edge once
+    if (opposite_[h] >= 0) neighbour_[opposite_[h]] = -1;
+    if (opposite_[h] > h) continue;  // count an edge once
     for (int v : {meshpipe::origin(mesh.tris, h), meshpipe::target(mesh.tris, h)})
       if (walls_at_[v] < 3) ++walls_at_[v];
   }
@@ -86,6 +86,20 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target) const {
     place = better;
   }
   return place;
+}
+
+Place SurfaceWalk::across(const Place& p) const {
+  const double b[3] = {p.b0, p.b1, p.b2};
+  for (int i = 0; i < 3; ++i) {
+    const int h = 3 * p.face + i, g = opposite_[h];
+    if (b[(i + 2) % 3] > 0 || neighbour_[h] >= 0 || g < 0) continue;
+    Place q{g / 3, 0, 0, 0};
+    double* c[3] = {&q.b0, &q.b1, &q.b2};
+    *c[g % 3] = b[(i + 1) % 3];
+    *c[(g + 1) % 3] = b[i];
+    return q;
+  }
+  return p;
 }
 
 Place SurfaceWalk::slide(const Place& from, Vec3 target) const {

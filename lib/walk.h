@@ -21,13 +21,16 @@ class SurfaceWalk {
   /// The place reached from `from`, which lies on a wall, by sliding along the wall towards `target`. Stops
   /// where the wall ends or others meet it. A place that is not on a wall is returned as it is.
   Place slide(const Place& from, Vec3 target) const;
+  /// The same point on the other side of the wall it lies on; a place that is on no wall inside the surface stays.
+  Place across(const Place& place) const;
   Vec3 point(const Place& place) const;
   /// Unit normal of the triangle at a place.
   Vec3 normal(const Place& place) const { return normals_[place.face]; }
 
  private:
   const Mesh& mesh_;
-  std::vector<int> neighbour_;  ///< opposite half-edge, -1 at walls
+  std::vector<int> opposite_;   ///< opposite half-edge
+  std::vector<int> neighbour_;  ///< the same, -1 at walls
   std::vector<Vec3> normals_;
   std::vector<std::uint8_t> walls_at_;  ///< number of walls that meet at a vertex, counted up to 3
 };

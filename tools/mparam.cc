@@ -89,14 +89,14 @@ int main(int argc, char** argv) {
                     "area scale %.3g, smallest area %.2e%s",
                     p, charts[p].mesh.tris.size(), name_of(r.used), r.anisotropy_median, r.anisotropy_p99,
                     r.anisotropy_max, r.area_scale, r.smallest_area,
-                    r.overlap_before ? ", overlapped before" : "");
+                    r.border_was_simple ? "" : ", border crossed itself before");
       io.detail(std::string(text) +
                 (r.flips_before ? ", " + std::to_string(r.flips_before) + " flips before" : ""));
       io.report["charts"].push_back({{"part", p},
                                      {"triangles", charts[p].mesh.tris.size()},
                                      {"map", name_of(r.used)},
                                      {"flips_before", r.flips_before},
-                                     {"overlap_before", r.overlap_before},
+                                     {"border_was_simple", r.border_was_simple},
                                      {"anisotropy_median", r.anisotropy_median},
                                      {"anisotropy_p99", r.anisotropy_p99},
                                      {"anisotropy_max", r.anisotropy_max},

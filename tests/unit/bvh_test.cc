@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/bvh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lib/random.h"
+#include "lib/shape.h"
+
+namespace meshpipe {
+namespace {
+
+double distance_to(const Mesh& m, int t, Vec3 p) {
+  const Tri& v = m.tris[t];
+  const auto w = closest_on_triangle(p, m.points[v[0]], m.points[v[1]], m.points[v[2]]);
+  return norm(w[0] * m.points[v[0]] + w[1] * m.points[v[1]] + w[2] * m.points[v[2]] - p);
+}
+
+//        c            the seven regions of the plane round a triangle
+//        |\.
+//        | \.
+//        a--b
+TEST(bvh, closest_point_in_every_region) {
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
+  using W = std::array<double, 3>;
+  EXPECT_EQ(closest_on_triangle({-1, -1, 2}, a, b, c), (W{1, 0, 0}));
+  EXPECT_EQ(closest_on_triangle({2, -0.5, 1}, a, b, c), (W{0, 1, 0}));
+  EXPECT_EQ(closest_on_triangle({-0.5, 2, 1}, a, b, c), (W{0, 0, 1}));
+  EXPECT_EQ(closest_on_triangle({0.25, -1, 1}, a, b, c), (W{0.75, 0.25, 0}));
+  EXPECT_EQ(closest_on_triangle({-1, 0.25, 1}, a, b, c), (W{0.75, 0, 0.25}));
+  EXPECT_EQ(closest_on_triangle({1, 1, -1}, a, b, c), (W{0, 0.5, 0.5}));
+  EXPECT_EQ(closest_on_triangle({0.25, 0.25, 5}, a, b, c), (W{0.5, 0.25, 0.25}));
+}
+
+TEST(bvh, a_triangle_without_area_is_its_edges) {
+  const Vec3 a{0, 0, 0}, b{0, 0, 0}, c{2, 0, 0};
+  const auto w = closest_on_triangle({1, 1, 0}, a, b, c);
+  EXPECT_DOUBLE_EQ((w[0] * a + w[1] * b + w[2] * c).x, 1);
+}
+
+TEST(bvh, nearest_is_that_of_all_triangles) {
+  for (const Mesh& m : {torus(0.4, 1500), sphere(20), branching_tree(2, 0, 0.8, 1500, 1)}) {
+    const Bvh bvh(m);
+    Random random(1);
+    Bvh::Hit last = bvh.nearest({9, 9, 9});
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 p = 3.0 * random.in_ball();
+      double best = 1e300;
+      for (int t = 0; t < (int)m.tris.size(); ++t) best = std::min(best, distance_to(m, t, p));
+      const auto hit = bvh.nearest(p);
+      EXPECT_DOUBLE_EQ(hit.distance, best);
+      EXPECT_DOUBLE_EQ(distance_to(m, hit.place.face, p), best);
+      last = bvh.nearest(p, last);
+      EXPECT_EQ(last.distance, hit.distance);
+      // with the exact bound, a loose one, and one that is wrong
+      EXPECT_DOUBLE_EQ(bvh.nearest(p, best).distance, best);
+      EXPECT_DOUBLE_EQ(bvh.nearest(p, 2 * best).distance, best);
+      EXPECT_DOUBLE_EQ(bvh.nearest(p, 0.5 * best).distance, best);
+    }
+  }
+}
+
+TEST(bvh, boxes_miss_no_triangle) {
+  const Mesh m = torus(0.4, 1000);
+  const Bvh bvh(m);
+  auto order = bvh.order();
+  std::sort(order.begin(), order.end());
+  for (int t = 0; t < (int)order.size(); ++t) ASSERT_EQ(order[t], t);
+  Random random(2);
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 p = random.in_ball();
+    const Box box{p, p + Vec3{0.2, 0.3, 0.1}};
+    std::vector<char> seen(m.tris.size(), 0);
+    bvh.overlapping(box, [&](int t) { ++seen[t]; });
+    for (int t = 0; t < (int)m.tris.size(); ++t) {
+      EXPECT_LE(seen[t], 1);
+      if (overlap(box, box_of(m, t))) EXPECT_EQ(seen[t], 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshpipe

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/param.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "lib/bisect.h"
+#include "lib/error.h"
+#include "lib/injective.h"
+#include "lib/topology.h"
+
+using namespace meshpipe;
+using std::numbers::pi;
+
+// (i, j) -> (s, t) in the unit square -> space, in n x m quadrilaterals with `keep` deciding which are there;
+// the columns s = 0 and s = 1 are one if `closed`. Diagonals alternate.
+template <class Place, class Keep>
+static SubMesh grid(int n, int m, bool closed, Place place, Keep keep) {
+  Mesh mesh;
+  int columns = closed ? n : n + 1;
+  for (int j = 0; j <= m; ++j)
+    for (int i = 0; i < columns; ++i) mesh.points.push_back(place((double)i / n, (double)j / m));
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < n; ++i) {
+      if (!keep(i, j)) continue;
+      int a = j * columns + i, b = j * columns + (i + 1) % columns, c = b + columns, d = a + columns;
+      if ((i + j) % 2) {
+        mesh.tris.push_back({a, b, c});
+        mesh.tris.push_back({a, c, d});
+      } else {
+        mesh.tris.push_back({a, b, d});
+        mesh.tris.push_back({b, c, d});
+      }
+    }
+  return split_by_label(mesh, std::vector<int>(mesh.tris.size(), 0), 1)[0];
+}
+static bool all(int, int) { return true; }
+
+static bool one_to_one(const SubMesh& m, const std::vector<Vec2>& uv) {
+  return count_inverted(m.tris, uv) == 0 &&
+         border_is_simple(m.tris, opposite_halfedges(m.tris, (int)m.points.size()), uv);
+}
+static ParamReport distortion(const SubMesh& m, const std::vector<Vec2>& uv) {
+  ParamReport r;
+  measure_distortion(m, uv, r);
+  return r;
+}
+
+TEST(Param, AFlatPlateWithHolesIsMappedByARigidMotion) {
+  // an L with a round-the-corner hole that no circle resembles, tilted in space, in units of 1e-7
+  auto plate = grid(
+      24, 16, false,
+      [](double s, double t) {
+        return Vec3{3e-7 * s, 2e-7 * t, 1e-7 * t};
+      },
+      [](int i, int j) {
+        return !(i > 15 && j > 9) && !(i > 2 && i < 9 && j > 3 && j < 6) && !(i == 12 && j == 4);
+      });
+  auto uv = conformal_map(plate);
+  EXPECT_TRUE(one_to_one(plate, uv));
+  auto r = distortion(plate, uv);
+  EXPECT_NEAR(r.anisotropy_max, 1, 1e-9);
+  EXPECT_NEAR(r.area_scale, 1, 1e-9);
+}
+
+TEST(Param, ASmoothSurfaceIsMappedNearlyConformally) {
+  // a cap of the sphere, 120 degrees across
+  auto cap = grid(
+      40, 40, false,
+      [](double s, double t) {
+        double x = 2 * s - 1, y = 2 * t - 1;
+        double l = std::sqrt(x * x + y * y + 1);
+        return Vec3{x / l, y / l, 1 / l};
+      },
+      all);
+  auto uv = conformal_map(cap);
+  EXPECT_TRUE(one_to_one(cap, uv));
+  auto r = distortion(cap, uv);
+  EXPECT_LT(r.anisotropy_median, 1.02);
+  EXPECT_LT(r.anisotropy_p99, 1.1);
+  EXPECT_LT(r.area_scale, 5);
+  double area = 0;
+  for (const Tri& t : cap.tris) area += 0.5 * cross(uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]]);
+  EXPECT_NEAR(area, total_area(cap), 1e-12);
+}
+
+TEST(Param, TubesAreMappedToRings) {
+  // eta 1.5, one border wavy; the hole shrinks by exp(-3) in length
+  auto tube = grid(
+      40, 24, true,
+      [](double s, double t) {
+        double a = -2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), 3 * t + 0.2 * t * std::cos(3 * a)};
+      },
+      all);
+  for (MapKind kind : {MapKind::conformal, MapKind::convex}) {
+    ParamReport r;
+    auto uv = map_part(tube, kind, true, r);
+    EXPECT_TRUE(one_to_one(tube, uv));
+    EXPECT_EQ(r.used, kind);
+    EXPECT_LT(r.anisotropy_p99, kind == MapKind::conformal ? 1.2 : 3);
+  }
+}
+
+TEST(Param, SliversAndDegenerateTrianglesAreMappedByTheConvexMap) {
+  // columns alternately 1 and 1e-5 wide, and a row of zero height
+  auto slivers = grid(
+      20, 10, false,
+      [](double s, double t) {
+        int i = (int)std::lround(20 * s), j = (int)std::lround(10 * t);
+        return Vec3{i / 2 + (i % 2) * 1e-5, j > 5 ? j - 1.0 : (double)j, std::sin(s * 3)};
+      },
+      all);
+  ParamReport r;
+  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, MapKind::convex, false, r)));
+  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, MapKind::conformal, false, r)));
+}
+
+//  2        one triangle, and two triangles that share no edge at 0
+//  | \      .
+//  0--1
+TEST(Param, SmallAndWrongParts) {
+  SubMesh one{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {0, 1, 2}, {0}};
+  EXPECT_TRUE(one_to_one(one, conformal_map(one)));
+  EXPECT_TRUE(one_to_one(one, convex_map(one)));
+  SubMesh bow{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}},
+              {0, 1, 2, 3, 4},
+              {0, 1}};
+  EXPECT_THROW(conformal_map(bow), NotAdmissible);
+  SubMesh closed{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}},
+                 {0, 1, 2, 3},
+                 {0, 1, 2, 3}};
+  EXPECT_THROW(convex_map(closed), NotAdmissible);
+  ParamReport r;
+  EXPECT_THROW(map_part(one, MapKind::harmonic, false, r), BadUsage);
+}
+
+// A ramp that winds one and a half times round at the same radius: flat pieces of it overlap.
+static Surface ramp() {
+  auto m = grid(
+      90, 6, false,
+      [](double s, double t) {
+        double a = 3 * pi * s, r = 1 + t;
+        return Vec3{r * std::cos(a), r * std::sin(a), 0.6 * s};
+      },
+      all);
+  for (Tri& t : m.tris) std::swap(t[1], t[2]);
+  Surface s;
+  static_cast<Mesh&>(s) = m;
+  s.vertex.rows = m.points.size();
+  s.face.set("part", std::vector<int>(m.tris.size(), 0));
+  return s;
+}
+
+TEST(Param, AnOverlappingChartIsCutWhereItIsNarrow) {
+  Surface s = ramp();
+  std::size_t n = s.points.size();
+  std::vector<ParamReport> reports;
+  auto charts = map_surface(s, 1, MapKind::conformal, false, reports);
+  ASSERT_EQ(charts.size(), 2u);
+  ASSERT_EQ(reports.size(), 2u);
+  for (int p = 0; p < 2; ++p) {
+    EXPECT_EQ(reports[p].used, MapKind::conformal);
+    EXPECT_LT(reports[p].anisotropy_p99, 1.1);
+    EXPECT_TRUE(one_to_one(charts[p].mesh, charts[p].uv));
+    for (int f : charts[p].mesh.face) EXPECT_EQ(s.face.get<int>("part")[f], p);
+    EXPECT_FALSE(charts[p].opposite.empty());
+  }
+  EXPECT_LT(s.points.size(), n + 20);  // across, not along
+}
+
+TEST(Param, StrictRefusesWithTheReason) {
+  Surface s = ramp();
+  std::vector<ParamReport> reports;
+  try {
+    map_surface(s, 1, MapKind::conformal, true, reports);
+    FAIL();
+  } catch (const GoalMissed& e) {
+    EXPECT_NE(std::string(e.what()).find("part 0: the map is not one-to-one"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(*std::max_element(s.face.get<int>("part").begin(), s.face.get<int>("part").end()), 0);
+}
+
+TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
+  auto strip = grid(
+      40, 4, false,
+      [](double s, double t) {
+        return Vec3{10 * s, t, 0};
+      },
+      all);
+  for (std::vector<std::array<int, 2>> apart : {std::vector<std::array<int, 2>>{}, {{0, 40}}}) {
+    Surface s;
+    static_cast<Mesh&>(s) = strip;
+    s.vertex.rows = s.points.size();
+    s.face.set("part", std::vector<int>(s.tris.size(), 0));
+    ASSERT_TRUE(bisect_part(s, 0, 1, apart));
+    for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
+      EXPECT_EQ(t.components, 1);
+      EXPECT_EQ(t.genus, 0);
+      EXPECT_EQ(t.loops, 1);
+      EXPECT_NEAR(t.area, 5, 0.5);
+      EXPECT_NEAR(t.longest_loop, 12, 1);
+    }
+  }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mshape: make test surfaces.
+#include "lib/shape.h"
+#include "tools/common.h"
+
+using namespace meshpipe;
+
+namespace {
+
+struct Options {
+  std::string kind;
+  int triangles = 0;  // 0: as many as is usual for the kind
+  double aspect = 10, ratio = 0, noise = 0, slivers = 0, dirt = 0;
+  bool closed = false;
+  int genus = 2, generations = 0, outlets = 0, seed = 1;
+};
+
+/// Vertices round a tube of about n triangles.
+int around(double aspect, bool closed, int n) {
+  const double pi = 3.14159265358979, per_square = 4 * aspect / (std::sqrt(3) * pi) + (closed ? 1 / pi : 0);
+  return std::max(3, (int)std::lround(std::sqrt(n / per_square)));
+}
+
+Body make(const Options& o) {
+  auto triangles = [&](int usual) { return o.triangles > 0 ? o.triangles : usual; };
+  auto ratio = [&](double usual) { return o.ratio > 0 ? o.ratio : usual; };
+  if (o.kind == "cube") return cube(triangles(1200));
+  if (o.kind == "body") return cad_body(4, 2, triangles(2400) / 40);
+  Body body;
+  Mesh& mesh = body;
+  if (o.kind == "tube") mesh = tube(o.aspect, around(o.aspect, o.closed, triangles(10000)), o.closed);
+  if (o.kind == "sphere") mesh = sphere(triangles(5000));
+  if (o.kind == "torus") mesh = torus(ratio(0.4), triangles(5000));
+  if (o.kind == "genus") mesh = genus_surface(o.genus, triangles(10000));
+  if (o.kind == "tree") {
+    const int outlets = o.outlets == 0 && o.generations == 0 ? 13 : o.outlets;
+    mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed);
+  }
+  body.patch.assign(mesh.tris.size(), 0);
+  body.names = {o.kind};
+  return body;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CLI::Option* generations = nullptr;
+  auto add_options = [&](CLI::App& app) {
+    app.add_option("KIND", o.kind, "tube, sphere, torus, genus, tree, body or cube")
+        ->required()
+        ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube"}))
+        ->type_name("");
+    app.add_option("--triangles", o.triangles, "about this many triangles")->check(CLI::Range(1, 100000000));
+    app.add_option("--aspect", o.aspect, "tube: height over diameter (default 10)")
+        ->check(CLI::Range(0.01, 1e5));
+    app.add_flag("--closed", o.closed, "tube: with flat caps");
+    app.add_option("--genus", o.genus, "genus: holes of the plate (default 2)")->check(CLI::Range(0, 10000));
+    generations =
+        app.add_option("--generations", o.generations, "tree: bifurcations from the inlet to every outlet")
+            ->check(CLI::Range(1, 10));
+    app.add_option("--outlets", o.outlets, "tree: open ends, the inlet counts (default 13)")
+        ->check(CLI::Range(3, 2000))
+        ->excludes(generations);
+    app.add_option("--ratio", o.ratio,
+                   "tree: radius of a child over its parent's (default 0.8); torus: of the tube over the "
+                   "ring's (0.4)")
+        ->check(CLI::Range(0.05, 0.95));
+    app.add_option("--noise", o.noise, "move vertices by up to this times the mean edge length")
+        ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--slivers", o.slivers, "split this fraction of the edges close to one end")
+        ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--dirt", o.dirt,
+                   "fraction of bad triangles of each kind: doubled, without area, turned, not welded")
+        ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--seed", o.seed, "seed of all that is random (default 1)");
+    app.get_formatter()->column_width(30);
+  };
+  auto body = [&](Io& io) {
+    if (io.input != "-")
+      throw BadUsage("mshape reads no input, but '" + io.input + "' is given; see mshape --help");
+    Body shape = make(o);
+    Stream stream;
+    static_cast<Mesh&>(stream.surface) = std::move(static_cast<Mesh&>(shape));
+    Surface& s = stream.surface;
+    s.vertex.rows = s.points.size();
+    s.face.rows = s.tris.size();
+    for (int& label : shape.patch) ++label;  // tag 0 means none to some formats
+    s.face.set("patch", std::move(shape.patch));
+    for (std::size_t i = 0; i < shape.names.size(); ++i)
+      stream.names.push_back({2, (int)i + 1, shape.names[i]});
+    if (o.noise > 0) add_noise(s, o.noise, o.seed);
+    if (o.slivers > 0) add_slivers(s, o.slivers, o.seed);
+    if (o.dirt > 0) add_dirt(s, o.dirt, o.seed);
+    io.say(std::to_string(s.points.size()) + " vertices, " + std::to_string(s.tris.size()) + " triangles");
+    io.report["vertices"] = s.points.size();
+    io.report["triangles"] = s.tris.size();
+    io.write(stream);
+  };
+  return run_tool(argc, argv, "mshape",
+                  "Make a test surface: a tube, sphere, torus, plate with holes (genus), branching tree of "
+                  "tubes, CAD-like body "
+                  "or cube.\n\nexamples:\n  mshape tree -o tree.stl\n  mshape tree --outlets 147 --triangles "
+                  "90000 -o airways.stl\n"
+                  "  mshape tube --aspect 100 --noise 0.1 | mclean | mtopo > tube.ply",
+                  add_options, body);
+}
