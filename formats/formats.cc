@@ -3,13 +3,19 @@
 
 #include <cstring>
 
+#include "formats/abaqus.h"
+#include "formats/gts.h"
+#include "formats/inria.h"
 #include "formats/msh.h"
+#include "formats/nastran.h"
 #include "formats/obj.h"
 #include "formats/off.h"
 #include "formats/ply.h"
 #include "formats/stl.h"
+#include "formats/tetgen.h"
 #include "formats/text.h"
-#include "formats/vtu.h"
+#include "formats/vtk_legacy.h"
+#include "formats/vtk_xml.h"
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -27,16 +33,26 @@ std::string guess(std::string_view bytes) {
 const std::vector<Reader>& readers() {
   // binary STL comes first: its size tells it, and its first bytes may be anything
   static const std::vector<Reader> all = {
-      {"stl", is_stl, read_stl}, {"mply", is_stream, read_stream}, {"ply", is_ply, read_ply},
-      {"msh", is_msh, read_msh}, {"off", is_off, read_off},        {"obj", is_obj, read_obj},
+      {"stl", is_stl, read_stl},
+      {"mply", is_stream, read_stream},
+      {"ply", is_ply, read_ply},
+      {"msh", is_msh, read_msh},
+      {"off", is_off, read_off},
+      {"vtu/vtp", is_vtk_xml, read_vtk_xml},
+      {"vtk", is_vtk_legacy, read_vtk_legacy},
+      {"mesh", is_inria, read_inria},
+      {"obj", is_obj, read_obj},
   };
   return all;
 }
 
 const std::vector<Writer>& writers() {
   static const std::vector<Writer> all = {
-      {".mply", write_stream}, {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj},
-      {".off", write_off},     {".msh", write_msh}, {".vtu", write_vtu},
+      {".mply", write_stream}, {".ply", write_ply},    {".stl", write_stl},        {".obj", write_obj},
+      {".off", write_off},     {".msh", write_msh2},   {".msh2", write_msh2},      {".msh4", write_msh4},
+      {".vtu", write_vtu},     {".vtp", write_vtp},    {".vtk", write_vtk_grid}, {".mesh", write_mesh},
+      {".meshb", write_meshb}, {".sol", write_sol},    {".gts", write_gts},        {".bdf", write_nastran},
+      {".nas", write_nastran}, {".inp", write_abaqus}, {".poly", write_poly},
   };
   return all;
 }

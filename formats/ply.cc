@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "formats/columns.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
 #include "lib/error.h"
@@ -40,13 +41,14 @@ constexpr Type types[] = {
 };
 
 /// What a property is to us.
-enum class Role { none, x, y, z, corners, patch };
+enum class Role { none, x, y, z, corners, strip, patch, column };
 
 struct Property {
   const Type* type;
   const Type* count = nullptr;  ///< of a list: the type of its length
   std::string name;
   Role role = Role::none;
+  Data values{};  ///< of a column
 };
 
 struct Element {
@@ -62,7 +64,7 @@ class PlyReader {
 
   Stream read() {
     header();
-    for (const Element& e : elements_) rows(e);
+    for (Element& e : elements_) rows(e);
     if (ascii_ ? text_.next_line() : at_ != bytes_.size())
       fail(ascii_ ? "more lines than the header declares"
                   : std::to_string(bytes_.size() - at_) + " bytes more than the header declares");
@@ -71,6 +73,7 @@ class PlyReader {
       fail_at(largest_place_, "face " + std::to_string(largest_face_) + " uses vertex " +
                                   std::to_string(largest_) + ", but there are " + std::to_string(n));
     polygons_.patch.resize(polygons_.ends.size(), 0);
+    for (Element& e : elements_) columns(e);
     set_faces(stream_, polygons_);
     return std::move(stream_);
   }
@@ -110,7 +113,11 @@ class PlyReader {
     }
     if (!has_format) fail("the header has no 'format'");
     check("vertex", {{"x", Role::x}, {"y", Role::y}, {"z", Role::z}});
-    check("face", {{"vertex_indices", Role::corners}});
+    if (std::none_of(elements_.begin(), elements_.end(),
+                     [](const Element& e) { return e.name == "tristrips"; }))
+      check("face", {{"vertex_indices", Role::corners}});
+    else
+      check("tristrips", {{"vertex_indices", Role::strip}});
     for (const Element& e : elements_) check_rows(e, ascii);
     at_ = bytes_.size() - text_.after().size();
     in_header_ = false;
@@ -128,7 +135,6 @@ class PlyReader {
   void element() {
     Element e;
     e.name = text_.word();
-    if (e.name == "tristrips") fail("element 'tristrips' is not built yet");
     const int rows = text_.integer("a count of rows");
     if (rows < 0) fail("element " + quoted(e.name) + " has " + std::to_string(rows) + " rows");
     e.rows = rows;
@@ -158,13 +164,14 @@ class PlyReader {
     if (p.name.empty()) fail("a property without a name");
     if (e.name == "vertex" && !list && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z')
       p.role = p.name == "x" ? Role::x : p.name == "y" ? Role::y : Role::z;
-    if (e.name == "face" && list && (p.name == "vertex_indices" || p.name == "vertex_index"))
-      p.role = Role::corners;
+    if (list && (p.name == "vertex_indices" || p.name == "vertex_index"))
+      p.role = e.name == "face" ? Role::corners : e.name == "tristrips" ? Role::strip : Role::none;
     if (e.name == "face" && !list && p.name == "patch" && p.type->integral) p.role = Role::patch;
-    if (p.role == Role::corners && !p.type->integral)
+    if (!list && p.role == Role::none && (e.name == "vertex" || e.name == "face")) p.role = Role::column;
+    if ((p.role == Role::corners || p.role == Role::strip) && !p.type->integral)
       fail("the corners of faces are of type " + std::string(p.type->name) + ", not of an integral type");
     for (const Property& other : e.properties)
-      if (p.role != Role::none && other.role == p.role)
+      if (p.role != Role::none && other.role == p.role && (p.role != Role::column || other.name == p.name))
         fail("property " + quoted(p.name) + " is declared twice");
     e.properties.push_back(std::move(p));
   }
@@ -190,25 +197,45 @@ class PlyReader {
            " bytes follow the header");
   }
 
-  void rows(const Element& e) {
+  void rows(Element& e) {
     const bool vertices = e.name == "vertex", faces = e.name == "face";
     if (vertices) stream_.surface.points.resize(e.rows);
     if (faces) polygons_.ends.reserve(e.rows);
+    for (Property& p : e.properties)
+      if (p.role == Role::column) {
+        if (!p.type->integral || p.type->bytes == 4)
+          p.values = std::vector<double>(e.rows);  // uint is beyond int
+        else if (std::string_view(p.type->name) == "uchar")
+          p.values = std::vector<std::uint8_t>(e.rows);
+        else
+          p.values = std::vector<int>(e.rows);
+      }
     for (std::size_t r = 0; r < e.rows; ++r) {
-      for (const Property& p : e.properties) {
+      for (Property& p : e.properties) {
         if (p.count) {
           const double n = value(*p.count, e, r);
           if (n < 0 || n != std::floor(n)) fail("a list of length " + std::to_string(n));
           if (p.role == Role::corners)
             corners(static_cast<std::size_t>(n), *p.type, e, r);
+          else if (p.role == Role::strip)
+            strip(static_cast<std::size_t>(n), *p.type, e, r);
           else
             skip(static_cast<std::size_t>(n), *p.type, e, r);
         } else if (p.role == Role::none) {
           skip(1, *p.type, e, r);
+        } else if (p.role == Role::column) {
+          const double v = value(*p.type, e, r, true);
+          if (auto* reals = std::get_if<std::vector<double>>(&p.values))
+            (*reals)[r] = v;
+          else if (auto* ints = std::get_if<std::vector<int>>(&p.values))
+            (*ints)[r] = whole(v, e, p.name.c_str(), r);
+          else
+            std::get<std::vector<std::uint8_t>>(p.values)[r] =
+                static_cast<std::uint8_t>(whole(v, e, p.name.c_str(), r, 255) & 255);
         } else {
           const double v = value(*p.type, e, r);
           if (p.role == Role::patch) {
-            polygons_.patch.push_back(static_cast<int>(whole(v, "patch", r)));
+            polygons_.patch.push_back(whole(v, e, "patch", r));
             continue;
           }
           if (!std::isfinite(v)) fail("vertex " + std::to_string(r) + " holds a number that is not finite");
@@ -219,30 +246,72 @@ class PlyReader {
     }
   }
 
+  /// Hands the values that are not the mesh itself to the stream.
+  void columns(Element& e) {
+    const bool vertices = e.name == "vertex";
+    Table& table = vertices ? stream_.surface.vertex : polygons_.columns;
+    for (Property& p : e.properties) {
+      if (p.role != Role::column) continue;
+      if (!vertices && e.rows != polygons_.ends.size()) {
+        leave_out(stream_, table, p.name, "there are triangle strips too");
+        continue;
+      }
+      std::vector<int> ints;
+      if (p.type->integral && p.type->bytes == 4 && whole_numbers(p.values, ints)) p.values = std::move(ints);
+      add_columns(stream_, table, e.rows, {p.name, 1, std::move(p.values)});
+    }
+  }
+
   void corners(std::size_t n, const Type& type, const Element& e, std::size_t row) {
     if (n > max_corners)
       fail("face " + std::to_string(row) + " has " + std::to_string(n) + " corners, the limit is " +
            std::to_string(max_corners));
     for (std::size_t i = 0; i < n; ++i) {
-      const int v = whole(value(type, e, row), "vertex", row);
+      const int v = whole(value(type, e, row), e, "vertex", row);
       if (v < 0) fail("face " + std::to_string(row) + " uses vertex " + std::to_string(v));
-      if (v > largest_) {
-        largest_ = v;
-        largest_face_ = row;
-        largest_place_ = place();
-      }
+      note(v, row);
       polygons_.corners.push_back(v);
     }
     polygons_.ends.push_back(polygons_.corners.size());
   }
 
-  int whole(double v, const char* what, std::size_t row) const {
-    constexpr double limit = std::numeric_limits<int>::max();
+  /// Strips one after the other, with -1 between them. Triangles with a corner twice only lead from one strip
+  /// to another.
+  void strip(std::size_t n, const Type& type, const Element& e, std::size_t row) {
+    int a = -1, b = -1;
+    bool turned = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      const int v = whole(value(type, e, row), e, "vertex", row);
+      if (v < -1) fail("strip " + std::to_string(row) + " uses vertex " + std::to_string(v));
+      note(v, row);
+      if (a >= 0 && v >= 0) {
+        if (a != b && b != v && v != a) {
+          polygons_.corners.insert(polygons_.corners.end(), {turned ? b : a, turned ? a : b, v});
+          polygons_.ends.push_back(polygons_.corners.size());
+        }
+        turned = !turned;
+      } else {
+        turned = false;
+      }
+      a = v < 0 ? -1 : b;
+      b = v;
+    }
+  }
+
+  void note(int v, std::size_t row) {
+    if (v <= largest_) return;
+    largest_ = v;
+    largest_face_ = row;
+    largest_place_ = place();
+  }
+
+  int whole(double v, const Element& e, const char* what, std::size_t row,
+            int limit = std::numeric_limits<int>::max()) const {
     if (!(std::abs(v) <= limit) || v != std::floor(v)) {
       std::string shown;
       append(shown, v);
-      fail("face " + std::to_string(row) + " has " + what + ' ' + shown + ", not a whole number up to " +
-           std::to_string(std::numeric_limits<int>::max()));
+      fail(e.name + ' ' + std::to_string(row) + " has " + what + ' ' + shown + ", not a whole number up to " +
+           std::to_string(limit));
     }
     return static_cast<int>(v);
   }
@@ -260,12 +329,16 @@ class PlyReader {
            std::to_string(e.rows);
   }
 
-  double value(const Type& type, const Element& e, std::size_t row) {
+  /// The next value; it may be other than finite in a text only if that `may_be_nan`.
+  double value(const Type& type, const Element& e, std::size_t row, bool may_be_nan = false) {
     if (ascii_) {
-      std::string_view w = next_word(e, row);
-      double v;
-      if (!parse_number(w, v)) fail(quoted(w) + " where a finite number is due");
-      return v;
+      while (text_.line_ends())
+        if (!text_.next_line()) fail(ends(e, row));
+      if (may_be_nan && text_.peek().find_first_of("nN") != std::string_view::npos) {
+        text_.word();
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+      return text_.number("a finite number");
     }
     if (bytes_.size() - at_ < type.bytes) fail(ends(e, row));
     char buffer[8];
@@ -307,13 +380,9 @@ Stream read_ply(std::string_view bytes, const std::string& where) { return PlyRe
 
 std::string write_ply(const Stream& stream, bool ascii) {
   Stream plain;
-  plain.surface.points = stream.surface.points;
-  plain.surface.tris = stream.surface.tris;
+  plain.surface = stream.surface;
   plain.names = stream.names;
-  Table& face = plain.surface.face;
-  face.set("patch", patches_of(stream));
-  for (const char* channel : {"red", "green", "blue"})
-    if (stream.surface.face.has(channel)) face.set(channel, stream.surface.face.get<std::uint8_t>(channel));
+  if (!plain.surface.face.has("patch")) plain.surface.face.set("patch", patches_of(stream));
   // without its mark a stream is an ordinary PLY, which other programs may change as they like
   std::string out = write_stream(plain, ascii);
   const std::string mark = "comment mply 1.0\n";

@@ -119,15 +119,22 @@ void set_faces(Stream& stream, const Polygons& polygons) {
   Surface& s = stream.surface;
   Triangulation triangulation(s);
   s.tris.reserve(polygons.corners.size() / 3);
-  std::vector<int> patch;
+  std::vector<int> from;  // the face of each triangle
   std::size_t first = 0;
   for (std::size_t f = 0; f < polygons.ends.size(); ++f) {
     triangulation.add(polygons.corners.data() + first, static_cast<int>(polygons.ends[f] - first));
-    patch.resize(s.tris.size(), polygons.patch[f]);
+    from.resize(s.tris.size(), static_cast<int>(f));
     first = polygons.ends[f];
   }
   s.vertex.rows = s.points.size();
-  s.face.set("patch", std::move(patch));
+  auto of_triangles = [&](const auto& of_faces) {
+    std::decay_t<decltype(of_faces)> v(from.size());
+    for (std::size_t t = 0; t < v.size(); ++t) v[t] = of_faces[from[t]];
+    return v;
+  };
+  s.face.set("patch", of_triangles(polygons.patch));
+  for (const Column& c : polygons.columns.columns)
+    std::visit([&](const auto& v) { s.face.set(c.name, of_triangles(v)); }, c.data);
 }
 
 std::vector<int> patches_of(const Stream& stream) {
@@ -148,6 +155,10 @@ ByPatch by_patch(const Stream& stream) {
     }
   by.first.push_back(by.order.size());
   return by;
+}
+
+long long shift_to_positive(const ByPatch& by) {
+  return by.tags.empty() || by.tags[0] > 0 ? 0 : 1 - static_cast<long long>(by.tags[0]);
 }
 
 }  // namespace meshpipe

@@ -8,20 +8,23 @@
 
 namespace meshpipe {
 
-/// Faces one after the other: face f has corners[ends[f-1] .. ends[f]) (ends[-1] is 0) and a label.
+/// Faces one after the other: face f has corners[ends[f-1] .. ends[f]) (ends[-1] is 0), a label, and row f of
+/// each column.
 struct Polygons {
   std::vector<int> corners;
   std::vector<std::size_t> ends;
   std::vector<int> patch;
+  Table columns{"face", 0, {}};
 };
 
 /// More corners than this in one face are a mistake of the file, and would take quadratic time.
 constexpr int max_corners = 10000;
 
-/// Triangles of the faces, in order, with their labels as face column `patch`. A quadrilateral is cut along
-/// the diagonal that gives the better triangles and does not fold; larger faces lose their ears in the plane
-/// that fits them best, so that faces that are not convex come out right too. Faces of fewer than three
-/// corners are left out. Precondition: stream.surface.points are set and hold every corner.
+/// Triangles of the faces, in order, with their labels as face column `patch`, and the other columns. A
+/// quadrilateral is cut along the diagonal that gives the better triangles and does not fold; larger faces
+/// lose their ears in the plane that fits them best, so that faces that are not convex come out right too.
+/// Faces of fewer than three corners are left out. Precondition: stream.surface.points are set and hold every
+/// corner.
 void set_faces(Stream& stream, const Polygons& polygons);
 
 /// The face column `patch`; zeros if there is none.
@@ -34,5 +37,8 @@ struct ByPatch {
   std::vector<std::size_t> first;
 };
 ByPatch by_patch(const Stream& stream);
+
+/// What to add to every tag so that the smallest is at least 1.
+long long shift_to_positive(const ByPatch& by);
 
 }  // namespace meshpipe

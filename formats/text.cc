@@ -11,7 +11,7 @@
 namespace meshpipe {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
 
 std::string_view without_leading_blanks(std::string_view text) {
   std::size_t i = 0;
@@ -62,12 +62,44 @@ std::string_view Text::rest() {
   return r;
 }
 
+bool Text::line_ends() const { return without_leading_blanks(left_).empty(); }
+
 double Text::number(const char* what) {
-  std::string_view w = word();
+  left_ = without_leading_blanks(left_);
+  const char* const end = left_.data() + left_.size();
   double value;
+  // nearly always the number is as from_chars wants it, and the word need not be found first
+  if (auto [stop, error] = std::from_chars(left_.data(), end, value);
+      error == std::errc() && (stop == end || is_blank(*stop)) && std::isfinite(value)) {
+    left_.remove_prefix(stop - left_.data());
+    return value;
+  }
+  std::string_view w = word();
   if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
   if (!parse_number(w, value)) fail(quoted(w) + " where " + what + " is due");
   return value;
+}
+
+std::string_view Text::next_word() {
+  for (;;) {
+    if (std::string_view w = word(); !w.empty()) return w;
+    if (!next_line()) return {};
+  }
+}
+
+double Text::next_number(const char* what) {
+  if (line_ends()) need_line(what);
+  return number(what);
+}
+
+int Text::next_integer(const char* what) {
+  if (line_ends()) need_line(what);
+  return integer(what);
+}
+
+void Text::skip(std::size_t n) {
+  left_ = {};
+  bytes_.remove_prefix(n);
 }
 
 Vec3 Text::point() {
@@ -76,6 +108,14 @@ Vec3 Text::point() {
 }
 
 int Text::integer(const char* what) {
+  left_ = without_leading_blanks(left_);
+  const char* const end = left_.data() + left_.size();
+  int small;
+  if (auto [stop, error] = std::from_chars(left_.data(), end, small);
+      error == std::errc() && (stop == end || is_blank(*stop))) {
+    left_.remove_prefix(stop - left_.data());
+    return small;
+  }
   std::string_view w = word();
   long long value;
   if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
@@ -98,8 +138,9 @@ int Text::count(const char* what, std::size_t least) {
 
 void Text::need_line(const char* what, int i, int n) {
   if (next_line()) return;
-  const std::string which = i < 0 ? "" : " " + std::to_string(i) + " of " + std::to_string(n);
-  fail("the file ends where " + (what + which) + " is due");
+  std::string which = what;
+  if (i >= 0) which += ' ' + std::to_string(i) + " of " + std::to_string(n);
+  fail("the file ends where " + which + " is due");
 }
 
 void Text::fail_at(std::size_t line, const std::string& what) const {
@@ -108,6 +149,13 @@ void Text::fail_at(std::size_t line, const std::string& what) const {
 
 bool parse_number(std::string_view word, double& value) {
   word = without_plus(word);
+  std::string fortran;  // which writes 1.5D+03
+  if (const std::size_t d = word.find_first_of("dD"); d != std::string_view::npos && d > 0) {
+    fortran = word;
+    fortran[d] = 'e';
+    if (d + 1 < fortran.size() && fortran[d + 1] == '+') fortran.erase(d + 1, 1);
+    word = fortran;
+  }
   auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty()) return false;
   // too small a number is 0 or denormal, as strtod says; too large a one is not finite

@@ -27,11 +27,18 @@ class Text {
   bool next_line();
   /// The next word of the line; empty at its end.
   std::string_view word();
+  /// The next word, on whatever line it is; empty at the end of the text.
+  std::string_view next_word();
+  /// The next word, on whatever line it is, as a number or an int.
+  double next_number(const char* what);
+  int next_integer(const char* what);
+  /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
+  void skip(std::size_t n);
   /// The next word again.
   std::string_view peek() const;
   /// What is left of the line, without blanks at either end.
   std::string_view rest();
-  bool line_ends() const { return peek().empty(); }
+  bool line_ends() const;
   /// The next word of the line as a finite number; `what` names it in the message when it is not one.
   double number(const char* what);
   /// The next three words as a point.
@@ -45,6 +52,8 @@ class Text {
   void need_line(const char* what, int i = -1, int n = -1);
 
   std::size_t line() const { return line_; }
+  /// The bytes that are left of the current line.
+  std::size_t rest_size() const { return left_.size(); }
   /// The bytes after the current line.
   std::string_view after() const { return bytes_; }
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }

@@ -96,6 +96,8 @@ Stream Io::read() {
   return read(input);
 }
 
+std::string Io::read_bytes(const std::string& path) { return read_all(path); }
+
 Stream Io::read(const std::string& path) const {
   return read_any(read_all(path), path == "-" ? "stdin" : path);
 }

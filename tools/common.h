@@ -19,6 +19,8 @@ class Io {
   Stream read();
   /// Reads a second file (a reference, say); `path` as the user gave it.
   Stream read(const std::string& path) const;
+  /// The bytes of another file of the user's, or of standard input for "-".
+  static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard output.
   void write(Stream& stream);
   /// Writes another stream to a file of the user's, in the format of its extension.

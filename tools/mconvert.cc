@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/inria.h"
 #include "formats/line_tables.h"
+#include "formats/vtk_legacy.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -11,8 +13,8 @@ using namespace meshpipe;
 namespace {
 
 struct Options {
-  bool charts = false, surface = false;
-  std::string color;
+  bool charts = false, surface = false, polydata = false;
+  std::string color, sol;
 };
 
 /// The charts in place of the surface: vertices (u, v, 0), one for each part a vertex touches; face columns
@@ -79,10 +81,15 @@ int main(int argc, char** argv) {
         app.add_option("--color", o.color, "face columns red green blue by this label")
             ->check(CLI::IsMember({"part", "patch"}))
             ->type_name("part|patch");
+        app.add_option("--sol", o.sol, "add the values of this .sol file to the vertices")->type_name("FILE");
+        app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
         app.add_flag("--surface", o.surface, "leave out all but vertices, faces, patches and colours");
       },
       [&](Io& io) {
+        if (o.polydata && !io.output.ends_with(".vtk"))
+          throw BadUsage("--polydata is for -o FILE.vtk, not '" + io.output + "'");
         Stream stream = io.read();
+        if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
         if (o.charts) flatten(stream);
         if (!o.color.empty()) color_by(stream.surface, o.color);
         if (o.surface) strip(stream);
@@ -92,7 +99,9 @@ int main(int argc, char** argv) {
         io.report["triangles"] = stream.surface.tris.size();
         if (io.output == "-" || io.output.ends_with(".mply"))
           io.write(stream);
+        else if (const bool ascii = io.ascii || (stream.ascii && !io.binary); o.polydata)
+          io.write_bytes(write_vtk_polydata(stream, ascii));
         else
-          io.write_bytes(write_as(stream, io.output, io.ascii || (stream.ascii && !io.binary)));
+          io.write_bytes(write_as(stream, io.output, ascii));
       });
 }

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   };
   return run_tool(argc, argv, "mpartition",
                   "Cut the surface until every part has genus 0 and at least one boundary.\n\n"
-                  "examples:\n  mclean scan.stl | mfeature | mpartition -o parts.ply\n"
-                  "  mclean scan.stl | mpartition --max-faces 50000 -o parts.ply",
+                  "examples:\n  mclean tree.stl | mfeature | mpartition -o parts.ply\n"
+                  "  mclean tree.stl | mpartition --max-faces 50000 -o parts.ply",
                   add_options, body);
 }

@@ -141,7 +141,7 @@ static std::vector<std::pair<std::array<Vec3, 3>, std::string>> soup(const Strea
 
 TEST(Formats, TextFormatsKeepEveryDigitAndName) {
   const Stream original = two_patches();
-  for (const char* path : {"a.mply", "a.ply", "a.stl", "a.obj", "a.msh"}) {
+  for (const char* path : {"a.mply", "a.ply", "a.stl", "a.obj", "a.msh", "a.msh4"}) {
     const std::string bytes = write_as(original, path, true);
     EXPECT_EQ(soup(read_any(bytes, path)), soup(original)) << path;
     // and what was read is written in the same way again
@@ -358,11 +358,10 @@ TEST(Msh, OtherVersionsAndBadNodesAreRefused) {
     std::string bytes = msh;
     return bytes.replace(bytes.find(from), std::strlen(from), to);
   };
-  EXPECT_EQ(failure(with("2.2 0", "4 0")), "in:2: msh version 4.0 is not built yet; 2.2 is");
-  EXPECT_EQ(failure(with("2.2 0", "4.1 0")), "in:2: msh version 4.1 is not built yet; 2.2 is");
-  EXPECT_EQ(failure(with("2.2 0", "2.2 1")), "in:2: binary msh (file type 1) is not built yet");
+  EXPECT_EQ(failure(with("2.2 0", "3 0")), "in:2: msh version 3, known are 1, 2, 4 and 4.1");
+  EXPECT_EQ(failure(with("2.2 0 8", "2.2 1 4")), "in:2: numbers of 4 bytes, 8 are due");
   EXPECT_EQ(failure(with("10 2 30\n4 2", "10 2 3\n4 2")),
-            "in:24: element 2 uses node 3, which is none of the 4");
+            "in:24: surface element 0 uses node 3, which is none of the 4");
   EXPECT_EQ(failure(with("4 0 1 0\n$", "2 0 1 0\n$")), "in:18: node number 2 is given twice");
   EXPECT_PRED1(names_a_place, failure(with("$Nodes\n4", "$Nodes\n5")));
   EXPECT_PRED1(names_a_place, failure(with("$Nodes\n4", "$Nodes\n3")));
