@@ -29,17 +29,24 @@ void take_rows(Table& table, const std::vector<int>& rows) {
 
 void blame(CleanReport& report, int triangle, Fault fault) { report.culprits.push_back({triangle, fault}); }
 
+void sort_culprits(CleanReport& report) {
+  std::sort(report.culprits.begin(), report.culprits.end(), [](const Culprit& a, const Culprit& b) {
+    return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
+  });
+}
+
 /// Finds the neighbours, and the duplicates: of the triangles on an edge, those with the same third vertex as
-/// an earlier one.
+/// an earlier one. The report tells of what it found when it was called first.
 void join(Repair& r, CleanReport& report) {
   const int n = (int)r.vertex.size();
   std::vector<char> gone(r.tris.size(), 0);
   std::vector<EdgeUse> third;
-  r.opposite.clear();
+  std::vector<int> many;  // triangles on non-manifold edges
+  int edges = 0;
   for (bool again = true; again;) {
     again = false;
-    report.nonmanifold_edges = 0;
-    std::erase_if(report.culprits, [](const Culprit& c) { return c.fault == Fault::nonmanifold; });
+    edges = 0;
+    many.clear();
     r.split.assign(n, 0);
     r.opposite.assign(3 * r.tris.size(), -1);
     for_each_edge(r.tris, n, [&](std::span<const EdgeUse> uses) {
@@ -55,8 +62,8 @@ void join(Repair& r, CleanReport& report) {
         }
       const int h = half_edge(uses[0]), g = half_edge(uses[1]);
       if (uses.size() > 2) {
-        ++report.nonmanifold_edges;
-        for (EdgeUse e : uses) blame(report, r.face[half_edge(e) / 3], Fault::nonmanifold);
+        ++edges;
+        for (EdgeUse e : uses) many.push_back(half_edge(e) / 3);
         r.split[origin(r.tris, h)] = r.split[target(r.tris, h)] = 1;
       } else {
         r.opposite[h] = g;
@@ -74,6 +81,9 @@ void join(Repair& r, CleanReport& report) {
       gone.assign(r.tris.size(), 0);
     }
   }
+  if (report.nonmanifold_edges) return;
+  report.nonmanifold_edges = edges;
+  for (int t : many) blame(report, r.face[t], Fault::nonmanifold);
 }
 
 /// Turns a triangle round: its half-edges 0 1 2 become 2 1 0.
@@ -134,36 +144,37 @@ void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone,
 
 /// Gives every fan of triangles round a vertex its own copy of the vertex, the first fan keeps it. Triangles
 /// of an edge that was left open and still share both its vertices lie in one fan at either end (a fan has
-/// two ends), in opposite directions, so what results is an oriented manifold.
+/// two ends), in opposite directions, so what results is an oriented manifold. The report tells of what it
+/// found when it was called first.
 void split_fans(Repair& r, CleanReport& report) {
   const int n = (int)r.vertex.size();
   std::vector<char> seen(r.opposite.size(), 0);
   enum : char { none, one, many };
   std::vector<char> fans(n, none);
-  std::vector<int> fan;
+  std::vector<int> fan, apart;  // the latter: triangles of second fans, but for those on split edges
+  int vertices = 0;
   for (int seed = 0; seed < (int)r.opposite.size(); ++seed) {
     if (seen[seed]) continue;
     fan.clear();
-    int h = seed;
-    do {
-      fan.push_back(h);
-      h = r.opposite[prev(h)];
-    } while (h >= 0 && h != seed);
-    if (h < 0)
-      for (h = r.opposite[seed]; h >= 0; h = r.opposite[h]) fan.push_back(h = next(h));
+    for_each_spoke(r, seed, [&](int g) { fan.push_back(g); });
     for (int g : fan) seen[g] = 1;
     const int v = origin(r.tris, seed);
     if (fans[v] != none) {
-      report.nonmanifold_vertices += fans[v] == one;
-      ++report.copies;
+      vertices += fans[v] == one;
       for (int g : fan) {
         r.tris[g / 3][g % 3] = (int)r.vertex.size();
-        if (!r.split[v]) blame(report, r.face[g / 3], Fault::pinched);
+        if (!r.split[v]) apart.push_back(g / 3);
       }
       r.vertex.push_back(r.vertex[v]);
     }
     fans[v] = fans[v] == none ? one : many;
   }
+  if (std::count(r.split.begin(), r.split.end(), 1))
+    r.opposite = opposite_halfedges(r.tris, (int)r.vertex.size());
+  report.copies = (int)r.vertex.size() - n;
+  if (report.nonmanifold_vertices) return;
+  report.nonmanifold_vertices = vertices;
+  for (int t : apart) blame(report, r.face[t], Fault::pinched);
 }
 
 /// Turns closed components inside out whose signed volume is clearly negative.
@@ -190,10 +201,11 @@ void face_outward(Repair& r, const std::vector<Vec3>& points) {
   }
 }
 
-/// Drops all components but the `keep` largest by area.
-void keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
+/// Drops all components but the `keep` largest by area; whether there were more.
+bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
   std::vector<int> component;
   const int n = components(r.opposite, component);
+  if (n <= keep) return false;
   std::vector<double> area(n, 0);
   for (std::size_t t = 0; t < r.tris.size(); ++t) {
     auto p = [&](int i) { return points[r.vertex[r.tris[t][i]]]; };
@@ -210,8 +222,17 @@ void keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanRep
       ++report.dropped_triangles;
       blame(report, r.face[t], Fault::small);
     }
-  report.dropped_components = std::max(0, n - keep);
-  if (report.dropped_triangles) drop(r, gone);
+  report.dropped_components += n - keep;
+  r.opposite.clear();
+  drop(r, gone);
+  return true;
+}
+
+/// Undoes split_fans: copies become the vertices of the input again.
+void unite(Repair& r, int n_input) {
+  for (Tri& t : r.tris)
+    for (int& v : t) v = r.vertex[v];
+  r.vertex.resize(n_input);
 }
 
 /// Leaves out vertices that no triangle uses, and numbers the others by first use.
@@ -308,33 +329,33 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   }
   for (int v = 0; v < n; ++v) report.unreferenced += same[v] == v && !used[v];
 
-  join(r, report);
   r.flipped.assign(r.tris.size(), 0);
   std::vector<char> gone;
-  for (;;) {
+  for (;;) {  // what shares an edge with others no more joins two of them, and those may disagree: once again
+    join(r, report);
     const std::size_t before = report.nonorientable.size();
     orient(r, surface.points, gone, report);
-    if (report.nonorientable.size() == before) break;
-    if (!options.drop_nonorientable) {
-      const std::size_t more = report.nonorientable.size() - 1;
-      throw NotAdmissible(describe(report.nonorientable[0]) +
-                          (more ? ", and " + std::to_string(more) + " more components" : ""));
+    if (report.nonorientable.size() > before) {
+      if (!options.drop_nonorientable) {
+        sort_culprits(report);
+        const std::size_t more = report.nonorientable.size() - 1;
+        throw NotAdmissible(describe(report.nonorientable[0]) +
+                            (more ? ", and " + std::to_string(more) + " more components" : ""));
+      }
+      r.opposite.clear();
+      drop(r, gone);
+      continue;
     }
-    r.opposite.clear();
-    drop(r, gone);
-    join(r, report);  // a sheet less may join two others, and those may disagree
+    split_fans(r, report);
+    if (!options.keep_components || !keep_largest(r, surface.points, options.keep_components, report)) break;
+    unite(r, n);
   }
   for (std::size_t t = 0; t < r.tris.size(); ++t)
     if (r.flipped[t]) blame(report, r.face[t], Fault::turned);
-  split_fans(r, report);
-  if (report.nonmanifold_edges) r.opposite = opposite_halfedges(r.tris, (int)r.vertex.size());
-  face_outward(r, surface.points);
   const FlatCounts flat = remove_flat(r, surface.points);
   report.flat = flat.left;
   report.degenerate += (int)flat.removed.size();
   for (int t : flat.removed) blame(report, t, Fault::degenerate);
-  if (options.keep_components) keep_largest(r, surface.points, options.keep_components, report);
-  report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
   std::vector<int> component;
   report.components = components(r.opposite, component);
   if (options.fill_holes) {
@@ -343,9 +364,9 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     report.hole_triangles = holes.triangles;
     report.holes_left = holes.left;
   }
-  std::stable_sort(report.culprits.begin(), report.culprits.end(), [](const Culprit& a, const Culprit& b) {
-    return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
-  });
+  face_outward(r, surface.points);  // at last, since a filled surface may be closed now
+  report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
+  sort_culprits(report);
   if (r.tris.empty())
     throw NotAdmissible("no triangle is left of " + std::to_string(report.input_triangles) + ": " +
                         std::to_string(report.degenerate) + " are degenerate, " +

@@ -69,30 +69,42 @@ class Polygon {
 
 HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most) {
   HoleCounts counts;
-  std::vector<int> place(r.vertex.size(), -1);  // in the loop at hand
+  // vertices that are copies of one another count as one here: filling may not make two edges or triangles at
+  // the same place, even on different sheets
+  std::vector<int> spoke(r.vertex.size(), -1), copy(r.vertex.size(), -1), last(points.size(), -1);
+  for (int h = 0; h < (int)r.opposite.size(); ++h) {
+    const int v = origin(r.tris, h);
+    if (spoke[v] >= 0) continue;
+    spoke[v] = h;
+    copy[v] = last[r.vertex[v]];
+    last[r.vertex[v]] = v;
+  }
+  std::vector<int> place(points.size(), -1);  // in the loop at hand
   for (const std::vector<int>& loop : boundary_loops(r.opposite)) {
     const int n = (int)loop.size();
     if (n > most) continue;
     // a hole is seen from its own side: its corners run against the half-edges of the border
     std::vector<int> vertices;
     std::vector<Vec3> corners;
+    bool sound = true;
     for (int i = n - 1; i >= 0; --i) {
-      vertices.push_back(target(r.tris, loop[i]));
-      corners.push_back(points[r.vertex[vertices.back()]]);
-      place[vertices.back()] = n - 1 - i;
+      const int v = target(r.tris, loop[i]), p = r.vertex[v];
+      sound = sound && place[p] < 0 && !r.split[p];
+      vertices.push_back(v);
+      corners.push_back(points[p]);
+      place[p] = n - 1 - i;
     }
     std::vector<char> joined(n * n, 0);
-    for (int h : loop)
-      for_each_spoke(r, h, [&](int g) {
-        for (int w : {target(r.tris, g), origin(r.tris, prev(g))})
-          if (place[w] >= 0) {
-            const int i = place[origin(r.tris, g)], j = place[w];
-            joined[i * n + j] = joined[j * n + i] = 1;
-          }
-      });
-    for (int v : vertices) place[v] = -1;
-    const bool lone = n == 3 && loop[0] / 3 == loop[1] / 3 && loop[1] / 3 == loop[2] / 3;
-    const std::vector<Tri> tris = lone ? std::vector<Tri>{} : Polygon(corners, joined).triangles();
+    for (int i = 0; i < n; ++i)
+      for (int v = last[r.vertex[vertices[i]]]; v >= 0; v = copy[v])
+        for_each_spoke(r, spoke[v], [&](int g) {
+          const int j = place[r.vertex[target(r.tris, g)]], k = place[r.vertex[origin(r.tris, prev(g))]];
+          for (int w : {j, k})
+            if (w >= 0) joined[i * n + w] = joined[w * n + i] = 1;
+          if (n == 3 && j >= 0 && k >= 0) sound = false;  // the triangle is there
+        });
+    for (int v : vertices) place[r.vertex[v]] = -1;
+    const std::vector<Tri> tris = sound ? Polygon(corners, joined).triangles() : std::vector<Tri>{};
     if (tris.empty()) {
       ++counts.left;
       continue;

@@ -48,7 +48,7 @@ FlatCounts remove_flat(Repair& r, const std::vector<Vec3>& points);
 
 struct HoleCounts {
   int filled = 0, triangles = 0;  ///< loops, and the triangles they took
-  int left = 0;                   ///< loops short enough that no triangulation fits without doubling an edge
+  int left = 0;                   ///< loops on non-manifold edges, or whose every filling doubles an edge
 };
 
 /// Fills border loops of at most `most` edges with triangles between their vertices: of all triangulations

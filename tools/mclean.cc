@@ -63,7 +63,8 @@ void tell(Io& io, const CleanReport& r, const Surface& surface, double within) {
       {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
       {"holes_filled", r.holes_filled, "holes filled"},
       {"hole_triangles", r.hole_triangles, "triangles added in holes"},
-      {"holes_left", r.holes_left, "holes left open: every filling would double an edge"},
+      {"holes_left", r.holes_left,
+       "holes left open, along non-manifold edges or where filling would double an edge"},
   };
   const std::string size = std::to_string(surface.points.size()) + " vertices, " +
                            std::to_string(surface.tris.size()) + " triangles, " +
