@@ -74,38 +74,60 @@ int EditMesh::split(int h) {
   return m;
 }
 
-bool EditMesh::can_collapse(int h) const {
-  const int a = from(h), b = to(h), g = opp[h];
-  if (g < 0 || on_border(a)) return false;
-  const int c = apex(h), d = apex(g);
+bool EditMesh::can_collapse(int h, int gone) const {
+  const int kept = from(h) == gone ? to(h) : from(h), g = opp[h];
+  const int c = apex(h), d = g < 0 ? -1 : apex(g);
+  int hard_edges = 0, last = 0;
+  star(gone, [&](int e) { hard_edges += hard[e], last = e; });
+  const bool border = opp[prev(last)] < 0;
+  hard_edges += border;
+  if (hard_edges != 0 && (hard_edges != 2 || !hard[h])) return false;
+  if (border && g >= 0) return false;
   bool ok = true;
-  // the only neighbours of both ends are the two apexes
-  star(a, [&](int e) {
-    ok = ok && !hard[e];
-    int v = to(e);
-    if (v != b && v != c && v != d && joined(b, v)) ok = false;
-  });
-  return ok && valence(a) <= max_collapse_valence && valence(b) > 3 && valence(c) > 3 && valence(d) > 3;
+  // the only neighbours of both ends are the apexes
+  neighbours(gone, [&](int v) { ok = ok && (v == kept || v == c || v == d || !joined(kept, v)); });
+  auto enough = [&](int v) { return v < 0 || valence(v) > (on_border(v) ? 2 : 3); };
+  return ok && valence(gone) <= max_collapse_valence && enough(gone) && enough(kept) && enough(c) &&
+         enough(d);
 }
 
-void EditMesh::collapse(int h) {
-  const int a = from(h), b = to(h), g = opp[h], h1 = next(h), h2 = prev(h), g1 = next(g), g2 = prev(g);
-  const int c = apex(h), d = apex(g);
-  const int right = opp[h1], left = opp[h2], low_left = opp[g1], low_right = opp[g2];
-  int leaving[max_collapse_valence], n = 0;
-  star(a, [&](int e) { leaving[n++] = e; });
-  for (int i = 0; i < n; ++i) tris[leaving[i] / 3][leaving[i] % 3] = b;
-  opp[left] = right, opp[low_left] = low_right;
-  hard[left] = hard[h1], hard[low_left] = hard[g2];
-  if (right >= 0) opp[right] = left;
-  if (low_right >= 0) opp[low_right] = low_left;
-  // left now runs from b to c, low_left from d to b
-  if (out[b] == h1 || out[b] / 3 == h / 3 || out[b] / 3 == g / 3) out[b] = left;
-  if (out[c] == h2) out[c] = right;
-  if (out[d] == g2) out[d] = low_left;
-  out[a] = -1;
-  tris[h / 3] = tris[g / 3] = {-1, -1, -1};
-  live -= 2;
+void EditMesh::collapse(int h, int gone) {
+  const int kept = from(h) == gone ? to(h) : from(h), g = opp[h];
+  int leaving[max_collapse_valence + 1], n = 0;
+  star(gone, [&](int e) { leaving[n++] = e; });
+  for (int i = 0; i < n; ++i) tris[leaving[i] / 3][leaving[i] % 3] = kept;
+
+  auto dead_soon = [&](int e) { return e < 0 || e / 3 == h / 3 || (g >= 0 && e / 3 == g / 3); };
+  // a leaving half-edge for v among the candidates: the border's if there is one
+  auto lead = [&](int v, std::initializer_list<int> candidates) {
+    int best = -1;
+    for (int e : candidates)
+      if (!dead_soon(e) && from(e) == v && (best < 0 || (opp[best] >= 0 && opp[e] < 0))) best = e;
+    out[v] = best;
+  };
+  int sides[4] = {-1, -1, -1, -1};  // half-edges that lose their neighbour, and find each other
+  int apexes[2] = {-1, -1};
+  for (int side = 0; side < 2; ++side) {
+    const int e = side ? g : h;
+    if (e < 0) continue;
+    const int x = opp[next(e)], y = opp[prev(e)];
+    const std::uint8_t is_hard = hard[next(e)] | hard[prev(e)];
+    if (x >= 0) opp[x] = y, hard[x] = is_hard;
+    if (y >= 0) opp[y] = x, hard[y] = is_hard;
+    sides[2 * side] = x, sides[2 * side + 1] = y;
+    apexes[side] = apex(e);
+  }
+  auto after = [](int e) { return e < 0 ? -1 : next(e); };
+  lead(kept, {out[kept], out[gone], sides[0], sides[1], sides[2], sides[3], after(sides[0]), after(sides[1]),
+              after(sides[2]), after(sides[3])});
+  for (int side = 0; side < 2; ++side)
+    if (int v = apexes[side]; v >= 0)
+      lead(v, {out[v], sides[2 * side], sides[2 * side + 1], after(sides[2 * side]),
+               after(sides[2 * side + 1])});
+  out[gone] = -1;
+  tris[h / 3] = {-1, -1, -1};
+  if (g >= 0) tris[g / 3] = {-1, -1, -1};
+  live -= g >= 0 ? 2 : 1;
 }
 
 }  // namespace meshpipe

@@ -35,11 +35,18 @@ struct EditMesh {
       h = opp[prev(h)];
     } while (h >= 0 && h != first);
   }
+  /// Calls f(w) for every vertex joined to v, counterclockwise.
+  template <class F>
+  void neighbours(int v, F&& f) const {
+    int last = 0;
+    star(v, [&](int h) { f(to(h)), last = h; });
+    if (opp[prev(last)] < 0) f(apex(last));
+  }
   /// Number of edges at v.
   int valence(int v) const {
-    int n = 0, last = 0;
-    star(v, [&](int h) { ++n, last = h; });
-    return n + (opp[prev(last)] < 0);
+    int n = 0;
+    neighbours(v, [&](int) { ++n; });
+    return n;
   }
   /// Is there an edge between a and b?
   bool joined(int a, int b) const;
@@ -51,12 +58,12 @@ struct EditMesh {
   /// hard. Triangles 3*2 new half-edges are appended: n is split off triangle h/3, n+1 off triangle opp[h]/3.
   /// Returns the vertex.
   int split(int h);
-  /// Moves the start of h to its end and removes it with the edge's two triangles. Precondition:
-  /// can_collapse(h).
-  void collapse(int h);
-  /// The start of h is inside with no hard edge, and the result is a manifold of the same topology (link
-  /// condition).
-  bool can_collapse(int h) const;
+  /// Contracts the edge of h: one of its vertices (`gone`) becomes the other, and the edge's one or two
+  /// triangles go. Precondition: can_collapse(h, gone).
+  void collapse(int h, int gone);
+  /// `gone` has no hard edge, or two of which h is one (it is taken out of its line), and the result is a
+  /// manifold of the same topology (link condition).
+  bool can_collapse(int h, int gone) const;
 };
 
 }  // namespace meshpipe

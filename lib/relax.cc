@@ -64,6 +64,7 @@ class Relaxer {
   RelaxReport run() {
     const double target = options_.target_triangles > 0 ? options_.target_triangles : wanted_triangles();
     for (int i = 0; i < 3; ++i) {
+      collapse_short_segments();
       split_long(1.4, 1e9);
       collapse_short(0.65, 0);
       flip_to_regular();
@@ -209,47 +210,63 @@ class Relaxer {
 
   // --- collapse ---
 
-  /// Collapses the edge of h onto its end (or a better point if the end is free) when the star stays
-  /// unfolded, sound in shape (energy at most `worst`, or no worse than now) and no edge gets longer than
-  /// `longest` times the size.
-  bool collapse(int h, double worst, double longest) {
-    const int a = m_.from(h), b = m_.to(h);
-    if (held_[a] || !m_.can_collapse(h)) return false;
-    const int c = m_.apex(h), d = m_.apex(m_.opp[h]);
-    if (m_.valence(a) + m_.valence(b) - 4 > 9) return false;
-    Place place = lifted_.place[b];
-    Vec3 p = at(b);
-    if (!held_[b]) {
-      place = walk_.closest(lifted_.place[b], lerp(at(a), at(b), 0.5));
+  /// Takes the vertex `gone` of the edge of h out, into the edge's other end (or a better point if that is
+  /// free), when the star stays unfolded, sound in shape (energy at most `worst`, or no worse than now) and
+  /// no edge gets longer than `longest` times the size. A vertex on a border or model edge goes only along
+  /// it, and only if the line hardly changes.
+  bool collapse(int h, int gone, double worst, double longest) {
+    const int kept = m_.from(h) == gone ? m_.to(h) : m_.from(h), g = m_.opp[h];
+    if (held_[gone] == fixed || (held_[gone] == slides && !m_.hard[h]) || !m_.can_collapse(h, gone))
+      return false;
+    const int c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
+    if (g >= 0 && m_.valence(gone) + m_.valence(kept) - 4 > 9) return false;
+    if (d >= 0 && held_[c] && held_[d] && held_[kept] && !m_.hard[h]) return false;
+    Place place = lifted_.place[kept];
+    Vec3 p = at(kept);
+    if (!held_[kept]) {
+      place = walk_.closest(lifted_.place[kept], lerp(at(gone), p, 0.5));
       p = walk_.point(place);
     }
-    const Vec3 facing = held_[b] ? facing_[b] : facing_at(place);
+    if (held_[gone] == slides) {
+      // the line's next vertex on the other side
+      int beyond = -1;
+      m_.star(gone, [&](int e) {
+        if (m_.hard[e] && m_.to(e) != kept) beyond = m_.to(e);
+        if (m_.hard[prev(e)] && m_.apex(e) != kept) beyond = m_.apex(e);
+      });
+      if (beyond < 0) return false;
+      const Vec3 chord = p - at(beyond);
+      if (norm(cross(chord, at(gone) - at(beyond))) > 0.1 * size_at(gone) * norm(chord)) return false;
+    }
+    const Vec3 facing = held_[kept] ? facing_[kept] : facing_at(place);
     double now = 0, after = 0, agreed = 1, agrees = 1;
     bool ok = true;
-    auto around = [&](int v) {
+    for (int v : {gone, kept})
       m_.star(v, [&](int e) {
         const Vec3 x = at(v), y = at(m_.to(e)), z = at(m_.apex(e));
         now = std::max(now, shape_energy(x, y, z));
         agreed = std::min(agreed, agreement(v, m_.to(e), m_.apex(e)));
-        if (e / 3 == h / 3 || e / 3 == m_.opp[h] / 3) return;
+        if (e / 3 == h / 3 || (g >= 0 && e / 3 == g / 3)) return;
         after = std::max(after, shape_energy(p, y, z));
         agrees = std::min(agrees, agreement(p, y, z, facing + facing_[m_.to(e)] + facing_[m_.apex(e)]));
-        if (norm(y - p) > longest * 0.5 * (size_at(m_.to(e)) + size_at(b)) && norm(y - p) > norm(y - x))
+        if (norm(y - p) > longest * 0.5 * (size_at(m_.to(e)) + size_at(kept)) && norm(y - p) > norm(y - x))
           ok = false;
       });
-    };
-    around(a);
-    around(b);
     if (!ok || (after > worst && after > now) || folds(agreed, agrees)) return false;
-    if (held_[c] && held_[d] && held_[b]) return false;
-    m_.collapse(h);
-    points_.points[b] = p;
-    lifted_.place[b] = place;
-    facing_[b] = facing;
-    touch(b);
-    m_.star(b, [&](int e) { touch(m_.to(e)), touch(m_.apex(e)); });
+    m_.collapse(h, gone);
+    points_.points[kept] = p;
+    lifted_.place[kept] = place;
+    facing_[kept] = facing;
+    touch(kept);
+    m_.neighbours(kept, [&](int v) { touch(v); });
     ++report_.collapses;
     return true;
+  }
+
+  /// Collapses the edge whichever way works.
+  bool collapse_either(int h, double worst, double longest) {
+    const int a = m_.from(h), b = m_.to(h);
+    return collapse(h, a, worst, longest) || collapse(h, b, worst, longest);
   }
 
   void collapse_short(double below, double least) {
@@ -257,9 +274,16 @@ class Relaxer {
                                [&](int h) { return ratio(m_.from(h), m_.to(h)); });
     for (int h : edges) {
       if (m_.live <= least) break;
-      if (m_.dead(h / 3) || m_.opp[h] < 0 || m_.hard[h] || ratio(m_.from(h), m_.to(h)) >= below) continue;
-      if (!collapse(h, 4, 1.4)) collapse(m_.opp[h], 4, 1.4);
+      if (!m_.dead(h / 3) && !m_.hard[h] && ratio(m_.from(h), m_.to(h)) < below) collapse_either(h, 4, 1.4);
     }
+  }
+
+  /// Segments of borders and model edges much shorter than the size: an interface that ended close to a
+  /// corner leaves them.
+  void collapse_short_segments() {
+    for (int h = 0; h < (int)m_.opp.size(); ++h)
+      if (!m_.dead(h / 3) && m_.hard[h] && h > m_.opp[h] && ratio(m_.from(h), m_.to(h)) < 0.5)
+        collapse_either(h, 4, 1.6);
   }
 
   /// Splits the longest or collapses the shortest edges until the count is within half a percent of the
@@ -282,7 +306,7 @@ class Relaxer {
         double l = norm(at(m_.to(h)) - at(v));
         if (l < shortest) shortest = l, best = h;
       });
-      collapse(best, 4, 1.6);
+      collapse(best, v, 4, 1.6);
     }
   }
 
@@ -521,10 +545,7 @@ class Relaxer {
           for (int h = 3 * t; h < 3 * t + 3; ++h)
             if (norm(at(m_.to(h)) - at(m_.from(h))) < norm(at(m_.to(shortest)) - at(m_.from(shortest))))
               shortest = h;
-          const double now = 1;
-          if (m_.opp[shortest] >= 0 && !m_.hard[shortest] &&
-              (collapse(shortest, now, 1.8) || collapse(m_.opp[shortest], now, 1.8)))
-            continue;
+          if (collapse_either(shortest, 1, 1.8)) continue;
         }
         for (int repeat = 0; repeat < 2; ++repeat)
           for (int v : m_.tris[t]) {

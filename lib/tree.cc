@@ -43,9 +43,9 @@ void coarsen(Mesh& mesh, int count) {
   for (int sweep = 0; sweep < 40 && edit.live > count; ++sweep, shortest *= 1.1)
     for (int h = 0; h < (int)edit.opp.size() && edit.live > count; ++h) {
       if (edit.dead(h / 3) || norm(p[edit.from(h)] - p[edit.to(h)]) > shortest) continue;
-      if (edit.can_collapse(h) && edit.valence(edit.from(h)) + edit.valence(edit.to(h)) < 13 &&
-          keeps_normals(h))
-        edit.collapse(h);
+      if (!edit.on_border(edit.from(h)) && edit.can_collapse(h, edit.from(h)) &&
+          edit.valence(edit.from(h)) + edit.valence(edit.to(h)) < 13 && keeps_normals(h))
+        edit.collapse(h, edit.from(h));
     }
   mesh.tris.clear();
   std::vector<int> to(p.size(), -1);

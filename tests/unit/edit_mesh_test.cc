@@ -99,31 +99,56 @@ TEST(EditMesh, SplitAddsAVertexOfValenceFour) {
   EXPECT_EQ(m.valence(v), 4);
 }
 
+TEST(EditMesh, CollapseTakesAVertexOut) {
+  EditMesh m = grid();
+  const int v = m.split(half_edge(m, 4, 3));
+  const int h = half_edge(m, v, 4);
+  ASSERT_TRUE(m.can_collapse(h, v));
+  m.collapse(h, v);
+  expect_sound(m);
+  EXPECT_EQ(m.live, 8);
+  EXPECT_TRUE(m.joined(3, 4));
+  EXPECT_LT(m.out[v], 0);
+}
+
 TEST(EditMesh, CollapseIntoTheBorder) {
   EditMesh m = grid();
-  int h = half_edge(m, 4, 5);
-  // the link condition holds, and valences stay above 2
-  ASSERT_TRUE(m.valence(5) == 4);
-  EXPECT_FALSE(m.can_collapse(half_edge(m, 5, 4))) << "the border does not move";
-  if (m.can_collapse(h)) {
-    m.collapse(h);
+  const int h = half_edge(m, 4, 5);
+  EXPECT_FALSE(m.can_collapse(h, 5)) << "the border does not leave its line";
+  ASSERT_TRUE(m.can_collapse(h, 4));
+  m.collapse(h, 4);
+  expect_sound(m);
+  EXPECT_EQ(m.live, 6);
+}
+
+TEST(EditMesh, CollapseAlongTheBorderEitherWay) {
+  for (int gone : {1, 2}) {
+    EditMesh m = grid();
+    const int h = half_edge(m, 1, 2);
+    ASSERT_LT(m.opp[h], 0);
+    ASSERT_TRUE(m.can_collapse(h, gone));
+    m.collapse(h, gone);
     expect_sound(m);
-    EXPECT_EQ(m.live, 6);
+    EXPECT_EQ(m.live, 7);
+    EXPECT_TRUE(m.joined(0, 3 - gone));
   }
-  EditMesh n = grid();
-  int v = n.split(half_edge(n, 4, 3));
-  h = half_edge(n, v, 4);
-  ASSERT_TRUE(n.can_collapse(h));
-  n.collapse(h);
-  expect_sound(n);
-  EXPECT_EQ(n.live, 8);
-  EXPECT_TRUE(n.joined(3, 4));
-  EXPECT_LT(n.out[v], 0);
+}
+
+TEST(EditMesh, CollapseAlongAModelEdge) {
+  // the line 1-4-7 through the middle
+  EditMesh m(grid().tris, 9, {0, 0b001, 0, 0, 0, 0b001, 0, 0});
+  EXPECT_TRUE(m.hard[half_edge(m, 4, 7)]);
+  EXPECT_FALSE(m.can_collapse(half_edge(m, 4, 5), 4)) << "a vertex goes along its line only";
+  ASSERT_TRUE(m.can_collapse(half_edge(m, 4, 7), 4));
+  m.collapse(half_edge(m, 4, 7), 4);
+  expect_sound(m);
+  EXPECT_TRUE(m.hard[half_edge(m, 1, 7)]);
 }
 
 TEST(EditMesh, ATetrahedronCannotCollapse) {
   EditMesh m({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, 4, {});
-  for (int h = 0; h < 12; ++h) EXPECT_FALSE(m.can_collapse(h));
+  for (int h = 0; h < 12; ++h)
+    for (int gone : {m.from(h), m.to(h)}) EXPECT_FALSE(m.can_collapse(h, gone));
 }
 
 }  // namespace
