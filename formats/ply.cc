@@ -258,7 +258,7 @@ class PlyReader {
       }
       std::vector<int> ints;
       if (p.type->integral && p.type->bytes == 4 && whole_numbers(p.values, ints)) p.values = std::move(ints);
-      add_columns(stream_, table, e.rows, {p.name, 1, std::move(p.values)});
+      add_columns(stream_, table, e.rows, {percent_decode(p.name), 1, std::move(p.values)});
     }
   }
 
