@@ -208,6 +208,9 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   try {
     try {
       body(io);
+    } catch (const NotAdmissible&) {
+      if (io.report.size() > 1) write_report();  // it had been measured
+      throw;
     } catch (const GoalMissed&) {
       write_report();
       throw;
