@@ -213,8 +213,8 @@ class PlyReader {
     for (std::size_t r = 0; r < e.rows; ++r) {
       for (Property& p : e.properties) {
         if (p.count) {
-          const double n = value(*p.count, e, r);
-          if (n < 0 || n != std::floor(n)) fail("a list of length " + std::to_string(n));
+          const int n = whole(value(*p.count, e, r), e, "a list of length", r);
+          if (n < 0) fail("a list of length " + std::to_string(n));
           if (p.role == Role::corners)
             corners(static_cast<std::size_t>(n), *p.type, e, r);
           else if (p.role == Role::strip)
@@ -258,7 +258,7 @@ class PlyReader {
       }
       std::vector<int> ints;
       if (p.type->integral && p.type->bytes == 4 && whole_numbers(p.values, ints)) p.values = std::move(ints);
-      add_columns(stream_, table, e.rows, {p.name, 1, std::move(p.values)});
+      add_columns(stream_, table, e.rows, {percent_decode(p.name), 1, std::move(p.values)});
     }
   }
 

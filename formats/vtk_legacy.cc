@@ -106,6 +106,10 @@ class LegacyReader {
       std::vector<double> v(n);
       for (double& x : v) x = real(what);
       return v;
+    } else if constexpr (std::is_same_v<T, std::int32_t>) {
+      std::vector<int> v(n);
+      for (int& x : v) x = text_.next_integer(what);
+      return v;
     } else {
       std::vector<long long> v(n);
       for (long long& x : v) {
@@ -282,7 +286,10 @@ class LegacyReader {
       const int n = text_.line_ends() ? 1 : components("the number of components");
       // LOOKUP_TABLE may be left out
       const Text before = text_;
-      if (!text_.next_line() || !same_word(text_.word(), "lookup_table")) text_ = before;
+      if (!text_.next_line() || !same_word(text_.word(), "lookup_table"))
+        text_ = before;
+      else
+        text_.rest();
       add(array, n, type);
     } else if (keyword == "vectors" || keyword == "normals") {
       add(array, 3, std::string(text_.word()));
@@ -419,7 +426,6 @@ std::string write(const Stream& stream, bool ascii, bool polydata) {
   writer.out = "# vtk DataFile Version 3.0\nmeshpipe\n";
   writer.out += ascii ? "ASCII\nDATASET " : "BINARY\nDATASET ";
   writer.out += polydata ? "POLYDATA\n" : "UNSTRUCTURED_GRID\n";
-  writer.field("FieldData", field_of_names(stream));
   writer.out += "POINTS " + std::to_string(s.points.size()) + " double\n";
   writer.values(s.points.empty() ? nullptr : &s.points[0].x, 3 * s.points.size(), 3);
   writer.out += polydata ? "POLYGONS " : "CELLS ";
@@ -432,6 +438,8 @@ std::string write(const Stream& stream, bool ascii, bool polydata) {
     writer.out += "CELL_TYPES " + std::to_string(n) + '\n';
     writer.values(std::vector<int>(n, vtk_triangle).data(), n, 1);
   }
+  // not before the points, where Gmsh takes no field
+  writer.field("FieldData", field_of_names(stream));
   writer.columns("POINT_DATA", s.vertex, s.points.size());
   writer.columns("CELL_DATA", s.face, n);
   return std::move(writer.out);

@@ -85,7 +85,8 @@ def header_counts(path):
     raise ValueError(path)
 
 
-VTK_READERS = {"ply": "vtkPLYReader", "stl": "vtkSTLReader", "obj": "vtkOBJReader", "vtu": "vtkXMLUnstructuredGridReader"}
+VTK_READERS = {"ply": "vtkPLYReader", "stl": "vtkSTLReader", "obj": "vtkOBJReader", "vtu": "vtkXMLUnstructuredGridReader",
+               "vtp": "vtkXMLPolyDataReader", "vtk": "vtkGenericDataObjectReader"}
 
 
 def vtk_read(path):
@@ -103,7 +104,7 @@ def vtk_checks(path):
     # the reader of STL merges equal points and drops unused ones
     points = VERTICES - 1 if kind == "stl" else VERTICES
     check(f"VTK, {path}", (data.GetNumberOfPoints(), data.GetNumberOfCells()), (points, FACES))
-    if kind == "vtu":
+    if kind in ("vtu", "vtp", "vtk"):
         patch = data.GetCellData().GetArray("patch")
         check(f"VTK, patches of {path}", [patch.GetValue(i) for i in range(FACES)], [1, 1, 5, 5])
         tags = [data.GetFieldData().GetArray(name) for name in ("inlet", "outer wall")]
@@ -115,7 +116,10 @@ def meshio_checks(path):
     kind = path.rsplit(".", 1)[1]
     if kind == "mply" or (kind == "ply" and "binary" in path):
         return  # meshio takes no further elements, and no column after the list in binary
-    mesh = meshio.read(path)
+    if kind in ("vtp", "gts", "poly", "sol"):
+        return
+    by_name = {"msh4": "gmsh", "msh2": "gmsh"}
+    mesh = meshio.read(path, file_format=by_name.get(kind))
     cells = sum(len(c.data) for c in mesh.cells if c.type == "triangle")
     points = len(mesh.points)
     if kind == "stl":
@@ -123,10 +127,16 @@ def meshio_checks(path):
     else:
         due = VERTICES
     check(f"meshio, {path}", (points, cells), (due, FACES))
-    if kind == "msh":
+    if kind.startswith("msh"):
         check(f"meshio, tags of {path}", [int(t) for c in mesh.cell_data["gmsh:physical"] for t in c], [1, 1, 5, 5])
         check(f"meshio, names of {path}", {n: int(v[0]) for n, v in mesh.field_data.items()}, {"inlet": 1, "outer wall": 5})
-    if kind == "vtu":
+        check(f"meshio, sizes of {path}", list(mesh.point_data["size"].ravel()), [1.0] * VERTICES)
+    if kind in ("bdf", "mesh", "meshb"):
+        tags = mesh.cell_data["nastran:ref" if kind == "bdf" else "medit:ref"]
+        check(f"meshio, tags of {path}", [int(t) for c in tags for t in c], [1, 1, 5, 5])
+    if kind == "inp":
+        check(f"meshio, sets of {path}", sorted(mesh.cell_sets), ["inlet", "outer_wall"])
+    if kind in ("vtu", "vtk"):
         check(f"meshio, patches of {path}", [int(t) for c in mesh.cell_data["patch"] for t in c], [1, 1, 5, 5])
 
 
@@ -153,6 +163,88 @@ def gmsh_checks(path, scratch):
         lines = file.read().split("\n")
     elements = lines[lines.index("$Elements") + 2:lines.index("$EndElements")]
     check(f"Gmsh, {path}", sum(e.split()[1] == "2" for e in elements), FACES)
+
+
+def vtk_written(scratch):
+    """The sample as VTK itself writes it, in every encoding: pairs of a file and what its data are."""
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    for p in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0.5), (2, 1, 0.5)):
+        points.InsertNextPoint(p)
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(points)
+
+    def cells(*rows):
+        array = vtk.vtkCellArray()
+        for row in rows:
+            array.InsertNextCell(len(row))
+            for v in row:
+                array.InsertCellPoint(v)
+        return array
+    # a vertex and a line, which are left out; a quadrilateral; a strip
+    surface.SetVerts(cells([0]))
+    surface.SetLines(cells([0, 1]))
+    surface.SetPolys(cells([0, 1, 2, 3]))
+    surface.SetStrips(cells([1, 4, 2, 5]))
+    patch = vtk.vtkIntArray()
+    patch.SetName("patch")
+    for tag in (8, 9, 1, 5):
+        patch.InsertNextValue(tag)
+    surface.GetCellData().AddArray(patch)
+    speed = vtk.vtkFloatArray()
+    speed.SetName("wall speed")
+    speed.SetNumberOfComponents(3)
+    for i in range(6):
+        speed.InsertNextTuple3(i, 0.5, 2)
+    surface.GetPointData().AddArray(speed)
+    append = vtk.vtkAppendFilter()
+    append.AddInputData(surface)
+    append.Update()
+    grid = append.GetOutput()
+    for data, xml, legacy, kind in ((surface, vtk.vtkXMLPolyDataWriter, vtk.vtkPolyDataWriter, "vtp"),
+                                    (grid, vtk.vtkXMLUnstructuredGridWriter, vtk.vtkUnstructuredGridWriter, "vtu")):
+        def write(writer, name):
+            path = os.path.join(scratch, name)
+            writer.SetInputData(data)
+            writer.SetFileName(path)
+            writer.Write()
+            return path
+        for mode in ("Ascii", "Binary", "Appended"):
+            for compressor in ("None", "ZLib"):
+                for encoded, big, wide in ((0, 0, 0), (1, 0, 1), (0, 1, 1), (1, 1, 0)):
+                    writer = xml()
+                    getattr(writer, f"SetDataModeTo{mode}")()
+                    getattr(writer, f"SetCompressorTypeTo{compressor}")()
+                    writer.SetBlockSize(64)
+                    writer.SetEncodeAppendedData(encoded)
+                    writer.SetByteOrder(0 if big else 1)
+                    writer.SetHeaderType(64 if wide else 32)
+                    yield write(writer, f"vtk-{mode}-{compressor}-{encoded}-{big}-{wide}.{kind}")
+        for version in (42, 51):
+            for binary in (0, 1):
+                writer = legacy()
+                writer.SetFileVersion(version)
+                writer.SetFileType(binary + 1)
+                yield write(writer, f"vtk-{kind}-{version}-{binary}.vtk")
+
+
+def gmsh_written(path, scratch):
+    """The sample as Gmsh writes it, in every version it knows."""
+    for kind, options in (("msh1", []), ("msh2", []), ("msh2", ["-bin"]), ("msh40", []), ("msh4", []),
+                          ("msh4", ["-bin"]), ("mesh", [])):
+        out = os.path.join(scratch, f"gmsh-{kind}{''.join(options)}.{kind}")
+        subprocess.run(["gmsh", path, "-save", "-format", kind, *options, "-o", out], stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL, timeout=120, check=False)
+        yield out
+
+
+def reads(mconvert, path, due):
+    """What mconvert makes of another program's file: rows of faces, without the vertex numbers."""
+    done = subprocess.run([mconvert, "--surface", "--ascii", path], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          check=False, text=True)
+    rows = done.stdout.split("end_header\n")[-1].splitlines()
+    patches = sorted(int(r.split()[4]) for r in rows if r.startswith("3 ") and len(r.split()) == 5)
+    check(f"mconvert on {path}", (done.stderr, patches), ("", due))
 
 
 def intermediates(programs, scratch):
@@ -184,7 +276,8 @@ def main():
         with open(sample, "w") as file:
             file.write(SAMPLE)
         for encoding in ("ascii", "binary"):
-            for kind in ("mply", "ply", "stl", "obj", "off", "msh", "vtu"):
+            for kind in ("mply", "ply", "stl", "obj", "off", "msh", "msh2", "msh4", "vtu", "vtp", "vtk", "mesh", "meshb", "sol",
+                         "gts", "bdf", "inp", "poly"):
                 path = os.path.join(scratch, f"{encoding}.{kind}")
                 subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
                 if vtk:
@@ -192,7 +285,16 @@ def main():
                 if meshio:
                     meshio_checks(path)
             if shutil.which("gmsh"):
-                gmsh_checks(os.path.join(scratch, f"{encoding}.msh"), scratch)
+                for kind in ("msh", "msh4", "vtk", "mesh", "bdf", "stl"):
+                    gmsh_checks(os.path.join(scratch, f"{encoding}.{kind}"), scratch)
+        if vtk:
+            for path in vtk_written(scratch):
+                reads(mconvert, path, [1, 1, 5, 5])
+            subprocess.run([mconvert, "--polydata", sample, "-o", os.path.join(scratch, "polydata.vtk")], check=True)
+            vtk_checks(os.path.join(scratch, "polydata.vtk"))
+        if shutil.which("gmsh"):
+            for path in gmsh_written(os.path.join(scratch, "ascii.msh"), scratch):
+                reads(mconvert, path, [1, 1, 5, 5])
         colored = os.path.join(scratch, "colored.ply")
         subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
         if vtk:

@@ -10,6 +10,7 @@
 #include <regex>
 #include <sstream>
 
+#include "formats/inria.h"
 #include "lib/error.h"
 
 using namespace meshpipe;
@@ -336,6 +337,11 @@ TEST(Ply, CountsAreNotTrusted) {
       "property float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\n";
   EXPECT_PRED1(names_a_place, failure(head + "end_header\n"));
   EXPECT_PRED1(names_a_place, failure(head + "element none 2000000000\nend_header\n"));
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n";
+  EXPECT_PRED1(names_a_place, failure(text + std::string(60, '7') + " 0 0 0\n"));
+  EXPECT_PRED1(names_a_place, failure(text + "-3 0 0 0\n"));
 }
 
 static const char* const msh =
@@ -378,12 +384,151 @@ TEST(Msh, TagsBelowOneAreCountedUpWithTheirNames) {
   EXPECT_EQ(soup(back), soup(s));
 }
 
+/// Columns by name: what formats with data must keep.
+static std::string columns(const Stream& s) {
+  Stream data;
+  for (auto [from, to] :
+       {std::pair{&s.surface.vertex, &data.surface.vertex}, {&s.surface.face, &data.surface.face}}) {
+    *to = *from;
+    std::sort(to->columns.begin(), to->columns.end(),
+              [](const Column& a, const Column& b) { return a.name < b.name; });
+  }
+  data.surface.points = s.surface.points;
+  data.surface.tris = s.surface.tris;
+  return write_stream(data, true);
+}
+
+TEST(Matrix, EveryFormatGivesTheSameTrianglesNamesAndData) {
+  Stream original = two_patches();
+  Surface& s = original.surface;
+  s.vertex.set<double>("wall%20shear.0", {0.1, 2, 3, 4, 5, 6, 7, 1e-300});
+  s.vertex.set<double>("wall%20shear.1", std::vector<double>(8, -1));
+  s.face.set<std::uint8_t>("model", {1, 0, 4, 1});
+  s.face.set<std::uint8_t>("red", {1, 2, 3, 255});
+  s.face.set<std::uint8_t>("green", {1, 2, 3, 0});
+  s.face.set<std::uint8_t>("blue", {1, 2, 3, 1});
+  // tiny, large, and neither
+  for (double scale : {1.0, 1e-7, 1e6}) {
+    Stream scaled = original;
+    for (Vec3& p : scaled.surface.points) p = scale / 3 * p;
+    for (const char* from : {"a.mply", "a.ply", "a.msh", "a.msh4", "a.vtu", "a.vtp", "a.vtk"})
+      for (bool ascii : {true, false}) {
+        const Stream first = read_any(write_as(scaled, from, ascii), from);
+        EXPECT_EQ(soup(first), soup(scaled)) << from << ascii;
+        // MSH has one number type, and no colours
+        if (!std::string(from).starts_with("a.msh"))
+          EXPECT_EQ(columns(first), columns(scaled)) << from << ascii;
+        else
+          EXPECT_EQ(first.surface.vertex.get<double>("wall%20shear.0"),
+                    s.vertex.get<double>("wall%20shear.0"));
+        for (const char* to : {"a.ply", "a.stl", "a.obj", "a.msh4", "a.vtu", "a.vtp", "a.vtk"})
+          EXPECT_EQ(soup(read_any(write_as(first, to, true), to)), soup(scaled)) << from << " to " << to;
+      }
+    for (const char* path : {"a.mesh", "a.meshb"}) {  // without names
+      const Stream back = read_any(write_as(scaled, path, true), path);
+      EXPECT_EQ(back.surface.points, scaled.surface.points);
+      EXPECT_EQ(back.surface.tris, scaled.surface.tris);
+      EXPECT_EQ(back.surface.face.get<int>("patch"), s.face.get<int>("patch"));
+      EXPECT_EQ(back.surface.face.get<std::uint8_t>("model"), s.face.get<std::uint8_t>("model"));
+    }
+  }
+}
+
+TEST(Matrix, AnEmptyMeshGoesThroughAll) {
+  for (const char* path :
+       {"a.ply", "a.off", "a.msh", "a.msh4", "a.vtu", "a.vtp", "a.vtk", "a.mesh", "a.meshb"})
+    for (bool ascii : {true, false})
+      EXPECT_EQ(read_any(write_as(Stream(), path, ascii), path).surface.tris.size(), 0u) << path;
+  for (const char* path : {"a.gts", "a.bdf", "a.inp", "a.poly"})
+    EXPECT_FALSE(write_as(Stream(), path, true).empty()) << path;
+}
+
+//  3---2   6
+//  |   |  / \      a strip 0 1 3 2, and a triangle 4 5 6 after a break
+//  0---1 4---5
+TEST(Ply, StripsAndDataOfVertices) {
+  const Stream s = read_any(
+      "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nproperty float quality\nproperty uint id\nelement tristrips 1\n"
+      "property list int int vertex_indices\nend_header\n"
+      "0 0 0 1 nan 4294967295\n1 0 0 2 2 1\n1 1 0 3 3 1\n0 1 0 4 4 1\n2 0 0 5 5 1\n4 0 0 6 6 1\n3 1 0 7 7 1\n"
+      "9 0 1 3 2 2 -1 4 5 6\n",
+      "in");
+  EXPECT_EQ(s.surface.tris, (std::vector<Tri>{{0, 1, 3}, {3, 1, 2}, {4, 5, 6}}));
+  EXPECT_EQ(s.surface.vertex.get<std::uint8_t>("red")[6], 7);
+  EXPECT_EQ(s.surface.vertex.get<double>("id")[0], 4294967295.0);
+  EXPECT_FALSE(s.surface.vertex.has("quality"));  // the stream holds no nan
+  EXPECT_EQ(s.remarks, std::vector<std::string>{"left out: vertex data quality, not finite in row 0"});
+}
+
+TEST(Inria, ReferencesRidgesAndSizes) {
+  const std::string mesh =
+      "MeshVersionFormatted\n2\n# by hand\nDimension\n3\nVertices 4\n0 0 0 7\n1 0 0 0\n1 1 0 0\n0 1 0.5d-1 "
+      "0\n"
+      "Normals 1\n0 0 1\nTriangles\n1\n1 2 3 9\nQuadrilaterals 1\n1 2 3 4 -2\nEdges 1\n2 1 5\nRidges 1\n1\n"
+      "Corners 1\n3\nRequiredTriangles 1\n1\nTetrahedra 1\n1 2 3 4 0\nEnd\n";
+  Stream s = read_any(mesh, "in");
+  EXPECT_EQ(s.surface.points[3], (Vec3{0, 1, 0.05}));
+  EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{9, -2, -2}));
+  EXPECT_EQ(s.surface.face.get<std::uint8_t>("required"), (std::vector<std::uint8_t>{1, 0, 0}));
+  EXPECT_EQ(s.surface.face.get<std::uint8_t>("model")[0], 1);
+  EXPECT_EQ(s.surface.vertex.get<int>("ref"), (std::vector<int>{7, 0, 0, 0}));
+  EXPECT_EQ(s.surface.vertex.get<std::uint8_t>("corner"), (std::vector<std::uint8_t>{0, 0, 1, 0}));
+  const std::string head = "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n";
+  read_sol(s, head + "4\n1 1\n1 2 3 4\nEnd\n", "sol");
+  EXPECT_EQ(s.surface.vertex.get<double>("size"), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(write_as(s, "a.sol", true), write_as(s, "b.sol", false));
+  EXPECT_THROW(read_sol(s, head + "3\n1 1\n1 2 3\n", "sol"), BadInput);
+  EXPECT_EQ(failure(head + "4\n1 1\n1 2 3 4\nEnd\n"),
+            "in:5: values for 4 vertices, but there are 0: a .sol file goes with a mesh");
+  EXPECT_THROW(write_as(two_patches(), "dir/b.txt", false), BadUsage);
+}
+
+TEST(Msh, OldVersionsAndDataOfSomeNodes) {
+  const Stream one = read_any(
+      "$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n$ELM\n2\n1 15 0 1 1 1\n2 2 4 1 3 1 2 3\n$ENDELM\n", "in");
+  EXPECT_EQ(one.surface.face.get<int>("patch"), std::vector<int>{4});
+  const std::string four =
+      "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Entities\n0 0 1 0\n7 0 0 0 1 1 0 1 3 0\n$EndEntities\n"
+      "$Nodes\n1 3\n7 2 0 3\n1 0 0 0\n2 1 0 0\n5 0 1 0\n$EndNodes\n$Elements\n1 1\n7 2 2 1\n1 1 2 "
+      "5\n$EndElements\n";
+  const Stream s =
+      read_any(four + "$NodeData\n1\n\"a b\"\n1\n0\n3\n0\n1\n3\n1 1\n2 2\n5 0.1\n$EndNodeData\n", "in");
+  EXPECT_EQ(s.surface.face.get<int>("patch"), std::vector<int>{3});
+  EXPECT_EQ(s.surface.vertex.get<double>("a%20b"), (std::vector<double>{1, 2, 0.1}));
+  EXPECT_EQ(read_any(four + "$NodeData\n1\n\"a\"\n1\n0\n3\n0\n1\n1\n1 1\n$EndNodeData\n", "in").remarks,
+            std::vector<std::string>{"left out: vertex data a, given for 1 of 3"});
+}
+
+TEST(Vtk, CellsThatAreNoSurfaceAreLeftOutWithTheirData) {
+  // a vertex, a line, a quad and a strip; cell data count them all
+  const Stream s = read_any(
+      "# vtk DataFile Version 4.2\r\n\r\nASCII\r\nDATASET POLYDATA\r\nPOINTS 4 float\r\n0 0 0 1 0 0\r\n1 1 0 "
+      "0 1 0\r\n"
+      "VERTICES 1 2\r\n1 0\r\nLINES 1 3\r\n2 0 1\r\nTRIANGLE_STRIPS 1 5\r\n4 0 1 3 2\r\nPOLYGONS 1 5\r\n4 0 "
+      "1 2 3\r\n"
+      "CELL_DATA 4\r\nSCALARS CellEntityIds int 1\r\nLOOKUP_TABLE default\r\n7 8 9 10\r\n",
+      "in");
+  EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{9, 9, 10, 10}));
+  EXPECT_EQ(s.surface.tris[2], (Tri{0, 1, 3}));
+  EXPECT_EQ(s.surface.tris[3], (Tri{3, 1, 2}));
+  const std::string grid =
+      "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 1 1 0\n";
+  EXPECT_EQ(failure(grid + "CELLS 1 4\n3 0 1 3\nCELL_TYPES 1\n5\n"),
+            "in:7: cell 0 uses point 3, but there are 3");
+  EXPECT_EQ(failure(grid + "CELLS 1 4\n3 0 1 2\n"), "in:8: 0 cell types, but 1 cells");
+  EXPECT_PRED1(names_a_place, failure(grid + "CELLS 1 2000000000\n3 0 1 2\n"));
+  EXPECT_PRED1(names_a_place,
+               failure("<VTKFile type=\"PolyData\">\n<PolyData>\n<Piece NumberOfPoints=\"99999999999\">"));
+}
+
 TEST(Formats, EveryReaderSurvivesDamage) {
   std::vector<std::string> files = {
       msh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", std::string("solid a\n") + facet + "endsolid a\n",
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 2 3\ng b\nf 1/2/3 2//4 -1 -2\n"};
   for (const Writer& w : writers())
-    for (bool ascii : {true, false}) files.push_back(w.write(two_patches(), ascii));
+    for (bool ascii : {true, false})
+      files.push_back(w.write(two_patches(), ascii));  // read or refused, all of them
   for (const fs::path& path : examples("passed"))
     for (bool ascii : {true, false}) files.push_back(write_stream(read_stream(contents(path), "in"), ascii));
   const char replacements[] = {'\0', '-', '9', '\n', ' ', '\xff', '#', 'e'};
