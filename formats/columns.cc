@@ -57,6 +57,10 @@ std::string_view stem(const std::string& name, std::size_t k) {
 }  // namespace
 
 bool whole_numbers(const Data& data, std::vector<int>& out) {
+  if (const auto* ints = std::get_if<std::vector<int>>(&data)) {
+    out = *ints;
+    return true;
+  }
   return std::visit(
       [&](const auto& v) {
         for (auto x : v)

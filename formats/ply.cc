@@ -213,8 +213,8 @@ class PlyReader {
     for (std::size_t r = 0; r < e.rows; ++r) {
       for (Property& p : e.properties) {
         if (p.count) {
-          const double n = value(*p.count, e, r);
-          if (n < 0 || n != std::floor(n)) fail("a list of length " + std::to_string(n));
+          const int n = whole(value(*p.count, e, r), e, "a list of length", r);
+          if (n < 0) fail("a list of length " + std::to_string(n));
           if (p.role == Role::corners)
             corners(static_cast<std::size_t>(n), *p.type, e, r);
           else if (p.role == Role::strip)

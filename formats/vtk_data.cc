@@ -16,15 +16,12 @@ constexpr const char* labels[] = {"patch",       "gmsh:physical", "medit:ref",  
 }  // namespace
 
 void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::string& place) {
-  const std::string name = "cell " + std::to_string(cells);
+  auto fail = [&](const std::string& what) {
+    throw BadInput(place + ": cell " + std::to_string(cells) + ' ' + what);
+  };
   for (std::size_t i = 0; i < n; ++i)
     if (corners[i] < 0 || corners[i] >= static_cast<int>(points.size()))
-      throw BadInput(place + ": " + name + " uses point " + std::to_string(corners[i]) + ", but there are " +
-                     std::to_string(points.size()));
-  for (int curved : {22, 23, 28, 30, 34, 36, 63, 64, 69, 70, 76, 77})
-    if (type == curved)
-      throw BadInput(place + ": " + name + " is of type " + std::to_string(type) +
-                     ", which is curved, but only flat ones are read");
+      fail("uses point " + std::to_string(corners[i]) + ", but there are " + std::to_string(points.size()));
   auto add = [&](std::initializer_list<int> polygon) {
     polygons.corners.insert(polygons.corners.end(), polygon);
     polygons.ends.push_back(polygons.corners.size());
@@ -32,8 +29,8 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
   };
   auto due = [&](std::size_t least, std::size_t most) {
     if (n < least || n > most)
-      throw BadInput(place + ": " + name + " of type " + std::to_string(type) + " has " + std::to_string(n) +
-                     " points, " + std::to_string(n < least ? least : most) + " are due");
+      fail("of type " + std::to_string(type) + " has " + std::to_string(n) + " points, " +
+           std::to_string(n < least ? least : most) + " are due");
   };
   switch (type) {
     case vtk_triangle:
@@ -58,6 +55,9 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       add({corners[0], corners[1], corners[2], corners[3]});
       break;
     default:  // vertices, lines and volumes
+      for (int curved : {22, 23, 28, 30, 34, 36, 63, 64, 69, 70, 76, 77})
+        if (type == curved)
+          fail("is of type " + std::to_string(type) + ", which is curved, but only flat ones are read");
       break;
   }
   ++cells;

@@ -106,6 +106,10 @@ class LegacyReader {
       std::vector<double> v(n);
       for (double& x : v) x = real(what);
       return v;
+    } else if constexpr (std::is_same_v<T, std::int32_t>) {
+      std::vector<int> v(n);
+      for (int& x : v) x = text_.next_integer(what);
+      return v;
     } else {
       std::vector<long long> v(n);
       for (long long& x : v) {

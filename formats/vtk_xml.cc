@@ -182,7 +182,7 @@ class XmlReader {
     }
     auto value = [&](std::size_t i) { return values[i]; };
     if constexpr (std::is_same_v<T, std::uint8_t>) return as_data<std::uint8_t>(values.size(), value);
-    if constexpr (std::is_same_v<Value, double>) return values;
+    if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, int>) return values;
     return as_data<Value>(values.size(), value);
   }
 
@@ -263,10 +263,11 @@ class XmlReader {
     return array;
   }
 
-  /// Whole numbers, `extra` added to each.
   std::vector<int> integers(pugi::xml_node node) const {
     std::vector<int> out;
-    if (!whole_numbers(load(node).data, out)) fail(node, shown(node) + " has values that are no int");
+    Array array = load(node);
+    if (auto* ints = std::get_if<std::vector<int>>(&array.data)) return std::move(*ints);
+    if (!whole_numbers(array.data, out)) fail(node, shown(node) + " has values that are no int");
     return out;
   }
 

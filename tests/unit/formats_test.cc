@@ -337,6 +337,11 @@ TEST(Ply, CountsAreNotTrusted) {
       "property float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\n";
   EXPECT_PRED1(names_a_place, failure(head + "end_header\n"));
   EXPECT_PRED1(names_a_place, failure(head + "element none 2000000000\nend_header\n"));
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n";
+  EXPECT_PRED1(names_a_place, failure(text + std::string(60, '7') + " 0 0 0\n"));
+  EXPECT_PRED1(names_a_place, failure(text + "-3 0 0 0\n"));
 }
 
 static const char* const msh =
