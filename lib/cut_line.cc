@@ -157,19 +157,6 @@ void lead_around(std::vector<Stop>& path) {
   path.swap(out);
 }
 
-/// Where most of the surface of a level is: what the line halves where there is nothing to pass through.
-Vec2 middle_of(const FilledDisk& disk, const Level& level) {
-  Vec2 sum;
-  double total = 0;
-  for (std::size_t i = 0; i < level.tris.size(); i++) {
-    const Tri& t = disk.tris[level.tris[i]];
-    const double area = norm(area_vector(disk.points[t[0]], disk.points[t[1]], disk.points[t[2]]));
-    total += area;
-    for (int v : level.corners[i]) sum = sum + (area / 3) * level.uv[v];
-  }
-  return (1 / total) * sum;
-}
-
 /// The stops of a level, with a place for the line's ends before and after them.
 std::vector<Stop> stops_of(const FilledDisk& disk, const std::vector<Level>& levels, const Level& level) {
   std::vector<Stop> path(1);

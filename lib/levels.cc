@@ -576,6 +576,18 @@ FilledDisk fill_holes(const Mesh& part) {
   return disk;
 }
 
+Vec2 middle_of(const FilledDisk& disk, const Level& level) {
+  Vec2 sum;
+  double total = 0;
+  for (std::size_t i = 0; i < level.tris.size(); i++) {
+    const Tri& t = disk.tris[level.tris[i]];
+    const double area = norm(area_vector(disk.points[t[0]], disk.points[t[1]], disk.points[t[2]]));
+    total += area;
+    for (int v : level.corners[i]) sum = sum + (area / 3) * level.uv[v];
+  }
+  return (1 / total) * sum;
+}
+
 std::vector<Level> laplace_levels(const FilledDisk& disk, double min_area, int min_set) {
   return LevelSolver(disk, min_area, min_set).run();
 }

@@ -41,6 +41,9 @@ struct Level {
   std::vector<double> angle;  ///< of the border's vertices on the own circle, rising by less than 2 pi
 };
 
+/// Where most of the surface of a level is: what the line halves where there is nothing to pass through.
+Vec2 middle_of(const FilledDisk& disk, const Level& level);
+
 /// Level 0 maps the rim to the unit circle. Triangles whose image is smaller than `min_area` times the
 /// level's disk are withdrawn in edge-connected sets; each set of `min_set` triangles or more is a level of
 /// its own, with the parent's image of its border as Dirichlet data. Parents come before children; every

@@ -8,11 +8,15 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <tuple>
 
+#include "lib/balance.h"
 #include "lib/cut.h"
 #include "lib/cut_line.h"
 #include "lib/error.h"
 #include "lib/levels.h"
+#include "lib/regions.h"
+#include "lib/straighten.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -117,97 +121,6 @@ bool better(const Assessment& a, const Assessment& b) {
   return cost(a) < cost(b);
 }
 
-/// May the vertex change sides without changing the topology of either? It may if its neighbours of one side
-/// follow each other around it, and those of the other too.
-bool is_simple(const Part& part, const std::vector<double>& field, int corner) {
-  const std::vector<Tri>& tris = part.mesh.tris;
-  const auto positive = [&](int v) { return field[v] > 0; };
-  int changes = 0, h = corner;
-  do {  // counter-clockwise over the triangles of the vertex; h leaves it
-    changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
-    h = part.opposite[prev(h)];
-  } while (h >= 0 && h != corner);
-  if (h == corner) return changes == 2;
-  for (h = part.opposite[corner]; h >= 0; h = part.opposite[h]) {
-    h = next(h);
-    changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
-  }
-  return changes == 1;
-}
-
-/// Shortens the zero level where it is bent: rounds of six damped Jacobi steps for the Laplacian, each
-/// starting from the distance to the level, cut off at two edge lengths so that the other side of a strip is
-/// not felt. No vertex changes sides where that would change the topology.
-void straighten(const Part& part, std::vector<double>& field, int rounds) {
-  const std::vector<Tri>& tris = part.mesh.tris;
-  const std::vector<Vec3>& p = part.mesh.points;
-  const std::size_t n = field.size();
-  std::vector<int> corner(n);
-  std::vector<double> length(n, 0), sum(n), weight(n), slope(n);
-  for (std::size_t h = 0; h < part.opposite.size(); h++) {
-    const int v = origin(tris, h);
-    corner[v] = h;
-    length[v] += norm(p[target(tris, h)] - p[v]);
-    weight[v]++;
-  }
-  for (std::size_t v = 0; v < n; v++) length[v] /= weight[v];
-  std::vector<char> ring(n);
-  std::vector<int> active, members;
-  auto mixed = [&](const Tri& c) {
-    return (field[c[0]] > 0) != (field[c[1]] > 0) || (field[c[1]] > 0) != (field[c[2]] > 0);
-  };
-  for (int round = 0; round < rounds; round++) {
-    // the level's triangles give distances, two rings around them move
-    std::fill(ring.begin(), ring.end(), 0);
-    active.clear();
-    members.clear();
-    for (std::size_t t = 0; t < tris.size(); t++)
-      if (const Tri& c = tris[t]; mixed(c)) {
-        const double twice = norm(area_vector(p[c[0]], p[c[1]], p[c[2]]));
-        const double rise = norm(field[c[0]] * (p[c[2]] - p[c[1]]) + field[c[1]] * (p[c[0]] - p[c[2]]) +
-                                 field[c[2]] * (p[c[1]] - p[c[0]]));
-        for (int v : c) {
-          if (!ring[v]) sum[v] = weight[v] = 0;
-          ring[v] = 1;
-          sum[v] += rise;
-          weight[v] += twice;
-        }
-      }
-    for (std::size_t v = 0; v < n; v++) {
-      double d = 2 * length[v];
-      if (ring[v] && sum[v] > 0) d = std::min(d, std::abs(field[v]) * weight[v] / sum[v]);
-      field[v] = std::copysign(std::max(d, 1e-6 * length[v]), field[v]);
-    }
-    for (std::size_t t = 0; t < tris.size(); t++)
-      if (ring[tris[t][0]] || ring[tris[t][1]] || ring[tris[t][2]]) active.push_back(t);
-    for (int t : active)
-      for (int v : tris[t])
-        if (ring[v] < 2) {
-          ring[v] = 2;
-          members.push_back(v);
-        }
-    for (int step = 0; step < 6; step++) {
-      for (int v : members) sum[v] = weight[v] = 0;
-      for (int t : active)
-        for (int k = 0; k < 3; k++) {
-          const int a = tris[t][k], b = tris[t][(k + 1) % 3];
-          const double w = part.disk.weights[3 * t + k];
-          sum[a] += w * field[b];
-          sum[b] += w * field[a];
-          weight[a] += w;
-          weight[b] += w;
-        }
-      for (int v : members) {
-        const double f = 0.5 * field[v] + 0.5 * sum[v] / weight[v];
-        if (f != 0 && ((f > 0) == (field[v] > 0) || is_simple(part, field, corner[v])))
-          field[v] = f;
-        else
-          field[v] *= 0.5;
-      }
-    }
-  }
-}
-
 /// The last resort: across the part, half way from its rim to its farthest vertex. It always shortens the
 /// part.
 std::vector<double> across(const Part& part) {
@@ -260,7 +173,8 @@ std::vector<double> best_field(const Part& part, const MultiscaleOptions& option
     drop_fragments(part, best);
     best_is = assess(part, best);
   }
-  straighten(part, best, 12);
+  constexpr int rounds = 10;
+  balance_sides(part.disk, part.opposite, find_branches(part.disk, levels), best, rounds);
   return best;
 }
 
@@ -281,6 +195,73 @@ int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topolo
   return loops;
 }
 
+/// Joins neighbours that were cut here, those with the longest shared border first, while the union is
+/// admissible: a ring's two long arcs, each cut lengthwise, make two flat rings. Returns the number of parts.
+int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, double max_aspect,
+               std::vector<MultiscaleCut>* cuts) {
+  std::vector<int>& label = surface.face.get<int>("part");
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
+  Joiner joiner(surface, opposite, label, find_regions(surface, opposite, label, n_parts));
+  struct Pair {
+    int a, b;
+    double length;
+  };
+  std::vector<int> becomes(n_parts);
+  std::iota(becomes.begin(), becomes.end(), 0);
+  std::vector<Pair> refused;
+  bool joined_any = false;
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<Pair> pairs;
+    for (int a = 0; a < n_parts; a++)
+      for (int h : joiner.regions().border[a])
+        if (int o = opposite[h]; o >= 0 && was_cut[a] && was_cut[label[o / 3]] && a < label[o / 3])
+          pairs.push_back(
+              {a, label[o / 3],
+               norm(surface.points[target(surface.tris, h)] - surface.points[origin(surface.tris, h)])});
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& p, const Pair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
+    std::size_t n = 0;
+    for (const Pair& p : pairs)
+      if (n > 0 && pairs[n - 1].a == p.a && pairs[n - 1].b == p.b)
+        pairs[n - 1].length += p.length;
+      else
+        pairs[n++] = p;
+    pairs.resize(n);
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& p, const Pair& q) { return p.length > q.length; });
+    for (const Pair& p : pairs) {
+      auto same = [&](const Pair& q) { return q.a == p.a && q.b == p.b; };
+      if (std::any_of(refused.begin(), refused.end(), same)) continue;
+      refused.push_back(p);
+      const Region r = joiner.joined(p.a, p.b);
+      if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect) continue;
+      std::vector<int> both(label.size());
+      for (std::size_t t = 0; t < both.size(); t++) both[t] = label[t] == p.a || label[t] == p.b ? 0 : -1;
+      if (!admissible(topology_of(split_by_label(surface, both, 1)[0]), max_aspect)) continue;
+      joiner.join(p.a, p.b);
+      for (int& b : becomes)
+        if (b == p.b) b = p.a;
+      std::erase_if(refused,
+                    [&](const Pair& q) { return q.a == p.a || q.b == p.a || q.a == p.b || q.b == p.b; });
+      joined_any = again = true;
+      break;
+    }
+  }
+  if (!joined_any) return n_parts;
+  std::vector<int> number(n_parts, -1);
+  int n = 0;
+  for (int p = 0; p < n_parts; p++)
+    if (becomes[p] == p) number[p] = n++;
+  for (int& l : label) l = number[l];
+  if (cuts)
+    for (MultiscaleCut& c : *cuts)
+      for (int& half : c.halves) half = number[becomes[half]];
+  constexpr double snap = 0.1;
+  straighten_interfaces(surface, n, snap);
+  return n;
+}
+
 std::string name(int part) { return "part " + std::to_string(part); }
 
 }  // namespace
@@ -288,6 +269,8 @@ std::string name(int part) { return "part " + std::to_string(part); }
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts) {
   const std::vector<int>& given = surface.face.get<int>("part");
   int n_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
+  const int given_parts = n_parts;
+  std::vector<char> was_cut(n_parts, 0);
   struct Task {
     int part, depth;
   };
@@ -356,8 +339,11 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     }
     n_parts++;
     if (cuts) cuts->push_back(cut);
+    was_cut.resize(n_parts, 0);
+    for (int half : cut.halves) was_cut[half] = 1;
   }
-  return n_parts;
+  return n_parts > given_parts + 1 ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
+                                   : n_parts;
 }
 
 }  // namespace meshpipe

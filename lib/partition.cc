@@ -394,13 +394,15 @@ Interfaces measure_interfaces(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
   const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   Interfaces r;
-  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end)
+  const bool has_model = surface.face.has("model");
+  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end, or -1 across a model edge)
   for (int h = 0; h < (int)opposite.size(); ++h)
     if (opposite[h] > h && part[h / 3] != part[opposite[h] / 3]) {
       int a = origin(surface.tris, h), b = target(surface.tris, h);
       r.length += norm(surface.points[b] - surface.points[a]);
-      ends.push_back({a, b});
-      ends.push_back({b, a});
+      const bool model = has_model && surface.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1;
+      ends.push_back({a, model ? -1 : b});
+      ends.push_back({b, model ? -1 : a});
     }
   if (ends.empty()) return r;
   r.length /= diagonal(surface);
@@ -409,14 +411,16 @@ Interfaces measure_interfaces(const Surface& surface) {
   for (std::size_t i = 0, j; i < ends.size(); i = j) {
     for (j = i + 1; j < ends.size() && ends[j].first == ends[i].first;) ++j;
     const Vec3 p = surface.points[ends[i].first];
-    if (j - i == 2)
+    if (j - i == 2 && ends[i].second >= 0)
       turning.push_back(angle(p - surface.points[ends[i].second], surface.points[ends[i + 1].second] - p));
     if (j - i > 2) ++r.junctions;
   }
   if (turning.empty()) return r;
   auto quantile = turning.begin() + (std::ptrdiff_t)(turning.size() * 9 / 10);
   std::nth_element(turning.begin(), quantile, turning.end());
-  r.turning_angle = *quantile * 180 / 3.14159265358979323846;
+  constexpr double degrees = 180 / 3.14159265358979323846;
+  r.turning_angle = *quantile * degrees;
+  r.largest_angle = *std::max_element(quantile, turning.end()) * degrees;
   return r;
 }
 

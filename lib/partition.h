@@ -29,8 +29,9 @@ std::string part_fault(const Surface& surface);
 /// How long and how straight the interfaces between the parts are.
 struct Interfaces {
   double length = 0;  ///< over the diagonal of the surface's bounding box
-  double turning_angle =
-      0;  ///< the 90 % quantile of the angle between successive edges, in degrees; junctions left out
+  /// The 90 % quantile and the largest of the angles between successive edges, in degrees; without junctions
+  /// and model edges.
+  double turning_angle = 0, largest_angle = 0;
   int junctions = 0;  ///< vertices with three or more interface edges
 };
 Interfaces measure_interfaces(const Surface& surface);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lib/multiscale.h"
+#include "lib/partition.h"
 #include "lib/topology.h"
 #include "tools/common.h"
 
@@ -48,7 +49,17 @@ int main(int argc, char** argv) {
                                    {"length", c.length},
                                    {"halves", {c.halves[0], c.halves[1]}}});
     }
-    io.say(std::to_string(n_parts) + (n_parts == 1 ? " part" : " parts"));
+    const Interfaces cut = measure_interfaces(stream.surface);
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%), %.0f at most",
+                  n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle,
+                  cut.largest_angle);
+    io.say(text);
+    io.report["cut_length"] = cut.length;
+    io.report["junctions"] = cut.junctions;
+    io.report["turning_angle"] = cut.turning_angle;
+    io.report["largest_angle"] = cut.largest_angle;
     stream.set(part_table(stream.surface, n_parts));
     io.write(stream);
   };

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves a cut so that it halves every branch of a part along opposite sides, and is smooth.
+#pragma once
+#include <vector>
+
+#include "lib/levels.h"
+
+namespace meshpipe {
+
+/// May the vertex change sides without changing the topology of either side of the field's zero level?
+/// `corner` is a half-edge that leaves it.
+bool is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+               const std::vector<double>& field, int corner);
+
+/// The branches of a part as its Laplace maps see them: the map of a tube of radius r is exp((-z + i s) / r)
+/// around the centre of the set or hole behind it.
+struct Branches {
+  std::vector<double> radius;  ///< of vertices: the distance to the nearest such centre over the map's stretch
+  std::vector<Vec3> axis;      ///< of triangles: the unit direction towards it, or zero
+};
+Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels);
+
+/// Threshold dynamics of the sides of the zero level at the scale of the branches: new sides are the signs of
+/// S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the cross-section. On a tube that
+/// leaves mostly the first harmonic around it: two halves on opposite sides. Vertices change sides one after
+/// another and only where that keeps the topology of both sides; so a strip that is too thin grows, and the
+/// ends of the cut slide along the borders.
+void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
+                   std::vector<double>& field, int rounds);
+
+}  // namespace meshpipe
