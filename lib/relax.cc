@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/bvh.h"
 #include "lib/edit_mesh.h"
 #include "lib/intersect.h"
 #include "lib/walk.h"
@@ -81,6 +82,7 @@ class Relaxer {
       flip_to_shape();
       smooth(2);
     }
+    reach_tips();
     mend_worst();
     separate();
     return finish();
@@ -216,7 +218,7 @@ class Relaxer {
   /// it, and only if the line hardly changes.
   bool collapse(int h, int gone, double worst, double longest) {
     const int kept = m_.from(h) == gone ? m_.to(h) : m_.from(h), g = m_.opp[h];
-    if (held_[gone] == fixed || (held_[gone] == slides && !m_.hard[h]) || !m_.can_collapse(h, gone))
+    if (held_[gone] >= fixed || (held_[gone] == slides && !m_.hard[h]) || !m_.can_collapse(h, gone))
       return false;
     const int c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
     if (g >= 0 && m_.valence(gone) + m_.valence(kept) - 4 > 9) return false;
@@ -504,7 +506,7 @@ class Relaxer {
 
   /// Moves v unless nothing round it has changed since it was last tried.
   void improve(int v) {
-    if (m_.out[v] < 0 || held_[v] == fixed || (tried_[v] && tried_[v] > changed_[v])) return;
+    if (m_.out[v] < 0 || held_[v] >= fixed || (tried_[v] && tried_[v] > changed_[v])) return;
     tried_[v] = ++clock_;
     if (held_[v] == slides ? slide(v) : move(v)) {
       touch(v);
@@ -520,6 +522,59 @@ class Relaxer {
   }
 
   // --- the last few ---
+
+  /// Tips and ridges that the mesh cuts off are where it is farthest from the reference. For the vertices of
+  /// the reference that lie farther than a tenth of the size, the farthest first, the mesh vertex nearest by
+  /// goes there and stays, if it can walk there and leaves its star in good shape.
+  void reach_tips() {
+    Mesh now{points_.points, {}};
+    std::vector<int> number;
+    for (int t = 0; t < (int)m_.tris.size(); ++t)
+      if (!m_.dead(t)) now.tris.push_back(m_.tris[t]), number.push_back(t);
+    if (now.tris.empty()) return;
+    const Bvh tree(now);
+    const int n = (int)reference_.points.size();
+    std::vector<Bvh::Hit> hit(n);
+#pragma omp parallel for schedule(static)
+    for (int v = 0; v < n; ++v) hit[v] = tree.nearest(reference_.points[v]);
+    const double h = std::sqrt(4 / sqrt3 * total_area(now) / (double)now.tris.size());
+    std::vector<std::pair<double, int>> far;
+    double farthest = 0;
+    for (int v = 0; v < n; ++v) farthest = std::max(farthest, hit[v].distance);
+    const double far_enough = std::max(0.1 * h, 0.5 * farthest);
+    for (int v = 0; v < n; ++v)
+      if (hit[v].distance > far_enough) far.push_back({-hit[v].distance, v});
+    std::sort(far.begin(), far.end());
+    int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
+    for (auto [minus_distance, v] : far) {
+      if (left == 0) break;
+      const Vec3 tip = reference_.points[v];
+      int nearest = -1;
+      for (int w : m_.tris[number[hit[v].place.face]])
+        if (held_[w] == free_ && (nearest < 0 || norm(at(w) - tip) < norm(at(nearest) - tip))) nearest = w;
+      if (nearest < 0) continue;
+      const Place place = walk_.closest(lifted_.place[nearest], tip);
+      const Vec3 p = walk_.point(place), facing = facing_at(place);
+      if (norm(p - tip) > 1e-6 * h) continue;
+      double worst = 0;
+      m_.star(nearest,
+              [&](int e) { worst = std::max(worst, shape_energy(p, at(m_.to(e)), at(m_.apex(e)))); });
+      if (worst > 1.9 || folds(star_state(nearest, at(nearest), facing_[nearest]).agreement,
+                               star_state(nearest, p, facing).agreement))
+        continue;
+      points_.points[nearest] = p;
+      lifted_.place[nearest] = place;
+      facing_[nearest] = facing;
+      if (ref_size_) lifted_.size[nearest] = interpolate(place);
+      held_[nearest] = anchored;
+      --left;
+      touch(nearest);
+      m_.neighbours(nearest, [&](int w) { touch(w); });
+    }
+    smooth(3);
+    flip_to_shape();
+    smooth(2);
+  }
 
   double kappa_of(int t) const { return kappa(at(m_.tris[t][0]), at(m_.tris[t][1]), at(m_.tris[t][2])); }
 
@@ -608,7 +663,8 @@ class Relaxer {
     for (std::size_t v = 0; v < m_.out.size(); ++v) {
       if (m_.out[v] < 0) continue;
       number[v] = n;
-      r.place[n] = r.place[v], r.kind[n] = held_[v] ? r.kind[v] : 0, r.line[n] = held_[v] ? r.line[v] : -1;
+      const bool on_line = held_[v] == slides || held_[v] == fixed;
+      r.place[n] = r.place[v], r.kind[n] = on_line ? r.kind[v] : 0, r.line[n] = on_line ? r.line[v] : -1;
       r.size[n] = r.size[v];
       points_.points[n++] = points_.points[v];
     }
@@ -648,7 +704,7 @@ class Relaxer {
   Mesh points_;
   std::vector<Vec3> ref_normal_;  ///< at the reference's vertices, not of unit length
   std::vector<Vec3> facing_;      ///< the reference's normal at each vertex's place; zero on model edges
-  enum : char { free_ = 0, slides = 1, fixed = 2 };
+  enum : char { free_ = 0, slides = 1, fixed = 2, anchored = 3 };
   std::vector<char> held_;     ///< per vertex: free, on a border or model edge, or a corner
   std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_,

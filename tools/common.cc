@@ -62,6 +62,15 @@ std::string extension_of(const std::string& path) {
   return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
 }
 
+/// The bytes of a file: a format by its extension, the stream for any other.
+std::string encode(const std::string& path, const Stream& stream, bool text) {
+  const std::string ext = extension_of(path);
+  if (path != "-" && ext != ".ply")
+    for (const Writer& w : writers())
+      if (ext == w.extension) return w.write(stream, text);
+  return write_stream(stream, text);
+}
+
 /// The options given on the command line that change the result, as they are recorded in the stream.
 std::string recorded(const CLI::App& app) {
   std::string out;
@@ -95,14 +104,14 @@ Stream Io::read(const std::string& path) const {
 
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
-  const std::string ext = extension_of(output);
   const bool text = ascii || (stream.ascii && !binary);
-  if (output != "-" && ext != ".ply")
-    for (const Writer& w : writers())
-      if (ext == w.extension) return write_bytes(w.write(stream, text));
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  write_bytes(write_stream(stream, text));
+  write_bytes(encode(output, stream, text));
+}
+
+void Io::write_to(const std::string& path, const Stream& stream) const {
+  write_file(path, encode(path, stream, ascii));
 }
 
 void Io::write_bytes(std::string_view bytes) const {

@@ -23,6 +23,8 @@ class Io {
   static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard output.
   void write(Stream& stream);
+  /// Writes another stream to a file of the user's, in the format of its extension.
+  void write_to(const std::string& path, const Stream& stream) const;
   /// Writes bytes to -o FILE or standard output, the same way.
   void write_bytes(std::string_view bytes) const;
   /// Writes bytes to another file of the user's, beside it and renamed.

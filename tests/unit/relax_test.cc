@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/feature.h"
+#include "lib/shape.h"
+#include "lib/topology.h"
+
+using namespace meshpipe;
+
+namespace {
+
+/// A surface as the lifted mesh of itself: every vertex at its own place.
+LiftedMesh lifted_of(const Surface& s) {
+  LiftedMesh m;
+  m.points = s.points;
+  m.tris = s.tris;
+  const std::size_t n = s.points.size();
+  m.place.resize(n);
+  for (int t = 0; t < (int)s.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      Place p{t, 0, 0, 0};
+      (i == 0 ? p.b0 : i == 1 ? p.b1 : p.b2) = 1;
+      m.place[s.tris[t][i]] = p;
+    }
+  m.kind.assign(n, 0);
+  m.line.assign(n, -1);
+  m.size = s.vertex.get<double>("size");
+  m.patch = s.face.has("patch") ? s.face.get<int>("patch") : std::vector<int>(s.tris.size(), 1);
+  m.part.assign(s.tris.size(), 0);
+  m.model =
+      s.face.has("model") ? s.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>(s.tris.size(), 0);
+  return m;
+}
+
+Surface sized(const Mesh& mesh, double triangles) {
+  Surface s;
+  static_cast<Mesh&>(s) = mesh;
+  s.face.rows = mesh.tris.size();
+  const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
+  s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
+  return s;
+}
+
+void expect_on_surface(const LiftedMesh& m, const Surface& s) {
+  for (std::size_t v = 0; v < m.points.size(); ++v) {
+    const Place& p = m.place[v];
+    ASSERT_GE(p.face, 0);
+    ASSERT_LT(p.face, (int)s.tris.size());
+    const Tri& t = s.tris[p.face];
+    const Vec3 x = p.b0 * s.points[t[0]] + p.b1 * s.points[t[1]] + p.b2 * s.points[t[2]];
+    EXPECT_LT(norm(x - m.points[v]), 1e-12 * diagonal(s));
+  }
+}
+
+TEST(Relax, ATorusBecomesRegularAndStaysATorus) {
+  const Surface s = sized(torus(0.4, 6000), 3000);
+  LiftedMesh m = lifted_of(s);
+  const RelaxReport r = relax(m, s, {});
+  EXPECT_NEAR((double)m.tris.size(), 3000, 0.03 * 3000);
+  EXPECT_EQ(r.intersections, 0);
+  EXPECT_GT(r.kappa_min, 0.7);
+  EXPECT_GT(r.kappa_mean, 0.97);
+  const Topology t = topology_of(m);
+  EXPECT_EQ(t.genus, 1);
+  EXPECT_EQ(t.loops, 0);
+  EXPECT_EQ(t.components, 1);
+  expect_on_surface(m, s);
+}
+
+TEST(Relax, SliversAndNoiseGo) {
+  Surface s = sized(sphere(4000), 2000);
+  add_slivers(s, 0.3, 1);
+  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  LiftedMesh m = lifted_of(s);
+  EXPECT_GT(relax(m, s, {}).kappa_min, 0.6);
+  EXPECT_EQ(topology_of(m).genus, 0);
+  expect_on_surface(m, s);
+}
+
+TEST(Relax, TheSameInputGivesTheSameBytes) {
+  const Surface s = sized(torus(0.3, 3000), 2000);
+  LiftedMesh a = lifted_of(s), b = lifted_of(s);
+  relax(a, s, {});
+  relax(b, s, {});
+  EXPECT_TRUE(a.points == b.points);
+  EXPECT_TRUE(a.tris == b.tris);
+}
+
+TEST(Relax, ModelEdgesOfACubeStay) {
+  Body body = cube(2000);
+  Surface s = sized(body, 1500);
+  s.face.set("patch", body.patch);
+  mark_features(s, {});
+  LiftedMesh m = lifted_of(s);
+  // its twelve edges are lines: a vertex on two patches slides, one on three is a corner
+  std::vector<std::vector<int>> patches(s.points.size());
+  for (std::size_t t = 0; t < s.tris.size(); ++t)
+    for (int v : s.tris[t])
+      if (auto& p = patches[v]; std::find(p.begin(), p.end(), body.patch[t]) == p.end())
+        p.push_back(body.patch[t]);
+  for (std::size_t v = 0; v < patches.size(); ++v)
+    if (patches[v].size() > 1) m.kind[v] = patches[v].size() > 2 ? 2 : 1, m.line[v] = 0;
+  relax(m, s, {model_line});
+  expect_on_surface(m, s);
+  // eight corners, where they were
+  int corners = 0;
+  for (std::size_t v = 0; v < m.points.size(); ++v)
+    if (m.kind[v] == 2) {
+      ++corners;
+      const Vec3 p = m.points[v];
+      for (double x : {p.x, p.y, p.z}) EXPECT_TRUE(x == 0 || x == 1 || x == -0.5 || x == 0.5) << x;
+    }
+  EXPECT_EQ(corners, 8);
+  // no triangle leaves its face of the cube: the area is exact
+  EXPECT_NEAR(total_area(m), total_area(s), 1e-9);
+}
+
+}  // namespace
