@@ -38,7 +38,7 @@ class Io {
   std::string input = "-", output = "-";
   bool ascii = false, binary = false, quiet = false, verbose = false;
   int threads = 0;
-  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 5 or 6
+  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 4 (if it holds anything), 5, 6
   std::string json;
 
  private:
