@@ -226,9 +226,12 @@ class LegacyReader {
     }
     text_ = before;
     // a number of corners before those of each cell
+    if (n > size)
+      throw BadInput(c.place + ": " + std::to_string(n) + " cells, but only " + std::to_string(size) +
+                     " numbers");
     std::vector<int> all = integers("int", size, "cells");
     c.ends.reserve(n);
-    c.corners.reserve(size >= n ? size - n : 0);
+    c.corners.reserve(size - n);
     std::size_t i = 0;
     for (std::size_t k = 0; k < n; ++k) {
       if (i >= all.size() || all[i] < 0 || static_cast<std::size_t>(all[i]) > all.size() - i - 1)

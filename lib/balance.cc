@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <queue>
 
 #include "lib/sparse.h"
 
@@ -30,23 +33,137 @@ Vec3 direction_of_descent(const FilledDisk& disk, int t, const double (&value)[3
   return length > 0 ? (-1 / length) * d : Vec3{};
 }
 
+/// Strips so thin that the smoothed sides deny them, as on the way to a hole that lies out of the way, change
+/// sides: the hole is then in the other half as a whole. A strip that holds larger pieces of its side
+/// together stays. Returns whether there was one.
+bool drop_hairs(const std::vector<Tri>& tris, int n_tris, const std::vector<double>& smoothed,
+                std::vector<double>& field) {
+  constexpr double deny = 0.4;
+  const int n = (int)field.size();
+  std::vector<int> parent(n), size(n, 0);
+  std::iota(parent.begin(), parent.end(), 0);
+  auto root = [&](int v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  auto is_thin = [&](int v) { return (field[v] > 0 ? smoothed[v] : -smoothed[v]) < -deny; };
+  std::vector<std::pair<int, int>> touching;  // (thin vertex, vertex of its side that is not)
+  for (int h = 0; h < 3 * n_tris; ++h) {
+    int a = origin(tris, h), b = target(tris, h);
+    if ((field[a] > 0) != (field[b] > 0)) continue;
+    if (is_thin(a) == is_thin(b)) {
+      a = root(a), b = root(b);
+      parent[std::max(a, b)] = std::min(a, b);
+    } else {
+      touching.push_back(is_thin(a) ? std::pair(a, b) : std::pair(b, a));
+    }
+  }
+  for (int v = 0; v < n; ++v) ++size[root(v)];
+  for (auto& [thin, piece] : touching) thin = root(thin), piece = root(piece);
+  std::erase_if(touching, [&](auto& p) { return size[p.second] <= size[p.first]; });
+  std::sort(touching.begin(), touching.end());
+  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+  std::vector<char> holds(n, 0);
+  for (std::size_t i = 1; i < touching.size(); ++i)
+    if (touching[i].first == touching[i - 1].first) holds[touching[i].first] = 1;
+  bool any = false;
+  std::vector<char> drop(n);
+  for (int v = 0; v < n; ++v) any |= drop[v] = is_thin(v) && !holds[root(v)];
+  for (int v = 0; v < n; ++v)
+    if (drop[v]) field[v] = -field[v];
+  return any;
+}
+
 }  // namespace
 
-bool is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
-               const std::vector<double>& field, int corner) {
-  // it may if its neighbours of one side follow each other around it, and those of the other too
+namespace {
+
+/// How often the side changes from one neighbour of the vertex to the next; sets `on_border`.
+int changes_around(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                   const std::vector<double>& field, int corner, bool& on_border) {
   const auto positive = [&](int v) { return field[v] > 0; };
   int changes = 0, h = corner;
   do {  // counter-clockwise over the triangles of the vertex; h leaves it
     changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
     h = opposite[prev(h)];
   } while (h >= 0 && h != corner);
-  if (h == corner) return changes == 2;
+  on_border = h != corner;
+  if (!on_border) return changes;
   for (h = opposite[corner]; h >= 0; h = opposite[h]) {
     h = next(h);
     changes += positive(target(tris, h)) != positive(origin(tris, prev(h)));
   }
-  return changes == 1;
+  return changes;
+}
+
+}  // namespace
+
+bool is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+               const std::vector<double>& field, int corner) {
+  // it may if its neighbours of one side follow each other around it, and those of the other too
+  bool on_border;
+  const int changes = changes_around(tris, opposite, field, corner, on_border);
+  return changes == (on_border ? 1 : 2);
+}
+
+void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::vector<double>& field) {
+  const int n = disk.part_vertices;
+  const std::vector<Tri>& tris = disk.tris;
+  std::vector<int> corner(n, -1), from(n, -1), seen, path;
+  std::vector<double> distance(n, HUGE_VAL);
+  for (int h = 0; h < 3 * disk.part_tris; ++h) corner[origin(tris, h)] = h;
+  using Item = std::pair<double, int>;
+  for (std::size_t f = 0; f + 1 < disk.fan_begin.size(); ++f) {
+    const int begin = disk.fan_begin[f], end = disk.fan_begin[f + 1];
+    const bool side = field[tris[begin][0]] > 0;
+    bool whole = true;
+    for (int t = begin; t < end; ++t) whole &= (field[tris[t][0]] > 0) == side;
+    if (!whole) continue;
+    for (int v : seen) distance[v] = HUGE_VAL;
+    seen.clear();
+    std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
+    auto reach = [&](int v, double d, int u) {
+      if (d >= distance[v]) return;
+      if (distance[v] == HUGE_VAL) seen.push_back(v);
+      distance[v] = d;
+      from[v] = u;
+      queue.push({d, v});
+    };
+    for (int t = begin; t < end; ++t) reach(tris[t][0], 0, -1);
+    int reached = -1;
+    while (!queue.empty() && reached < 0) {
+      const auto [d, v] = queue.top();
+      queue.pop();
+      if (d > distance[v]) continue;
+      if ((field[v] > 0) != side) reached = v;
+      auto visit = [&](int w) { reach(w, d + norm(disk.points[w] - disk.points[v]), v); };
+      int h = corner[v];
+      do {
+        visit(target(tris, h));
+        visit(origin(tris, prev(h)));
+        h = opposite[prev(h)];
+      } while (h >= 0 && h != corner[v]);
+      if (h < 0)
+        for (h = opposite[corner[v]]; h >= 0; h = opposite[h]) {
+          h = next(h);
+          visit(target(tris, h));
+        }
+    }
+    if (reached < 0) continue;
+    path.clear();
+    bool cuts_open = true;
+    for (int v = from[reached]; v >= 0 && cuts_open; v = from[v]) {
+      bool on_border;
+      const int changes = changes_around(tris, opposite, field, corner[v], on_border);
+      cuts_open = changes == 2 && on_border == (from[v] < 0);
+      if (cuts_open) {
+        field[v] = -field[v];
+        path.push_back(v);
+      }
+    }
+    if (!cuts_open)
+      for (int v : path) field[v] = -field[v];
+  }
 }
 
 Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels) {
@@ -163,40 +280,44 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
 
   std::vector<double> level(n), again;
   std::vector<int> changes, rest;
-  for (int round = 0; round < rounds; ++round) {
-    for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
-    again = level;
-    apply(section, again);
-    for (int v = 0; v < n; ++v) level[v] -= again[v];
-    apply(smoother, level);
-    apply(smoother, level);
-    changes.clear();
-    for (int v = 0; v < n; ++v) {
-      if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
+  auto settle = [&](int most_rounds) {
+    for (int round = 0, flipped = 1; round < most_rounds && flipped > 0; ++round) {
+      for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+      again = level;
+      apply(section, again);
+      for (int v = 0; v < n; ++v) level[v] -= again[v];
+      apply(smoother, level);
+      apply(smoother, level);
+      changes.clear();
+      for (int v = 0; v < n; ++v)
+        if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
+      // from the level inwards, as far as the topology lets it
+      flipped = 0;
+      for (std::size_t before = 0; changes.size() != before;) {
+        before = changes.size();
+        rest.clear();
+        for (int v : changes)
+          if (is_simple(tris, opposite, field, corner[v])) {
+            field[v] = -field[v];
+            ++flipped;
+          } else {
+            rest.push_back(v);
+          }
+        changes.swap(rest);
+      }
+      // a vertex that has to stay on its side is passed closely
+      constexpr double close = 1e-2, least = 1e-12;
+      for (int v = 0; v < n; ++v) {
+        const double size = std::abs(level[v]);
+        field[v] = std::copysign(
+            (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
+      }
     }
-    // from the level inwards, as far as the topology lets it
-    int flipped = 0;
-    for (std::size_t before = 0; changes.size() != before;) {
-      before = changes.size();
-      rest.clear();
-      for (int v : changes)
-        if (is_simple(tris, opposite, field, corner[v])) {
-          field[v] = -field[v];
-          ++flipped;
-        } else {
-          rest.push_back(v);
-        }
-      changes.swap(rest);
-    }
-    // a vertex that has to stay on its side is passed closely
-    constexpr double close = 1e-2, least = 1e-12;
-    for (int v = 0; v < n; ++v) {
-      const double size = std::abs(level[v]);
-      field[v] = std::copysign(
-          (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
-    }
-    if (flipped == 0) break;
-  }
+  };
+  settle(rounds);
+  for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+  apply(smoother, level);
+  if (drop_hairs(tris, disk.part_tris, level, field)) settle(rounds);
 }
 
 }  // namespace meshpipe

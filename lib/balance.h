@@ -20,6 +20,10 @@ struct Branches {
 };
 Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels);
 
+/// Leads a strip one vertex wide, along a shortest path over edges, from the other side to every hole that
+/// lies in one side as a whole; only where that cuts the side open and does no more. balance_sides widens it.
+void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::vector<double>& field);
+
 /// Threshold dynamics of the sides of the zero level at the scale of the branches: new sides are the signs of
 /// S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the cross-section. On a tube that
 /// leaves mostly the first harmonic around it: two halves on opposite sides. Vertices change sides one after

@@ -2,38 +2,17 @@
 #include "lib/clean.h"
 
 #include <algorithm>
-#include <bit>
+#include <cstdio>
 #include <numeric>
 
 #include "lib/edges.h"
 #include "lib/error.h"
+#include "lib/repair.h"
 #include "lib/topology.h"
+#include "lib/weld.h"
 
 namespace meshpipe {
 namespace {
-
-std::uint64_t mix(std::uint64_t x) {  // a bijection that spreads every bit (multiply and fold, twice)
-  x = (x ^ x >> 32) * 0x9E3779B97F4A7C15u;
-  x = (x ^ x >> 29) * 0xD6E8FEB86659FD93u;
-  return x ^ x >> 32;
-}
-
-/// same[v] is the first vertex of `used` with the coordinates of v.
-std::vector<int> weld(const std::vector<Vec3>& points, const std::vector<char>& used) {
-  const std::size_t mask = std::bit_ceil(2 * points.size() + 2) - 1;
-  std::vector<int> slot(mask + 1, -1), same(points.size());
-  auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
-  for (int v = 0; v < (int)points.size(); ++v) {
-    same[v] = v;
-    if (!used[v]) continue;
-    const Vec3 p = points[v];
-    std::size_t i = mix(bits(p.x) + mix(bits(p.y) + mix(bits(p.z)))) & mask;
-    while (slot[i] >= 0 && !(points[slot[i]] == p)) i = (i + 1) & mask;
-    if (slot[i] < 0) slot[i] = v;
-    same[v] = slot[i];
-  }
-  return same;
-}
 
 /// Rows of a table in another order; rows may be left out or repeated.
 void take_rows(Table& table, const std::vector<int>& rows) {
@@ -48,37 +27,26 @@ void take_rows(Table& table, const std::vector<int>& rows) {
   table.rows = rows.size();
 }
 
-/// The surface while it is repaired: where each triangle and vertex came from, and neighbours across edges of
-/// two triangles.
-struct Repair {
-  std::vector<Tri> tris;
-  std::vector<int> face;      ///< triangle of the input
-  std::vector<int> vertex;    ///< vertex of the input
-  std::vector<int> opposite;  ///< half-edges; may run the same way until `orient`
-  std::vector<char> split;    ///< vertices of non-manifold edges
-  std::vector<char> flipped;  ///< triangles turned round
-};
+void blame(CleanReport& report, int triangle, Fault fault) { report.culprits.push_back({triangle, fault}); }
 
-void drop(Repair& r, const std::vector<char>& gone) {
-  std::size_t n = 0;
-  for (std::size_t t = 0; t < r.tris.size(); ++t)
-    if (!gone[t]) {
-      r.tris[n] = r.tris[t];
-      r.face[n++] = r.face[t];
-    }
-  r.tris.resize(n);
-  r.face.resize(n);
+void sort_culprits(CleanReport& report) {
+  std::sort(report.culprits.begin(), report.culprits.end(), [](const Culprit& a, const Culprit& b) {
+    return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
+  });
 }
 
 /// Finds the neighbours, and the duplicates: of the triangles on an edge, those with the same third vertex as
-/// an earlier one.
+/// an earlier one. The report tells of what it found when it was called first.
 void join(Repair& r, CleanReport& report) {
   const int n = (int)r.vertex.size();
   std::vector<char> gone(r.tris.size(), 0);
   std::vector<EdgeUse> third;
+  std::vector<int> many;  // triangles on non-manifold edges
+  int edges = 0;
   for (bool again = true; again;) {
     again = false;
-    report.nonmanifold_edges = 0;
+    edges = 0;
+    many.clear();
     r.split.assign(n, 0);
     r.opposite.assign(3 * r.tris.size(), -1);
     for_each_edge(r.tris, n, [&](std::span<const EdgeUse> uses) {
@@ -94,7 +62,8 @@ void join(Repair& r, CleanReport& report) {
         }
       const int h = half_edge(uses[0]), g = half_edge(uses[1]);
       if (uses.size() > 2) {
-        ++report.nonmanifold_edges;
+        ++edges;
+        for (EdgeUse e : uses) many.push_back(half_edge(e) / 3);
         r.split[origin(r.tris, h)] = r.split[target(r.tris, h)] = 1;
       } else {
         r.opposite[h] = g;
@@ -102,11 +71,19 @@ void join(Repair& r, CleanReport& report) {
       }
     });
     if (again) {
-      report.duplicate = (int)std::count(gone.begin(), gone.end(), 1);
+      for (std::size_t t = 0; t < gone.size(); ++t)
+        if (gone[t]) {
+          ++report.duplicate;
+          blame(report, r.face[t], Fault::duplicate);
+        }
+      r.opposite.clear();
       drop(r, gone);
       gone.assign(r.tris.size(), 0);
     }
   }
+  if (report.nonmanifold_edges) return;
+  report.nonmanifold_edges = edges;
+  for (int t : many) blame(report, r.face[t], Fault::nonmanifold);
 }
 
 /// Turns a triangle round: its half-edges 0 1 2 become 2 1 0.
@@ -119,17 +96,19 @@ void turn(Repair& r, int t) {
 }
 
 /// Makes neighbours agree: a flood from the first triangle of each component, turned to the side of its
-/// majority.
-void orient(Repair& r) {
+/// majority. Components that are not orientable are noted, their triangles marked in `gone`.
+void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report) {
   const int n = (int)r.tris.size();
   enum : char { unseen, as_seed, against };
   std::vector<char> side(n, unseen);
   std::vector<int> members;
+  gone.assign(n, 0);
   for (int seed = 0; seed < n; ++seed) {
     if (side[seed] != unseen) continue;
     side[seed] = as_seed;
     members.assign(1, seed);
     std::size_t turned = 0;
+    int conflict = -1;
     for (std::size_t i = 0; i < members.size(); ++i) {
       const int t = members[i];
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
@@ -141,12 +120,21 @@ void orient(Repair& r) {
           side[o / 3] = want;
           turned += want == against;
           members.push_back(o / 3);
-        } else if (side[o / 3] != want) {
-          throw NotAdmissible("the component of triangle " + std::to_string(r.face[seed]) +
-                              " is not orientable: triangles " + std::to_string(r.face[t]) + " and " +
-                              std::to_string(r.face[o / 3]) + " cannot agree");
+        } else if (side[o / 3] != want && conflict < 0) {
+          conflict = h;
         }
       }
+    }
+    if (conflict >= 0) {
+      report.nonorientable.push_back({r.face[seed], (int)members.size(), r.face[conflict / 3],
+                                      r.face[r.opposite[conflict] / 3],
+                                      lerp(points[r.vertex[origin(r.tris, conflict)]],
+                                           points[r.vertex[target(r.tris, conflict)]], 0.5)});
+      for (int t : members) {
+        gone[t] = 1;
+        blame(report, r.face[t], Fault::nonorientable);
+      }
+      continue;
     }
     const char wrong = 2 * turned > members.size() ? as_seed : against;
     for (int t : members)
@@ -156,32 +144,37 @@ void orient(Repair& r) {
 
 /// Gives every fan of triangles round a vertex its own copy of the vertex, the first fan keeps it. Triangles
 /// of an edge that was left open and still share both its vertices lie in one fan at either end (a fan has
-/// two ends), in opposite directions, so what results is an oriented manifold.
+/// two ends), in opposite directions, so what results is an oriented manifold. The report tells of what it
+/// found when it was called first.
 void split_fans(Repair& r, CleanReport& report) {
   const int n = (int)r.vertex.size();
   std::vector<char> seen(r.opposite.size(), 0);
   enum : char { none, one, many };
   std::vector<char> fans(n, none);
-  std::vector<int> fan;
+  std::vector<int> fan, apart;  // the latter: triangles of second fans, but for those on split edges
+  int vertices = 0;
   for (int seed = 0; seed < (int)r.opposite.size(); ++seed) {
     if (seen[seed]) continue;
     fan.clear();
-    int h = seed;
-    do {
-      fan.push_back(h);
-      h = r.opposite[prev(h)];
-    } while (h >= 0 && h != seed);
-    if (h < 0)
-      for (h = r.opposite[seed]; h >= 0; h = r.opposite[h]) fan.push_back(h = next(h));
+    for_each_spoke(r, seed, [&](int g) { fan.push_back(g); });
     for (int g : fan) seen[g] = 1;
     const int v = origin(r.tris, seed);
     if (fans[v] != none) {
-      if (fans[v] == one && !r.split[v]) ++report.pinched;
-      for (int g : fan) r.tris[g / 3][g % 3] = (int)r.vertex.size();
+      vertices += fans[v] == one;
+      for (int g : fan) {
+        r.tris[g / 3][g % 3] = (int)r.vertex.size();
+        if (!r.split[v]) apart.push_back(g / 3);
+      }
       r.vertex.push_back(r.vertex[v]);
     }
     fans[v] = fans[v] == none ? one : many;
   }
+  if (std::count(r.split.begin(), r.split.end(), 1))
+    r.opposite = opposite_halfedges(r.tris, (int)r.vertex.size());
+  report.copies = (int)r.vertex.size() - n;
+  if (report.nonmanifold_vertices) return;
+  report.nonmanifold_vertices = vertices;
+  for (int t : apart) blame(report, r.face[t], Fault::pinched);
 }
 
 /// Turns closed components inside out whose signed volume is clearly negative.
@@ -208,122 +201,39 @@ void face_outward(Repair& r, const std::vector<Vec3>& points) {
   }
 }
 
-/// Triangles without height: a flat triangle is a cap on its longest edge, which is flipped, so that the
-/// neighbour is split where the cap's third vertex lies on it; on the border the cap is dropped. The surface
-/// stays the same set of points.
-class Flatness {
- public:
-  Flatness(Repair& r, const std::vector<Vec3>& points) : r_(r), points_(points), gone_(r.tris.size(), 0) {}
-
-  void remove(CleanReport& report) {
-    std::vector<int> flat;
-    for (int t = 0; t < (int)r_.tris.size(); ++t)
-      if (is_flat(r_.tris[t])) flat.push_back(t);
-    for (bool again = !flat.empty();
-         again;) {  // a flip may free its neighbour; every round lowers their number
-      again = false;
-      std::vector<int> left;
-      for (int t : flat) {
-        if (gone_[t] || !is_flat(r_.tris[t])) continue;
-        if (drop_on_border(t) || flip(t)) {
-          ++report.degenerate;
-          again = true;
-        }
-        if (!gone_[t] && is_flat(r_.tris[t])) left.push_back(t);
-      }
-      flat = std::move(left);
+/// Drops all components but the `keep` largest by area; whether there were more.
+bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
+  std::vector<int> component;
+  const int n = components(r.opposite, component);
+  if (n <= keep) return false;
+  std::vector<double> area(n, 0);
+  for (std::size_t t = 0; t < r.tris.size(); ++t) {
+    auto p = [&](int i) { return points[r.vertex[r.tris[t][i]]]; };
+    area[component[t]] += norm(area_vector(p(0), p(1), p(2)));
+  }
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area[a] > area[b]; });
+  std::vector<char> small(n, 0), gone(r.tris.size(), 0);
+  for (int i = keep; i < n; ++i) small[order[i]] = 1;
+  for (std::size_t t = 0; t < r.tris.size(); ++t)
+    if (small[component[t]]) {
+      gone[t] = 1;
+      ++report.dropped_triangles;
+      blame(report, r.face[t], Fault::small);
     }
-    report.flat = (int)flat.size();
-    if (std::count(gone_.begin(), gone_.end(), 1) == 0) return;
-    drop(r_, gone_);
-    r_.opposite.clear();  // of no use any more
-  }
+  report.dropped_components += n - keep;
+  r.opposite.clear();
+  drop(r, gone);
+  return true;
+}
 
- private:
-  Vec3 point(int v) const { return points_[r_.vertex[v]]; }
-
-  bool is_flat(const Tri& t) const {
-    const Vec3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
-    const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-    return norm(area_vector(a, b, c)) <= 1e-12 * longest;
-  }
-
-  int longest_edge(int t) const {
-    int best = 3 * t;
-    double length = -1;
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (double l = norm(point(target(r_.tris, h)) - point(origin(r_.tris, h))); l > length) {
-        length = l;
-        best = h;
-      }
-    return best;
-  }
-
-  /// Calls visit(w) for the vertices joined to the origin of h; returns whether it is inside the surface.
-  template <class Visit>
-  bool around(int h, Visit visit) const {
-    const int seed = h;
-    do {
-      visit(target(r_.tris, h));
-      visit(origin(r_.tris, prev(h)));
-      h = r_.opposite[prev(h)];
-    } while (h >= 0 && h != seed);
-    if (h == seed) return true;
-    for (h = r_.opposite[seed]; h >= 0; h = r_.opposite[h]) {
-      h = next(h);
-      visit(target(r_.tris, h));
-    }
-    return false;
-  }
-
-  void connect(int h, int o) {
-    r_.opposite[h] = o;
-    if (o >= 0) r_.opposite[o] = h;
-  }
-
-  bool drop_on_border(int t) {
-    const int h = longest_edge(t), a = r_.opposite[next(h)], b = r_.opposite[prev(h)];
-    if (r_.opposite[h] >= 0) return false;
-    if (a >= 0 && b >= 0 && !around(prev(h), [](int) {})) return false;  // would pinch it
-    for (int o : {a, b})
-      if (o >= 0) r_.opposite[o] = -1;
-    gone_[t] = 1;
-    return true;
-  }
-
-  //      c            c          the edge a-b of the flat triangle t becomes c-d;
-  //   t / \          /|\         both triangles now are pieces of u, and take its
-  //    a---b   ->   a | b        columns
-  //   u \ /          \|/
-  //      d            d
-  bool flip(int t) {
-    const int h = longest_edge(t), o = r_.opposite[h];
-    if (o < 0) return false;
-    const int u = o / 3;
-    const int a = origin(r_.tris, h), b = target(r_.tris, h), c = origin(r_.tris, prev(h)),
-              d = origin(r_.tris, prev(o));
-    bool joined = c == d;
-    around(prev(h), [&](int w) { joined = joined || w == d; });
-    if (joined) return false;
-    const Tri left{a, d, c}, right{d, b, c};
-    if (1 + is_flat(r_.tris[u]) <= is_flat(left) + is_flat(right)) return false;
-    const int bc = r_.opposite[next(h)], ca = r_.opposite[prev(h)], ad = r_.opposite[next(o)],
-              db = r_.opposite[prev(o)];
-    r_.tris[t] = left;
-    r_.tris[u] = right;
-    r_.face[t] = r_.face[u];
-    connect(3 * t, ad);
-    connect(3 * t + 1, 3 * u + 2);
-    connect(3 * t + 2, ca);
-    connect(3 * u, db);
-    connect(3 * u + 1, bc);
-    return true;
-  }
-
-  Repair& r_;
-  const std::vector<Vec3>& points_;
-  std::vector<char> gone_;
-};
+/// Undoes split_fans: copies become the vertices of the input again.
+void unite(Repair& r, int n_input) {
+  for (Tri& t : r.tris)
+    for (int& v : t) v = r.vertex[v];
+  r.vertex.resize(n_input);
+}
 
 /// Leaves out vertices that no triangle uses, and numbers the others by first use.
 void number_by_first_use(Repair& r) {
@@ -356,8 +266,39 @@ bool as_it_was(const Repair& r, const Surface& surface) {
 
 }  // namespace
 
-CleanReport clean(Surface& surface) {
-  CleanReport report;
+std::string describe(const Nonorientable& c) {
+  char place[96];
+  std::snprintf(place, sizeof place, " (%.6g %.6g %.6g)", c.place.x, c.place.y, c.place.z);
+  return "the component of triangle " + std::to_string(c.triangle) + " (" + std::to_string(c.triangles) +
+         " triangles) is not orientable: triangles " + std::to_string(c.a) + " and " + std::to_string(c.b) +
+         " cannot agree at" + place;
+}
+
+void drop(Repair& r, const std::vector<char>& gone) {
+  std::vector<int> number(r.opposite.empty() ? 0 : gone.size(), -1);
+  std::size_t n = 0;
+  for (std::size_t t = 0; t < gone.size(); ++t) {
+    if (gone[t]) continue;
+    r.tris[n] = r.tris[t];
+    r.face[n] = r.face[t];
+    if (!r.flipped.empty()) r.flipped[n] = r.flipped[t];
+    if (!r.opposite.empty()) {
+      std::copy_n(r.opposite.begin() + 3 * t, 3, r.opposite.begin() + 3 * n);
+      number[t] = (int)n;
+    }
+    ++n;
+  }
+  r.tris.resize(n);
+  r.face.resize(n);
+  if (!r.flipped.empty()) r.flipped.resize(n);
+  if (r.opposite.empty()) return;
+  r.opposite.resize(3 * n);
+  for (int& o : r.opposite)
+    if (o >= 0) o = number[o / 3] < 0 ? -1 : 3 * number[o / 3] + o % 3;
+}
+
+void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
+  report = {};
   const int n = (int)surface.points.size();
   report.input_vertices = n;
   report.input_triangles = (int)surface.tris.size();
@@ -365,8 +306,9 @@ CleanReport clean(Surface& surface) {
   std::vector<char> used(n, 0);
   for (const Tri& t : surface.tris)
     for (int v : t) used[v] = 1;
-  const std::vector<int> same = weld(surface.points, used);
+  std::vector<int> same = first_equal(surface.points, used);
   for (int v = 0; v < n; ++v) report.welded += same[v] != v;
+  if (options.weld > 0) report.welded_near = merge_near(surface.points, used, options.weld, same);
 
   Repair r;
   r.vertex.resize(n);
@@ -378,6 +320,7 @@ CleanReport clean(Surface& surface) {
     const Tri s = surface.tris[t], w{same[s[0]], same[s[1]], same[s[2]]};
     if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) {
       ++report.degenerate;
+      blame(report, t, Fault::degenerate);
       continue;
     }
     r.tris.push_back(w);
@@ -386,27 +329,60 @@ CleanReport clean(Surface& surface) {
   }
   for (int v = 0; v < n; ++v) report.unreferenced += same[v] == v && !used[v];
 
-  join(r, report);
   r.flipped.assign(r.tris.size(), 0);
-  orient(r);
-  split_fans(r, report);
-  if (report.nonmanifold_edges) r.opposite = opposite_halfedges(r.tris, (int)r.vertex.size());
-  face_outward(r, surface.points);
+  std::vector<char> gone;
+  for (;;) {  // what shares an edge with others no more joins two of them, and those may disagree: once again
+    join(r, report);
+    const std::size_t before = report.nonorientable.size();
+    orient(r, surface.points, gone, report);
+    if (report.nonorientable.size() > before) {
+      if (!options.drop_nonorientable) {
+        sort_culprits(report);
+        const std::size_t more = report.nonorientable.size() - 1;
+        throw NotAdmissible(describe(report.nonorientable[0]) +
+                            (more ? ", and " + std::to_string(more) + " more components" : ""));
+      }
+      r.opposite.clear();
+      drop(r, gone);
+      continue;
+    }
+    split_fans(r, report);
+    if (!options.keep_components || !keep_largest(r, surface.points, options.keep_components, report)) break;
+    unite(r, n);
+  }
+  for (std::size_t t = 0; t < r.tris.size(); ++t)
+    if (r.flipped[t]) blame(report, r.face[t], Fault::turned);
+  const FlatCounts flat = remove_flat(r, surface.points);
+  report.flat = flat.left;
+  report.degenerate += (int)flat.removed.size();
+  for (int t : flat.removed) blame(report, t, Fault::degenerate);
+  std::vector<int> component;
+  report.components = components(r.opposite, component);
+  if (options.fill_holes) {
+    const HoleCounts holes = fill_holes(r, surface.points, options.fill_holes);
+    report.holes_filled = holes.filled;
+    report.hole_triangles = holes.triangles;
+    report.holes_left = holes.left;
+  }
+  face_outward(r, surface.points);  // at last, since a filled surface may be closed now
   report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
-  Flatness(r, surface.points).remove(report);
+  sort_culprits(report);
   if (r.tris.empty())
     throw NotAdmissible("no triangle is left of " + std::to_string(report.input_triangles) + ": " +
-                        std::to_string(report.degenerate) + " are degenerate");
-  if (report.nothing()) return report;
-  if (as_it_was(r, surface)) {
-    CleanReport none;
-    none.input_vertices = n;
-    none.input_triangles = report.input_triangles;
-    none.flat = report.flat;
-    return none;
-  }
+                        std::to_string(report.degenerate) + " are degenerate, " +
+                        std::to_string(report.duplicate) + " duplicates");
 
-  if (report.welded || report.unreferenced || report.degenerate) number_by_first_use(r);
+  const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
+                        report.dropped_triangles || !report.nonorientable.empty();
+  report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
+                     report.nonmanifold_vertices || report.holes_filled);
+  if (report.nothing) return;
+  if (as_it_was(r, surface)) {
+    report.nothing = true;
+    report.welded = report.welded_near = 0;
+    return;
+  }
+  if (renumber) number_by_first_use(r);
   std::vector<Vec3> points(r.vertex.size());
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points[r.vertex[v]];
   surface.points = std::move(points);
@@ -414,6 +390,11 @@ CleanReport clean(Surface& surface) {
   surface.face.erase("model");
   take_rows(surface.vertex, r.vertex);
   take_rows(surface.face, r.face);
+}
+
+CleanReport clean(Surface& surface, const CleanOptions& options) {
+  CleanReport report;
+  clean(surface, options, report);
   return report;
 }
 

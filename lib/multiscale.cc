@@ -174,7 +174,9 @@ std::vector<double> best_field(const Part& part, const MultiscaleOptions& option
     best_is = assess(part, best);
   }
   constexpr int rounds = 10;
+  reach_holes(part.disk, part.opposite, best);
   balance_sides(part.disk, part.opposite, find_branches(part.disk, levels), best, rounds);
+  drop_fragments(part, best);
   return best;
 }
 
@@ -200,6 +202,7 @@ int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topolo
 int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, double max_aspect,
                std::vector<MultiscaleCut>* cuts) {
   std::vector<int>& label = surface.face.get<int>("part");
+  if (*std::min_element(label.begin(), label.end()) < 0) return n_parts;  // only some of the parts are given
   const std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
   Joiner joiner(surface, opposite, label, find_regions(surface, opposite, label, n_parts));
   struct Pair {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -15,6 +16,46 @@ namespace meshpipe {
 namespace {
 
 constexpr const char* common_group = "Common options";
+
+/// The file that is being written and has its name not yet: a program that is stopped removes it.
+char temporary_file[4096];
+volatile std::sig_atomic_t temporary_exists = 0;
+
+extern "C" void remove_temporary(int signal) {
+  if (temporary_exists) ::unlink(temporary_file);
+  ::raise(signal);  // the handler was for one time: now it ends the program
+}
+
+void handle_signals() {
+  struct sigaction action {};
+  action.sa_handler = remove_temporary;
+  action.sa_flags = SA_RESETHAND | SA_NODEFER;
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL)
+      ::sigaction(signal, &action, nullptr);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file too large is a write that fails
+}
+
+/// A file beside `path`, known to the handler from the moment it exists.
+int make_temporary(std::string& name) {
+  if (name.size() >= sizeof temporary_file) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
+  sigset_t ours, before;
+  ::sigemptyset(&ours);
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&ours, signal);
+  ::sigprocmask(SIG_BLOCK, &ours, &before);
+  const int fd = ::mkstemp(name.data());
+  if (fd >= 0) {
+    std::strcpy(temporary_file, name.c_str());
+    temporary_exists = 1;
+  }
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  return fd;
+}
 
 std::string reason() { return std::strerror(errno); }
 
@@ -62,6 +103,15 @@ std::string extension_of(const std::string& path) {
   return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
 }
 
+/// The bytes of a file: a format by its extension, the stream for any other.
+std::string encode(const std::string& path, const Stream& stream, bool text) {
+  const std::string ext = extension_of(path);
+  if (path != "-" && ext != ".ply")
+    for (const Writer& w : writers())
+      if (ext == w.extension) return w.write(stream, text);
+  return write_stream(stream, text);
+}
+
 /// The options given on the command line that change the result, as they are recorded in the stream.
 std::string recorded(const CLI::App& app) {
   std::string out;
@@ -95,14 +145,14 @@ Stream Io::read(const std::string& path) const {
 
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
-  const std::string ext = extension_of(output);
   const bool text = ascii || (stream.ascii && !binary);
-  if (output != "-" && ext != ".ply")
-    for (const Writer& w : writers())
-      if (ext == w.extension) return write_bytes(w.write(stream, text));
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  write_bytes(write_stream(stream, text));
+  write_bytes(encode(output, stream, text));
+}
+
+void Io::write_to(const std::string& path, const Stream& stream) const {
+  write_file(path, encode(path, stream, ascii));
 }
 
 void Io::write_bytes(std::string_view bytes) const {
@@ -116,7 +166,7 @@ void Io::write_file(const std::string& path, std::string_view bytes) {
   const bool exists = ::stat(path.c_str(), &info) == 0;
   // a device or a pipe is written to, not replaced
   std::string temporary = exists && !S_ISREG(info.st_mode) ? "" : path + ".XXXXXX";
-  int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : ::mkstemp(temporary.data());
+  int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : make_temporary(temporary);
   if (fd < 0) throw CannotWrite(path + ": " + reason());
   try {
     write_all(fd, bytes, path);
@@ -130,9 +180,11 @@ void Io::write_file(const std::string& path, std::string_view bytes) {
     if (closed != 0) throw CannotWrite(path + ": " + reason());
     if (!temporary.empty() && ::rename(temporary.c_str(), path.c_str()) != 0)
       throw CannotWrite(path + ": " + reason());
+    temporary_exists = 0;
   } catch (...) {
     if (fd >= 0) ::close(fd);
     if (!temporary.empty()) ::unlink(temporary.c_str());
+    temporary_exists = 0;
     throw;
   }
 }
@@ -147,6 +199,7 @@ void Io::detail(const std::string& line) const {
 
 int run_tool(int argc, char** argv, const char* program, const char* summary,
              const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body) {
+  handle_signals();
   Io io;
   io.program = program;
   CLI::App app{summary, program};
@@ -199,6 +252,9 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   try {
     try {
       body(io);
+    } catch (const NotAdmissible&) {
+      if (io.report.size() > 1) write_report();  // it had been measured
+      throw;
     } catch (const GoalMissed&) {
       write_report();
       throw;

@@ -23,6 +23,8 @@ class Io {
   static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard output.
   void write(Stream& stream);
+  /// Writes another stream to a file of the user's, in the format of its extension.
+  void write_to(const std::string& path, const Stream& stream) const;
   /// Writes bytes to -o FILE or standard output, the same way.
   void write_bytes(std::string_view bytes) const;
   /// Writes bytes to another file of the user's, beside it and renamed.
@@ -36,7 +38,7 @@ class Io {
   std::string input = "-", output = "-";
   bool ascii = false, binary = false, quiet = false, verbose = false;
   int threads = 0;
-  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 5 or 6
+  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 4 (if it holds anything), 5, 6
   std::string json;
 
  private:

@@ -9,19 +9,10 @@ using namespace meshpipe;
 
 namespace {
 
-/// Numbers the components in face column `part`, or checks the parts that are there; returns their number.
-int find_parts(Surface& surface, const std::vector<int>& opposite) {
-  const int n_tris = (int)surface.tris.size();
-  std::vector<int> component;
-  const int n_components = components(opposite, component);
-  if (n_components == n_tris && n_tris > 1)
-    throw NotAdmissible("no two of the " + std::to_string(n_tris) +
-                        " triangles share an edge; run mclean first");
-  if (!surface.face.has("part")) {
-    surface.face.set("part", std::move(component));
-    return n_components;
-  }
+/// The number of parts that face column `part` names.
+int count_parts(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
+  const int n_tris = (int)surface.tris.size();
   const int n = n_tris ? *std::max_element(part.begin(), part.end()) + 1 : 0;
   std::vector<int> faces(std::min(n, n_tris), 0);
   for (int t = 0; t < n_tris; ++t) {
@@ -36,67 +27,97 @@ int find_parts(Surface& surface, const std::vector<int>& opposite) {
   return n;
 }
 
+/// Which of the paper's conditions (5) fail.
 std::string verdict(const Topology& t) {
-  if (t.components != 1) return std::to_string(t.components) + " pieces";
-  if (t.genus != 0) return "genus " + std::to_string(t.genus);
-  if (t.loops == 0) return "closed";
-  if (!admissible(t)) return "too long";
-  return "ok";
+  std::string why;
+  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
+  if (t.components != 1) add(std::to_string(t.components) + " pieces");
+  if (t.genus != 0) add("genus " + std::to_string(t.genus));
+  if (t.loops == 0) add("closed");
+  if (why.empty() && !admissible(t)) add("too long");
+  return why.empty() ? "ok" : why;
 }
 
-void tell(Io& io, const std::vector<Topology>& parts) {
-  char line[256];
-  io.say("part        V        E        F   G  N_B          L   eta_cyl   eta_box   eta_geo  conditions");
+std::string plural(std::size_t n, const std::string& what) {
+  return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+}
+
+/// The table of one kind of pieces, "component" or "part": on standard error, for JSON, for TSV.
+void tell(Io& io, const std::string& kind, const std::vector<Topology>& pieces, std::string& tsv) {
+  char line[320];
+  std::snprintf(
+      line, sizeof line,
+      "%-9s        V        E        F   G  N_B          L   eta_cyl   eta_box   eta_geo  conditions",
+      kind.c_str());
+  io.say(line);
   int bad = 0;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const Topology& t = parts[p];
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const Topology& t = pieces[p];
     bad += !admissible(t);
-    std::snprintf(line, sizeof line, "%4zu %8d %8d %8d %3d %4d %10.4g %9.3g %9.3g %9.3g  %s", p, t.vertices,
+    std::snprintf(line, sizeof line, "%9zu %8d %8d %8d %3d %4d %10.4g %9.3g %9.3g %9.3g  %s", p, t.vertices,
                   t.edges, t.faces, t.genus, t.loops, t.longest_loop, t.eta_cyl, t.eta_box, t.eta_geo,
                   verdict(t).c_str());
     io.say(line);
-    io.report["parts"].push_back({{"part", p},
-                                  {"vertices", t.vertices},
-                                  {"edges", t.edges},
-                                  {"faces", t.faces},
-                                  {"genus", t.genus},
-                                  {"loops", t.loops},
-                                  {"loop_lengths", t.loop_length},
-                                  {"area", t.area},
-                                  {"eta_cyl", t.eta_cyl},
-                                  {"eta_box", t.eta_box},
-                                  {"eta_geo", t.eta_geo},
-                                  {"admissible", admissible(t)}});
+    std::string lengths;
+    for (double l : t.loop_length) {
+      std::snprintf(line, sizeof line, "%s%.9g", lengths.empty() ? "" : ",", l);
+      lengths += line;
+    }
+    if (t.loops) io.detail(kind + ' ' + std::to_string(p) + " has loops of length " + lengths);
+    std::snprintf(line, sizeof line, "%s\t%zu\t%d\t%d\t%d\t%d\t%d\t%d\t%.9g\t%.9g\t%.9g\t%.9g\t%.9g\t",
+                  kind.c_str(), p, t.vertices, t.edges, t.faces, t.components, t.genus, t.loops,
+                  t.longest_loop, t.area, t.eta_cyl, t.eta_box, t.eta_geo);
+    tsv += line + verdict(t) + '\t' + lengths + '\n';
+    rows.push_back({{kind, p},
+                    {"vertices", t.vertices},
+                    {"edges", t.edges},
+                    {"faces", t.faces},
+                    {"pieces", t.components},
+                    {"genus", t.genus},
+                    {"loops", t.loops},
+                    {"loop_lengths", t.loop_length},
+                    {"area", t.area},
+                    {"eta_cyl", t.eta_cyl},
+                    {"eta_box", t.eta_box},
+                    {"eta_geo", t.eta_geo},
+                    {"admissible", admissible(t)},
+                    {"verdict", verdict(t)}});
   }
-  io.say(std::to_string(parts.size()) + (parts.size() == 1 ? " part, " : " parts, ") +
+  io.report[kind + 's'] = std::move(rows);
+  io.say(plural(pieces.size(), kind) + ", " +
          (bad ? std::to_string(bad) + " to be cut" : "all may be mapped to a disk"));
 }
 
-void require(const std::string& what, const std::vector<Topology>& parts) {
+void require(const std::string& what, const std::string& kind, const std::vector<Topology>& parts) {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const Topology& t = parts[p];
     const bool met = what == "closed" ? t.loops == 0 : t.components == 1 && t.genus == 0 && t.loops >= 1;
     if (!met)
-      throw NotAdmissible("part " + std::to_string(p) + " is not " +
+      throw NotAdmissible(kind + ' ' + std::to_string(p) + " is not " +
                           (what == "closed" ? "closed" : "a disk") + ": genus " + std::to_string(t.genus) +
-                          ", " + std::to_string(t.loops) + " loops, " + std::to_string(t.components) +
-                          (t.components == 1 ? " piece" : " pieces"));
+                          ", " + plural(t.loops, "loop") + ", " + plural(t.components, "piece"));
   }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string required;
+  std::string required, tsv_file;
   return run_tool(
       argc, argv, "mtopo",
-      "Tell the topology and the aspect ratios of every component, or of every part."
-      "\n\nExamples:\n  mclean scan.stl | mtopo -o scan.ply\n  mtopo --require closed scan.ply > /dev/null",
+      "Tell the topology and the aspect ratios of every component, and of every part."
+      "\n\nExamples:\n  mclean scan.stl | mtopo -o scan.ply\n  mtopo --require closed --tsv scan.tsv "
+      "scan.ply > "
+      "/dev/null",
       [&](CLI::App& app) {
         app.add_option("--require", required,
                        "fail with 4 unless the surface is a manifold, all parts are closed, or disks (genus "
                        "0 with at least one loop)")
             ->check(CLI::IsMember({"disk", "manifold", "closed"}))
+            ->group("Reports");
+        app.add_option("--tsv", tsv_file, "write the table to this file, tab-separated")
+            ->type_name("FILE")
             ->group("Reports");
       },
       [&](Io& io) {
@@ -107,11 +128,28 @@ int main(int argc, char** argv) {
           if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
             throw NotAdmissible("vertex " + std::to_string(v) +
                                 " joins triangles that share no edge; run mclean first");
-        const int n = find_parts(s, opposite);
-        const std::vector<Topology> parts = topology_of_parts(s, s.face.get<int>("part"), n);
-        tell(io, parts);
-        if (required == "disk" || required == "closed") require(required, parts);
-        Table table = part_table(parts);
+        std::vector<int> component;
+        const int n = components(opposite, component);
+        if (n == (int)s.tris.size() && n > 1)
+          throw NotAdmissible("no two of the " + std::to_string(n) +
+                              " triangles share an edge; run mclean first");
+        std::string tsv =
+            "kind\tid\tvertices\tedges\tfaces\tpieces\tgenus\tloops\tlongest_loop\tarea\teta_cyl\teta_"
+            "box\teta_geo\t"
+            "verdict\tloop_lengths\n";
+        std::string kind = "component";
+        std::vector<Topology> pieces = topology_of_parts(s, component, n);
+        tell(io, kind, pieces, tsv);
+        if (s.face.has("part")) {
+          kind = "part";
+          pieces = topology_of_parts(s, s.face.get<int>("part"), count_parts(s));
+          tell(io, kind, pieces, tsv);
+        } else {
+          s.face.set("part", std::move(component));
+        }
+        if (!tsv_file.empty()) Io::write_file(tsv_file, tsv);
+        if (required == "disk" || required == "closed") require(required, kind, pieces);
+        Table table = part_table(pieces);
         if (const Table* known = stream.find("part"); known && known->rows == table.rows)
           for (const Column& c : known->columns)  // such as which map was used
             if (!table.has(c.name)) table.columns.push_back(c);

@@ -7,6 +7,7 @@
 
 #include "lib/error.h"
 #include "lib/topology.h"
+#include "lib/weld.h"
 
 using namespace meshpipe;
 
@@ -48,7 +49,7 @@ static double volume(const Surface& s) {
 
 TEST(Clean, LeavesACleanSurfaceAsItIs) {
   Surface s = surface(tetra_points, tetra_tris);
-  EXPECT_TRUE(clean(s).nothing());
+  EXPECT_TRUE(clean(s).nothing);
   EXPECT_EQ(s.tris, tetra_tris);
   EXPECT_EQ(s.points, tetra_points);
 }
@@ -101,7 +102,7 @@ TEST(Clean, DropsDuplicatesDegeneratesAndUnreferencedVertices) {
 TEST(Clean, SplitsAPinchedVertexIntoOneCopyAFan) {
   Surface s = surface({{0, 0, 0}, {-1, 1, 0}, {1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}, {{0, 2, 1}, {0, 3, 4}});
   CleanReport r = clean(s);
-  EXPECT_EQ(r.pinched, 1);
+  EXPECT_EQ(r.nonmanifold_vertices, 1);
   ASSERT_EQ(s.points.size(), 6u);
   EXPECT_EQ(s.points[5], s.points[0]);
   EXPECT_EQ(s.tris[0], (Tri{0, 2, 1}));
@@ -109,7 +110,7 @@ TEST(Clean, SplitsAPinchedVertexIntoOneCopyAFan) {
   expect_manifold(s);
   // what it has split it does not weld again
   const std::vector<Tri> before = s.tris;
-  EXPECT_TRUE(clean(s).nothing());
+  EXPECT_TRUE(clean(s).nothing);
   EXPECT_EQ(s.tris, before);
 }
 
@@ -118,7 +119,8 @@ TEST(Clean, SplitsThreeSheetsOnOneEdge) {
       surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
   CleanReport r = clean(s);
   EXPECT_EQ(r.nonmanifold_edges, 1);
-  EXPECT_EQ(r.pinched, 0);
+  EXPECT_EQ(r.nonmanifold_vertices, 2);
+  EXPECT_EQ(r.copies, 4);
   EXPECT_EQ(s.points.size(), 9u);
   expect_manifold(s);
 }
@@ -188,6 +190,118 @@ TEST(Clean, DropsACapOnTheBorder) {
   expect_manifold(s);
 }
 
+//      3           triangle (0, 1, 2) is a needle: 0 and 1 nearly coincide
+//    / | \\         .
+//   4--01--2
+//    \ || /
+//      5
+TEST(Clean, CollapsesANeedle) {
+  const double e = 1e-14;
+  Surface s = surface({{0, 0, 0}, {e, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
+                      {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 5, 2}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.degenerate, 1);  // the other one goes with it
+  EXPECT_EQ(r.flat, 0);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_EQ(s.points.size(), 5u);
+  EXPECT_NEAR(total_area(s), 2, 1e-12);
+  expect_manifold(s);
+  EXPECT_EQ(topology_of(s).loops, 1);
+}
+
+TEST(Clean, WeldsWithinATolerance) {
+  std::vector<Vec3> p = tetra_points;
+  Surface s = soup(p, tetra_tris);
+  std::mt19937 random(1);
+  for (Vec3& q : s.points) q.x += 1e-6 * (random() % 1000) / 1000;
+  Surface apart = s;
+  clean(apart);
+  EXPECT_EQ(apart.points.size(), 12u);
+  CleanReport r = clean(s, {.weld = 1e-6});
+  EXPECT_EQ(r.welded_near, 8);
+  EXPECT_EQ(s.points.size(), 4u);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_TRUE(clean(s, {.weld = 1e-6}).nothing);
+}
+
+TEST(Clean, ChainsOfCloseVerticesDoNotRunTogether) {
+  std::vector<Vec3> p;
+  for (int i = 0; i <= 10; ++i) p.push_back({0.75 * i, 0, 0});
+  std::vector<int> same(p.size());
+  for (int i = 0; i <= 10; ++i) same[i] = i;
+  EXPECT_EQ(merge_near(p, std::vector<char>(p.size(), 1), 1, same), 5);
+  EXPECT_EQ(same, (std::vector<int>{0, 0, 2, 2, 4, 4, 6, 6, 8, 8, 10}));
+}
+
+TEST(Clean, DropsANonorientableComponentAndNamesIt) {
+  Surface s = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                      {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  for (Tri t : tetra_tris) s.tris.push_back({t[0] + 5, t[1] + 5, t[2] + 5});
+  for (Vec3 p : tetra_points) s.points.push_back(p);
+  s.face = {"face", 0, {}};
+  CleanReport r;
+  Surface refused = s;
+  EXPECT_THROW(clean(refused, {}, r), NotAdmissible);
+  EXPECT_EQ(r.culprits.size(), 5u);
+  EXPECT_EQ(refused.tris, s.tris);
+  clean(s, {.drop_nonorientable = true}, r);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  ASSERT_EQ(r.nonorientable.size(), 1u);
+  EXPECT_EQ(r.nonorientable[0].triangle, 0);
+  EXPECT_EQ(r.nonorientable[0].triangles, 5);
+  EXPECT_EQ(r.components, 1);
+}
+
+TEST(Clean, KeepsTheLargestComponents) {
+  Surface s;
+  for (double size : {1.0, 3.0, 2.0}) {
+    const int n = (int)s.points.size();
+    for (Vec3 p : tetra_points) s.points.push_back(size * p + Vec3{10 * size, 0, 0});
+    for (Tri t : tetra_tris) s.tris.push_back({t[0] + n, t[1] + n, t[2] + n});
+  }
+  CleanReport r = clean(s, {.keep_components = 2});
+  EXPECT_EQ(r.dropped_components, 1);
+  EXPECT_EQ(r.dropped_triangles, 4);
+  ASSERT_EQ(s.points.size(), 8u);
+  EXPECT_EQ(s.points[0].x, 30);
+  EXPECT_EQ(r.culprits.size(), 4u);
+  EXPECT_TRUE(clean(s, {.keep_components = 2}).nothing);
+}
+
+TEST(Clean, FillsHolesOfAtMostThatManyEdges) {
+  // a cube without its top: the hole has 4 edges; of the two diagonals one is there already, below it
+  Surface s = surface(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{0, 2, 1},
+                                                                                                 {0, 3, 2},
+                                                                                                 {0, 1, 5},
+                                                                                                 {0, 5, 4},
+                                                                                                 {1, 2, 6},
+                                                                                                 {1, 6, 5},
+                                                                                                 {2, 3, 7},
+                                                                                                 {2, 7, 6},
+                                                                                                 {3, 0, 4},
+                                                                                                 {3, 4, 7}});
+  Surface open = s;
+  EXPECT_TRUE(clean(open, {.fill_holes = 3}).nothing);
+  CleanReport r = clean(s, {.fill_holes = 4});
+  EXPECT_EQ(r.holes_filled, 1);
+  EXPECT_EQ(r.hole_triangles, 2);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_NEAR(volume(s), 1, 1e-15);
+  EXPECT_EQ(s.face.get<int>("patch").size(), 12u);
+
+  Surface lone = surface(tetra_points, {{0, 1, 2}});
+  EXPECT_EQ(clean(lone, {.fill_holes = 3}).holes_left, 1);
+  // all but one triangle of a tetrahedron; all but two
+  for (int n : {3, 2}) {
+    Surface t = surface(tetra_points, std::vector<Tri>(tetra_tris.begin(), tetra_tris.begin() + n));
+    EXPECT_EQ(clean(t, {.fill_holes = 4}).holes_filled, 1);
+    EXPECT_EQ(topology_of(t).loops, 0);
+    EXPECT_EQ(t.tris.size(), 4u);
+  }
+}
+
 TEST(Clean, AnySoupBecomesAnOrientedManifoldAndStaysIt) {
   // triangles drawn among few points: duplicates, edges of many triangles, pinched vertices in numbers
   int admitted = 0;
@@ -200,15 +314,18 @@ TEST(Clean, AnySoupBecomesAnOrientedManifoldAndStaysIt) {
     for (int t = 0; t < 4 + (int)(random() % 12); ++t)
       tris.push_back({(int)(random() % 9), (int)(random() % 9), (int)(random() % 9)});
     Surface s = surface(p, tris);
+    CleanOptions options;
+    if (seed % 3 == 1) options = {.weld = 1, .drop_nonorientable = true};
+    if (seed % 3 == 2) options = {.keep_components = 1, .fill_holes = 6};
     try {
-      clean(s);
+      clean(s, options);
     } catch (const NotAdmissible&) {
       continue;
     }
     ++admitted;
     expect_manifold(s);
     const std::vector<Tri> before = s.tris;
-    EXPECT_TRUE(clean(s).nothing()) << "seed " << seed;
+    EXPECT_TRUE(clean(s).nothing) << "seed " << seed;
     EXPECT_EQ(s.tris, before);
   }
   EXPECT_GT(admitted, 150);

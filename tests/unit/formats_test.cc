@@ -517,6 +517,7 @@ TEST(Vtk, CellsThatAreNoSurfaceAreLeftOutWithTheirData) {
   EXPECT_EQ(failure(grid + "CELLS 1 4\n3 0 1 3\nCELL_TYPES 1\n5\n"),
             "in:7: cell 0 uses point 3, but there are 3");
   EXPECT_EQ(failure(grid + "CELLS 1 4\n3 0 1 2\n"), "in:8: 0 cell types, but 1 cells");
+  EXPECT_EQ(failure(grid + "CELLS 999999999 4\n3 0 1 2\n"), "in:7: 999999999 cells, but only 4 numbers");
   EXPECT_PRED1(names_a_place, failure(grid + "CELLS 1 2000000000\n3 0 1 2\n"));
   EXPECT_PRED1(names_a_place,
                failure("<VTKFile type=\"PolyData\">\n<PolyData>\n<Piece NumberOfPoints=\"99999999999\">"));
