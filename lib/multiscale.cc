@@ -202,6 +202,7 @@ int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topolo
 int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, double max_aspect,
                std::vector<MultiscaleCut>* cuts) {
   std::vector<int>& label = surface.face.get<int>("part");
+  if (*std::min_element(label.begin(), label.end()) < 0) return n_parts;  // only some of the parts are given
   const std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
   Joiner joiner(surface, opposite, label, find_regions(surface, opposite, label, n_parts));
   struct Pair {
@@ -217,7 +218,7 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
     std::vector<Pair> pairs;
     for (int a = 0; a < n_parts; a++)
       for (int h : joiner.regions().border[a])
-        if (int o = opposite[h]; o >= 0 && was_cut[a] && was_cut[label[o / 3]] && a < label[o / 3])
+        if (int o = opposite[h]; o >= 0 && a < label[o / 3] && was_cut[a] && was_cut[label[o / 3]])
           pairs.push_back(
               {a, label[o / 3],
                norm(surface.points[target(surface.tris, h)] - surface.points[origin(surface.tris, h)])});

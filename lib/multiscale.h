@@ -28,8 +28,8 @@ struct MultiscaleCut {
 /// vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1. Triangles are split along the cut
 /// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves of
 /// different cuts whose union is admissible are joined again. Precondition: parts of genus 0 with a boundary.
-/// Throws GoalMissed if a part cannot be cut. Returns the number of parts; `cuts`, if given, receives what
-/// was done, in order.
+/// Triangles of no part (-1) are left alone, and then nothing is joined. Throws GoalMissed if a part cannot
+/// be cut. Returns the number of parts; `cuts`, if given, receives what was done, in order.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr);
 
