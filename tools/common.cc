@@ -115,18 +115,12 @@ Bytes read_all(const std::string& path) {
   return bytes;
 }
 
-std::string extension_of(const std::string& path) {
-  std::size_t dot = path.find_last_of("./");
-  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
-}
-
-/// The bytes of a file: a format by its extension, the stream for any other.
+/// The bytes of a file: the stream for .ply, for no extension and on standard output, else the format of the
+/// extension.
 std::string encode(const std::string& path, const Stream& stream, bool text) {
-  const std::string ext = extension_of(path);
-  if (path != "-" && ext != ".ply")
-    for (const Writer& w : writers())
-      if (ext == w.extension) return w.write(stream, text);
-  return write_stream(stream, text);
+  const std::string extension = extension_of(path);
+  if (path == "-" || extension.empty() || extension == ".ply") return write_stream(stream, text);
+  return write_as(stream, path, text);
 }
 
 /// The options given on the command line that change the result, as they are recorded in the stream.
@@ -162,7 +156,13 @@ Stream Io::read(const std::string& path) const {
 
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
-  const bool text = ascii || (stream.ascii && !binary);
+  bool text = ascii || (stream.ascii && !binary);
+  const std::string extension = extension_of(output);
+  // only the text of STL has room for patches and their names
+  if (extension == ".stl" && !binary && !stream.names.empty()) text = true;
+  if (!stream.names.empty() && (extension == ".off" || extension == ".gts" || (extension == ".stl" && !text)))
+    say("names of patches are lost: " + std::string(text || extension != ".stl" ? extension : "binary .stl") +
+        " has none");
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   write_bytes(encode(output, stream, text));
