@@ -233,6 +233,5 @@ TEST(Multiscale, RealSurfacesFallIntoTwo) {
     s.face.set("part", std::vector<int>(s.tris.size(), 0));
     ASSERT_EQ(multiscale_cut(s), 2) << file;
     expect_admissible(s, 2);
-    for (const Topology& t : parts(s, 2)) EXPECT_EQ(t.loops, 1) << file;
   }
 }
