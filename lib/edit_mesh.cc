@@ -13,11 +13,14 @@ EditMesh::EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector
       opp(opposite_halfedges(tris, n_vertices)),
       hard(opp.size()),
       out(n_vertices, -1),
+      degree(n_vertices),
       live((int)tris.size()) {
   for (int h = 0; h < (int)opp.size(); ++h) {
     hard[h] = opp[h] < 0 || (!model.empty() && (model[h / 3] >> (h % 3) & 1));
     int v = from(h);
     if (out[v] < 0 || opp[h] < 0) out[v] = h;
+    ++degree[v];
+    if (opp[h] < 0) ++degree[to(h)];
   }
   for (int h = 0; h < (int)opp.size(); ++h)
     if (hard[h] && opp[h] >= 0) hard[opp[h]] = 1;
@@ -50,6 +53,7 @@ void EditMesh::flip(int h) {
   hard[h] = hard_below, hard[g] = hard_above, hard[h1] = hard[g1] = 0;
   if (out[a] == g1) out[a] = h;
   if (out[b] == h1) out[b] = g;
+  --degree[a], --degree[b], ++degree[c], ++degree[d];
 }
 
 int EditMesh::split(int h) {
@@ -70,6 +74,7 @@ int EditMesh::split(int h) {
   out.push_back(e);
   if (out[b] == h1 || out[b] == g) out[b] = out[b] == h1 ? e + 1 : f;
   if (out[d] == g2) out[d] = f + 2;
+  degree.push_back(4), ++degree[c], ++degree[d];
   live += 2;
   return m;
 }
@@ -124,6 +129,11 @@ void EditMesh::collapse(int h, int gone) {
     if (int v = apexes[side]; v >= 0)
       lead(v, {out[v], sides[2 * side], sides[2 * side + 1], after(sides[2 * side]),
                after(sides[2 * side + 1])});
+  // the edges of `gone` become edges of `kept`, but for the one between them and those to the apexes
+  degree[kept] += degree[gone] - 2;
+  for (int v : apexes)
+    if (v >= 0) --degree[v], --degree[kept];
+  degree[gone] = 0;
   out[gone] = -1;
   tris[h / 3] = {-1, -1, -1};
   if (g >= 0) tris[g / 3] = {-1, -1, -1};
