@@ -12,34 +12,52 @@ namespace meshpipe {
 
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner, const RelaxOptions& options) {
-  return Relaxer(mesh, reference, line_kind, corner, options).run();
+  const Ground ground(reference);
+  Relaxer relaxer(std::move(mesh), ground, line_kind, corner, options);
+  const RelaxReport report = relaxer.run();
+  mesh = relaxer.take_mesh();
+  return report;
 }
 
-Relaxer::Relaxer(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
+Ground::Ground(const Surface& reference)
+    : surface(reference),
+      sizes(reference.vertex.has("size") ? &reference.vertex.get<double>("size") : nullptr),
+      walk(reference, reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : no_model),
+      normals(reference.points.size()) {
+  for (const Tri& t : reference.tris) {
+    const Vec3 n = area_vector(reference.points[t[0]], reference.points[t[1]], reference.points[t[2]]);
+    for (int v : t) normals[v] = normals[v] + n;
+  }
+}
+
+Vec3 Ground::normal(const Place& p) const {
+  const Tri& v = surface.tris[p.face];
+  return normalized(p.b0 * normals[v[0]] + p.b1 * normals[v[1]] + p.b2 * normals[v[2]]);
+}
+
+double Ground::size(const Place& p) const {
+  const Tri& v = surface.tris[p.face];
+  return p.b0 * (*sizes)[v[0]] + p.b1 * (*sizes)[v[1]] + p.b2 * (*sizes)[v[2]];
+}
+
+Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& line_kind,
                  const std::vector<char>& corner, const RelaxOptions& options)
-    : lifted_(mesh),
-      reference_(reference),
-      ref_size_(reference.vertex.has("size") ? &reference.vertex.get<double>("size") : nullptr),
-      walk_(reference, reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : no_model_),
-      m_(std::move(mesh.tris), (int)mesh.points.size(), mesh.model),
+    : ground_(ground),
+      lifted_(std::move(mesh)),
+      m_(std::move(lifted_.tris), (int)lifted_.points.size(), lifted_.model),
       options_(options),
-      points_(std::move(mesh.points)),
-      ref_normal_(reference.points.size()),
+      points_(std::move(lifted_.points)),
       facing_(points_.size()),
       held_(points_.size()),
       finer_(points_.size(), 1),
       tried_(points_.size()),
       changed_(points_.size()),
       color_(points_.size(), -1) {
-  for (const Tri& t : reference.tris) {
-    const Vec3 n = area_vector(reference.points[t[0]], reference.points[t[1]], reference.points[t[2]]);
-    for (int v : t) ref_normal_[v] = ref_normal_[v] + n;
-  }
   const int n = (int)points_.size();
   for (int v = 0; v < n; ++v) {
-    const int line = mesh.line[v];
+    const int line = lifted_.line[v];
     if (line >= 0 && line_kind[line] != interface_line) held_[v] = slides;
-    facing_[v] = facing_at(mesh.place[v]);
+    facing_[v] = facing_at(lifted_.place[v]);
     if (m_.out[v] >= 0) color_[v] = free_color(v);
   }
   std::vector<std::uint8_t> ends(n);
@@ -54,8 +72,8 @@ Relaxer::Relaxer(LiftedMesh& mesh, const Surface& reference, const std::vector<i
   // stays
   for (int v = 0; v < n; ++v) {
     if (!held_[v]) continue;
-    const Place& p = mesh.place[v];
-    const Tri& t = reference.tris[p.face];
+    const Place& p = lifted_.place[v];
+    const Tri& t = ground_.surface.tris[p.face];
     const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
     if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) held_[v] = fixed;
   }
@@ -88,31 +106,23 @@ RelaxReport Relaxer::run() {
   return finish();
 }
 
-Vec3 Relaxer::facing_at(const Place& p) const {
-  const Tri& v = reference_.tris[p.face];
-  return normalized(p.b0 * ref_normal_[v[0]] + p.b1 * ref_normal_[v[1]] + p.b2 * ref_normal_[v[2]]);
-}
-
-double Relaxer::interpolated_size(const Place& p) const {
-  const Tri& v = reference_.tris[p.face];
-  return p.b0 * (*ref_size_)[v[0]] + p.b1 * (*ref_size_)[v[1]] + p.b2 * (*ref_size_)[v[2]];
-}
-
 /// Puts v at a place of the reference.
 void Relaxer::put(int v, const Place& place, Vec3 p, Vec3 facing) {
   lifted_.place[v] = place;
   points_[v] = p;
   facing_[v] = facing;
-  if (ref_size_) lifted_.size[v] = interpolated_size(place);
+  if (ground_.sizes) lifted_.size[v] = ground_.size(place);
 }
 
 /// Triangles the size field asks for on the reference: the integral of dA / (sqrt(3)/4 h^2).
 double Relaxer::wanted_triangles() const {
-  if (!ref_size_) return (double)m_.live;
+  if (!ground_.sizes) return (double)m_.live;
+  const std::vector<double>& size = *ground_.sizes;
+  const std::vector<Vec3>& p = ground_.surface.points;
   double n = 0;
-  for (const Tri& t : reference_.tris) {
-    const double h = ((*ref_size_)[t[0]] + (*ref_size_)[t[1]] + (*ref_size_)[t[2]]) / 3;
-    const Vec3 area = area_vector(reference_.points[t[0]], reference_.points[t[1]], reference_.points[t[2]]);
+  for (const Tri& t : ground_.surface.tris) {
+    const double h = (size[t[0]] + size[t[1]] + size[t[2]]) / 3;
+    const Vec3 area = area_vector(p[t[0]], p[t[1]], p[t[2]]);
     n += 0.5 * norm(area) / (sqrt3 / 4 * h * h);
   }
   return n;

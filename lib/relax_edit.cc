@@ -26,14 +26,14 @@ std::vector<int> Relaxer::ordered_edges(Test test, Key key) const {
 /// first.
 Place Relaxer::place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const {
   for (int v : round)
-    if (held_[v] == loose) return walk_.closest(lifted_.place[v], p);
+    if (held_[v] == loose) return ground_.walk.closest(lifted_.place[v], p);
   Place best = lifted_.place[*round.begin()];
   double least = 1e300;
   for (int v : round)
-    for (const Place& start : {lifted_.place[v], walk_.across(lifted_.place[v])}) {
-      const Place q = walk_.closest(start, p);
-      const Vec3 d = walk_.point(q) - p;
-      const double score = dot(d, d) * (dot(walk_.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
+    for (const Place& start : {lifted_.place[v], ground_.walk.across(lifted_.place[v])}) {
+      const Place q = ground_.walk.closest(start, p);
+      const Vec3 d = ground_.walk.point(q) - p;
+      const double score = dot(d, d) * (dot(ground_.walk.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
       if (score < least) least = score, best = q;
     }
   return best;
@@ -44,7 +44,7 @@ bool Relaxer::split(int h) {
   const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
   const Vec3 middle = lerp(at(a), at(b), 0.5);
   const Place place = place_near(middle, {a, b, c, d}, normal(h / 3) + normal(m_.opp[h] / 3));
-  const Vec3 p = walk_.point(place);
+  const Vec3 p = ground_.walk.point(place);
   if (norm(p - middle) > 0.5 * norm(at(b) - at(a))) return false;
   const Vec3 facing = facing_at(place);
   const double before = std::min(agrees(a, b, c), agrees(b, a, d));
@@ -53,10 +53,17 @@ bool Relaxer::split(int h) {
     const int v = ring[i], w = ring[i + 1];
     if (folds(before, agreement(p, at(v), at(w), facing + facing_[v] + facing_[w]))) return false;
   }
-  const int low = m_.opp[h] / 3;
+  insert(h, place, p, facing);
+  return true;
+}
+
+/// Puts a new vertex on the edge of h.
+void Relaxer::insert(int h, const Place& place, Vec3 p, Vec3 facing) {
+  const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]), low = m_.opp[h] / 3;
+  if (recording_) edits_.push_back({Edit::split, h, -1});
   points_.push_back(p);
   lifted_.place.push_back(place);
-  lifted_.size.push_back(ref_size_ ? interpolated_size(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
+  lifted_.size.push_back(ground_.sizes ? ground_.size(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
   finer_.push_back(std::min(finer_[a], finer_[b]));
   lifted_.kind.push_back(0);
   lifted_.line.push_back(-1);
@@ -71,7 +78,6 @@ bool Relaxer::split(int h) {
     label->push_back((*label)[low]);
   }
   ++report_.splits;
-  return true;
 }
 
 /// Splits edges longer than `above` times the size, the longest first, while there are fewer triangles than
@@ -92,6 +98,7 @@ void Relaxer::split_long(double above, double most) {
 /// only if the line hardly changes.
 bool Relaxer::collapse(int h, int gone, double worst, double longest) {
   const int kept = m_.from(h) == gone ? m_.to(h) : m_.from(h), g = m_.opp[h];
+  if (held_[kept] == frozen) return false;  // may be joined outside the patch
   if (held_[gone] >= fixed || (held_[gone] == slides && !m_.hard[h]) || !m_.can_collapse(h, gone))
     return false;
   const int c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
@@ -100,8 +107,8 @@ bool Relaxer::collapse(int h, int gone, double worst, double longest) {
   Place place = lifted_.place[kept];
   Vec3 p = at(kept);
   if (held_[kept] == loose) {
-    place = walk_.closest(lifted_.place[kept], lerp(at(gone), p, 0.5));
-    p = walk_.point(place);
+    place = ground_.walk.closest(lifted_.place[kept], lerp(at(gone), p, 0.5));
+    p = ground_.walk.point(place);
   }
   if (held_[gone] == slides) {
     // the line's next vertex on the other side
@@ -129,6 +136,7 @@ bool Relaxer::collapse(int h, int gone, double worst, double longest) {
       if (norm(y - p) > longest * 0.5 * (size_at(b) + size_at(kept)) && norm(y - p) > norm(y - x)) ok = false;
     });
   if (!ok || (after > worst && after > now) || folds(agreed, agree)) return false;
+  if (recording_) edits_.push_back({Edit::collapse, h, gone});
   m_.collapse(h, gone);
   if (held_[kept] == loose) put(kept, place, p, facing);
   edited(kept);
@@ -181,6 +189,7 @@ bool Relaxer::may_flip(int h) const {
   const int g = m_.opp[h];
   if (g < 0 || m_.hard[h]) return false;
   const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(g);
+  if (held_[c] == frozen && held_[d] == frozen) return false;  // may be joined outside the patch
   if (c == d || m_.valence(a) <= 3 || m_.valence(b) <= 3) return false;
   // the surface may not bend more across the new edge than across the old one, but for little
   const Vec3 n0 = normal(h / 3), n1 = normal(g / 3);
@@ -203,6 +212,7 @@ double Relaxer::worst_flipped(int h) const {
 
 void Relaxer::flip(int h) {
   const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+  if (recording_) edits_.push_back({Edit::flip, h, -1});
   m_.flip(h);
   for (int v : {a, b, c, d}) edited(v);
   ++report_.flips;

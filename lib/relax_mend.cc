@@ -17,10 +17,10 @@ void Relaxer::reach_tips() {
   const Mesh now = compact(number);
   if (now.tris.empty()) return;
   const Bvh tree(now);
-  const int n = (int)reference_.points.size();
+  const int n = (int)ground_.surface.points.size();
   std::vector<Bvh::Hit> hit(n);
 #pragma omp parallel for schedule(static) if (n > 10000)
-  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(reference_.points[v]);
+  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(ground_.surface.points[v]);
   const double h = std::sqrt(4 / sqrt3 * total_area(now) / (double)now.tris.size());
   double farthest = 0;
   for (int v = 0; v < n; ++v) farthest = std::max(farthest, hit[v].distance);
@@ -32,14 +32,14 @@ void Relaxer::reach_tips() {
   int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
   for (auto [minus_distance, v] : far) {
     if (left == 0) break;
-    const Vec3 tip = reference_.points[v];
+    const Vec3 tip = ground_.surface.points[v];
     int nearest = -1;
     for (int w : m_.tris[number[hit[v].place.face]])
       if (held_[w] == loose && (nearest < 0 || norm(at(w) - tip) < norm(at(nearest) - tip))) nearest = w;
     Star star;
     if (nearest < 0 || !gather(nearest, star)) continue;
-    const Place place = walk_.closest(lifted_.place[nearest], tip);
-    const Vec3 p = walk_.point(place), facing = facing_at(place);
+    const Place place = ground_.walk.closest(lifted_.place[nearest], tip);
+    const Vec3 p = ground_.walk.point(place), facing = facing_at(place);
     if (norm(p - tip) > 1e-6 * h) continue;
     double worst = 0;
     for (int i = 0; i < star.n; ++i) worst = std::max(worst, shape_energy(p, star.y[i], star.z[i]));
@@ -56,33 +56,169 @@ void Relaxer::reach_tips() {
   smooth(2);
 }
 
-/// Triangles of low quality one by one: whatever of flip, collapse, split and moves of the neighbourhood
-/// helps.
+// --- the worst triangles ---
+
+/// 1 for a triangle that is good enough: kappa 0.75 and 35 degrees.
+double Relaxer::quality(int t) const {
+  constexpr double good_kappa = 0.75, good_angle = 35 * 3.14159265358979323846 / 180;
+  const Vec3 p = at(m_.tris[t][0]), q = at(m_.tris[t][1]), r = at(m_.tris[t][2]);
+  const double least = std::min({angle(q - p, r - p), angle(r - q, p - q), angle(p - r, q - r)});
+  return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
+}
+
+/// What is to be made small: counts the worst most, and nothing that is good with a margin.
+double Relaxer::badness() const {
+  double sum = 0;
+  for (int t = 0; t < (int)m_.tris.size(); ++t) {
+    if (m_.dead(t)) continue;
+    const double lack = std::max(0.0, 1.05 - quality(t));
+    sum += lack * lack * lack;
+  }
+  return sum;
+}
+
+/// Triangle t, then those that are up to `rings` vertices away.
+std::vector<int> Relaxer::triangles_round(int t, int rings) const {
+  std::vector<int> found{t}, sorted{t};
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<int> more;
+    for (int s : found)
+      for (int v : m_.tris[s])
+        m_.star(v, [&](int h) {
+          if (!std::binary_search(sorted.begin(), sorted.end(), h / 3)) more.push_back(h / 3);
+        });
+    std::sort(more.begin(), more.end());
+    more.erase(std::unique(more.begin(), more.end()), more.end());
+    found.insert(found.end(), more.begin(), more.end());
+    sorted = found;
+    std::sort(sorted.begin(), sorted.end());
+  }
+  return found;
+}
+
+/// These triangles as a mesh of their own whose rim stays as it is. `vertices`: theirs, ascending.
+Relaxer Relaxer::patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const {
+  LiftedMesh part;
+  auto local = [&](int v) {
+    return (int)(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  };
+  for (int v : vertices) {
+    part.points.push_back(at(v));
+    part.place.push_back(lifted_.place[v]);
+    part.size.push_back(lifted_.size[v]);
+  }
+  part.kind.assign(vertices.size(), 0);
+  part.line.assign(vertices.size(), -1);
+  for (int t : triangles) {
+    const Tri& v = m_.tris[t];
+    part.tris.push_back({local(v[0]), local(v[1]), local(v[2])});
+    part.model.push_back(m_.hard[3 * t] | m_.hard[3 * t + 1] << 1 | m_.hard[3 * t + 2] << 2);
+  }
+  part.patch.assign(triangles.size(), 0);
+  part.part.assign(triangles.size(), 0);
+  Relaxer r(std::move(part), ground_, {}, {}, options_);
+  for (int i = 0; i < (int)vertices.size(); ++i) {
+    const int v = vertices[i];
+    r.held_[i] = held_[v];
+    r.facing_[i] = facing_[v];
+    r.finer_[i] = finer_[v];
+  }
+  for (int i = 0; i < (int)triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (r.m_.opp[3 * i + k] < 0 && m_.opp[3 * triangles[i] + k] >= 0)
+        r.held_[r.m_.from(3 * i + k)] = r.held_[r.m_.to(3 * i + k)] = frozen;
+  r.recording_ = true;
+  return r;
+}
+
+/// Makes a change where it may be made, and settles what is round it.
+void Relaxer::try_edit(const Edit& edit) {
+  if (edit.kind == Edit::flip && may_flip(edit.h)) flip(edit.h);
+  if (edit.kind == Edit::collapse && m_.opp[edit.h] >= 0 && !m_.hard[edit.h])
+    collapse(edit.h, edit.gone, 1e9, 2);
+  if (edit.kind == Edit::split) split(edit.h);
+  for (int i = 0; i < 2; ++i) {
+    flip_to_shape();
+    smooth(3);
+  }
+}
+
+/// Does here what was done to a patch.
+void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices) {
+  for (const Edit& e : mended.edits_) {
+    const int h = 3 * triangles[e.h / 3] + e.h % 3;
+    if (e.kind == Edit::flip) {
+      flip(h);
+    } else if (e.kind == Edit::split) {
+      const int v = (int)vertices.size();
+      for (int i = 0; i < 2; ++i) triangles.push_back((int)m_.tris.size() + i);
+      vertices.push_back((int)m_.out.size());
+      insert(h, mended.lifted_.place[v], mended.at(v), mended.facing_[v]);
+    } else {
+      const int gone = vertices[e.gone], kept = m_.from(h) == gone ? m_.to(h) : m_.from(h);
+      m_.collapse(h, gone);
+      edited(kept);
+      m_.neighbours(kept, [&](int v) { edited(v); });
+      ++report_.collapses;
+    }
+  }
+  for (int i = 0; i < (int)vertices.size(); ++i)
+    if (mended.m_.out[i] >= 0 && mended.held_[i] < fixed) {
+      put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
+      touch(vertices[i]);
+    }
+}
+
+/// Tries every flip, split and collapse of the edges of t and of the triangles beside it, each on a copy of
+/// the neighbourhood and settled there, and adopts the best if it is better than what is.
+bool Relaxer::mend(int t, bool thorough) {
+  const std::vector<int> triangles = triangles_round(t, thorough ? 3 : 2);
+  std::vector<int> vertices;
+  for (int s : triangles) vertices.insert(vertices.end(), m_.tris[s].begin(), m_.tris[s].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const Relaxer before = patch(triangles, vertices);
+  std::vector<Edit> edits;
+  const int near = thorough ? (int)triangles_round(t, 1).size() : 1;
+  for (int h = 0; h < 3 * near; ++h) {
+    const int g = before.m_.opp[h];
+    std::vector<int> edges{h};
+    if (!thorough && g >= 0) edges = {h, next(g), prev(g)};
+    if (thorough && g > h) continue;
+    for (int e : edges) {
+      edits.push_back({Edit::collapse, e, before.m_.from(e)});
+      edits.push_back({Edit::collapse, e, before.m_.to(e)});
+      if (before.m_.hard[e]) continue;
+      edits.push_back({Edit::flip, e, -1});
+      edits.push_back({Edit::split, e, -1});
+    }
+  }
+  std::vector<Relaxer> after(edits.size(), before);
+  std::vector<double> bad(edits.size());
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 0; i < (int)edits.size(); ++i) {
+    after[i].try_edit(edits[i]);
+    bad[i] = after[i].badness();
+  }
+  const auto best = std::min_element(bad.begin(), bad.end());
+  if (best == bad.end() || *best > 0.9 * before.badness()) return false;
+  adopt(after[best - bad.begin()], triangles, vertices);
+  return true;
+}
+
+/// Mends the triangles that are not good enough, the worst first.
 void Relaxer::mend_worst() {
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
-        if (double k = kappa_of(t); k < 0.7) bad.push_back({k, t});
-    if (bad.empty()) return;
+        if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
-    for (auto [k, t] : bad) {
-      if (m_.dead(t) || kappa_of(t) > 0.75) continue;
-      for (int h = 3 * t; h < 3 * t + 3; ++h)
-        if (!m_.hard[h] && worst_flipped(h) < 0.95 * worst_now(h) && may_flip(h)) flip(h);
-      if (kappa_of(t) < 0.5) {
-        int shortest = 3 * t;
-        for (int h = 3 * t; h < 3 * t + 3; ++h)
-          if (norm(at(m_.to(h)) - at(m_.from(h))) < norm(at(m_.to(shortest)) - at(m_.from(shortest))))
-            shortest = h;
-        if (collapse_either(shortest, 1, 1.8)) continue;
-      }
-      for (int repeat = 0; repeat < 2; ++repeat)
-        for (int v : m_.tris[t]) {
-          improve(v);
-          m_.neighbours(v, [&](int w) { improve(w); });
-        }
-    }
+    if (getenv("DBG")) fprintf(stderr, "bad %zu worst %g\n", bad.size(), bad.empty() ? 1 : bad[0].first);
+    int mended = 0;
+    for (auto [q, t] : bad)
+      if (!m_.dead(t) && quality(t) < 1) mended += mend(t, round > 0);
+    if (bad.empty() || (round > 0 && mended == 0)) return;
   }
 }
 

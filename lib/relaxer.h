@@ -43,14 +43,34 @@ struct Star {
   double agreement(Vec3 p, Vec3 normal) const;
 };
 
+/// The reference surface, ready to be walked on.
+struct Ground {
+  explicit Ground(const Surface& reference);
+  /// Smooth unit normal at a place.
+  Vec3 normal(const Place& p) const;
+  double size(const Place& p) const;
+
+  const Surface& surface;
+  const std::vector<double>* sizes;  ///< null if the surface has none
+  const std::vector<std::uint8_t> no_model;
+  const SurfaceWalk walk;
+  std::vector<Vec3> normals;  ///< at the vertices, not of unit length
+};
+
 class Relaxer {
  public:
-  Relaxer(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
+  Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& line_kind,
           const std::vector<char>& corner, const RelaxOptions& options);
   RelaxReport run();
+  LiftedMesh take_mesh() { return std::move(lifted_); }
 
  private:
-  enum Hold : char { loose = 0, slides = 1, fixed = 2, anchored = 3 };
+  enum Hold : char { loose = 0, slides = 1, fixed = 2, anchored = 3, frozen = 4 };
+  /// A change of connectivity, as it was done.
+  struct Edit {
+    enum Kind { flip, split, collapse } kind;
+    int h, gone;
+  };
 
   Vec3 at(int v) const { return points_[v]; }
   double size_at(int v) const { return lifted_.size[v] * finer_[v]; }
@@ -64,11 +84,9 @@ class Relaxer {
   Vec3 normal(int t) const {
     return normalized(area_vector(at(m_.tris[t][0]), at(m_.tris[t][1]), at(m_.tris[t][2])));
   }
-  /// Smooth unit normal of the reference at a place.
-  Vec3 facing_at(const Place& p) const;
+  Vec3 facing_at(const Place& p) const { return ground_.normal(p); }
   /// On a border the reference has a normal; on a model edge it has two, so none.
   Vec3 facing_on_line(int v, const Place& p) const { return m_.on_border(v) ? facing_at(p) : Vec3{}; }
-  double interpolated_size(const Place& p) const;
   void touch(int v) { changed_[v] = ++clock_; }
   void put(int v, const Place& place, Vec3 p, Vec3 facing);
   /// The mesh without gaps, for searches; number[i] is the triangle that triangle i of it is here.
@@ -95,6 +113,7 @@ class Relaxer {
   std::vector<int> ordered_edges(Test test, Key key) const;
   Place place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const;
   bool split(int h);
+  void insert(int h, const Place& place, Vec3 p, Vec3 facing);
   void split_long(double above, double most);
   bool collapse(int h, int gone, double worst, double longest);
   bool collapse_either(int h, double worst, double longest);
@@ -115,21 +134,25 @@ class Relaxer {
 
   // relax_mend.cc
   void reach_tips();
+  double quality(int t) const;
+  double badness() const;
+  std::vector<int> triangles_round(int t, int rings) const;
+  Relaxer patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const;
+  void try_edit(const Edit& edit);
+  void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
+  bool mend(int t, bool thorough);
   void mend_worst();
   void separate();
 
-  LiftedMesh& lifted_;
-  const Surface& reference_;
-  const std::vector<double>* ref_size_;
-  const std::vector<std::uint8_t> no_model_;
-  const SurfaceWalk walk_;
+  const Ground& ground_;
+  LiftedMesh lifted_;
   EditMesh m_;
   RelaxOptions options_;
   RelaxReport report_;
   std::vector<Vec3> points_;
-  std::vector<Vec3> ref_normal_;  ///< at the reference's vertices, not of unit length
-  std::vector<Vec3> facing_;      ///< the reference's normal at each vertex's place; zero on model edges
-  std::vector<char> held_;        ///< per vertex: free, on a border or model edge, a corner, or put on a tip
+  std::vector<Vec3> facing_;   ///< the reference's normal at each vertex's place; zero on model edges
+  std::vector<char> held_;     ///< per vertex: free, on a border or model edge, a corner, put on a tip, or at
+                               ///< the rim of a patch
   std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_, changed_;  ///< when a vertex was last tried to move, and when it last changed
   int clock_ = 0;
@@ -137,6 +160,8 @@ class Relaxer {
   std::vector<signed char> color_;  ///< no two joined vertices have the same; -1: none, not moved
   std::vector<int> by_color_, color_start_;
   bool listed_ = false;
+  bool recording_ = false;
+  std::vector<Edit> edits_;  ///< while recording
 };
 
 }  // namespace meshpipe
