@@ -51,8 +51,8 @@ struct EditMesh {
   /// Turns the edge of h within its two triangles: from a-b to c-d. Precondition: not hard, c and d not
   /// joined.
   void flip(int h);
-  /// Puts a new vertex (the next number) on the edge of h, splitting its two triangles. Precondition: not
-  /// hard. Triangles 3*2 new half-edges are appended: n is split off triangle h/3, n+1 off triangle opp[h]/3.
+  /// Puts a new vertex (the next number) on the edge of h, splitting its one or two triangles; the halves of
+  /// a hard edge are hard. Triangle n, the next number, is split off triangle h/3, n+1 off triangle opp[h]/3.
   /// Returns the vertex.
   int split(int h);
   /// Contracts the edge of h: one of its vertices (`gone`) becomes the other, and the edge's one or two

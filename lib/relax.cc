@@ -42,7 +42,7 @@ double Ground::size(const Place& p) const {
 
 Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& line_kind,
                  const std::vector<char>& corner, const RelaxOptions& options)
-    : ground_(ground),
+    : ground_(&ground),
       lifted_(std::move(mesh)),
       m_(std::move(lifted_.tris), (int)lifted_.points.size(), lifted_.model),
       options_(options),
@@ -73,7 +73,7 @@ Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& 
   for (int v = 0; v < n; ++v) {
     if (!held_[v]) continue;
     const Place& p = lifted_.place[v];
-    const Tri& t = ground_.surface.tris[p.face];
+    const Tri& t = ground_->surface.tris[p.face];
     const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
     if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) held_[v] = fixed;
   }
@@ -111,16 +111,16 @@ void Relaxer::put(int v, const Place& place, Vec3 p, Vec3 facing) {
   lifted_.place[v] = place;
   points_[v] = p;
   facing_[v] = facing;
-  if (ground_.sizes) lifted_.size[v] = ground_.size(place);
+  if (ground_->sizes) lifted_.size[v] = ground_->size(place);
 }
 
 /// Triangles the size field asks for on the reference: the integral of dA / (sqrt(3)/4 h^2).
 double Relaxer::wanted_triangles() const {
-  if (!ground_.sizes) return (double)m_.live;
-  const std::vector<double>& size = *ground_.sizes;
-  const std::vector<Vec3>& p = ground_.surface.points;
+  if (!ground_->sizes) return (double)m_.live;
+  const std::vector<double>& size = *ground_->sizes;
+  const std::vector<Vec3>& p = ground_->surface.points;
   double n = 0;
-  for (const Tri& t : ground_.surface.tris) {
+  for (const Tri& t : ground_->surface.tris) {
     const double h = (size[t[0]] + size[t[1]] + size[t[2]]) / 3;
     const Vec3 area = area_vector(p[t[0]], p[t[1]], p[t[2]]);
     n += 0.5 * norm(area) / (sqrt3 / 4 * h * h);

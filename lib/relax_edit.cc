@@ -26,56 +26,76 @@ std::vector<int> Relaxer::ordered_edges(Test test, Key key) const {
 /// first.
 Place Relaxer::place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const {
   for (int v : round)
-    if (held_[v] == loose) return ground_.walk.closest(lifted_.place[v], p);
+    if (held_[v] == loose) return ground_->walk.closest(lifted_.place[v], p);
   Place best = lifted_.place[*round.begin()];
   double least = 1e300;
   for (int v : round)
-    for (const Place& start : {lifted_.place[v], ground_.walk.across(lifted_.place[v])}) {
-      const Place q = ground_.walk.closest(start, p);
-      const Vec3 d = ground_.walk.point(q) - p;
-      const double score = dot(d, d) * (dot(ground_.walk.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
+    for (const Place& start : {lifted_.place[v], ground_->walk.across(lifted_.place[v])}) {
+      const Place q = ground_->walk.closest(start, p);
+      const Vec3 d = ground_->walk.point(q) - p;
+      const double score = dot(d, d) * (dot(ground_->walk.normal(q), facing) > 0.3 * norm(facing) ? 1 : 1e6);
       if (score < least) least = score, best = q;
     }
   return best;
 }
 
-/// Splits the edge of h at the place on the reference nearest to its middle; false if the pieces would fold.
+/// Splits the edge of h at the place on the reference nearest to its middle; an edge of a border or model
+/// edge on that. False if the pieces would fold, or if both ends of a model edge are corners.
 bool Relaxer::split(int h) {
-  const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]);
+  const int g = m_.opp[h], a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
   const Vec3 middle = lerp(at(a), at(b), 0.5);
-  const Place place = place_near(middle, {a, b, c, d}, normal(h / 3) + normal(m_.opp[h] / 3));
-  const Vec3 p = ground_.walk.point(place);
-  if (norm(p - middle) > 0.5 * norm(at(b) - at(a))) return false;
-  const Vec3 facing = facing_at(place);
-  const double before = std::min(agrees(a, b, c), agrees(b, a, d));
-  const int ring[5] = {a, d, b, c, a};
-  for (int i = 0; i < 4; ++i) {
+  Place place;
+  Vec3 facing{};
+  if (m_.hard[h]) {
+    const int from = on_line(a, b);
+    if (from < 0 && g >= 0) return false;
+    place = ground_->walk.slide(lifted_.place[from < 0 ? a : from], middle);
+    // from a corner it may have gone the other way
+    const Place other = ground_->walk.slide(lifted_.place[b], middle);
+    if (from < 0 && norm(ground_->walk.point(other) - middle) < norm(ground_->walk.point(place) - middle))
+      place = other;
+    if (g < 0) facing = facing_at(place);
+  } else {
+    place = place_near(middle, {a, b, c, d}, normal(h / 3) + normal(g / 3));
+    facing = facing_at(place);
+  }
+  const Vec3 p = ground_->walk.point(place);
+  if (norm(p - middle) > (m_.hard[h] ? 0.3 : 0.5) * norm(at(b) - at(a))) return false;
+  const int ring[5] = {b, c, a, d, b};
+  for (int i = 0; i < (g < 0 ? 2 : 4); ++i) {
     const int v = ring[i], w = ring[i + 1];
-    if (folds(before, agreement(p, at(v), at(w), facing + facing_[v] + facing_[w]))) return false;
+    if (folds(i < 2 ? agrees(a, b, c) : agrees(b, a, d),
+              agreement(p, at(v), at(w), facing + facing_[v] + facing_[w])))
+      return false;
   }
   insert(h, place, p, facing);
   return true;
 }
 
+/// The end of a line's edge that is not a corner, so that it knows which line; -1 if both are.
+int Relaxer::on_line(int a, int b) const { return held_[a] == slides ? a : held_[b] == slides ? b : -1; }
+
 /// Puts a new vertex on the edge of h.
 void Relaxer::insert(int h, const Place& place, Vec3 p, Vec3 facing) {
-  const int a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = m_.apex(m_.opp[h]), low = m_.opp[h] / 3;
+  const int g = m_.opp[h], a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
   if (recording_) edits_.push_back({Edit::split, h, -1});
   points_.push_back(p);
   lifted_.place.push_back(place);
-  lifted_.size.push_back(ground_.sizes ? ground_.size(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
+  lifted_.size.push_back(ground_->sizes ? ground_->size(place) : 0.5 * (lifted_.size[a] + lifted_.size[b]));
   finer_.push_back(std::min(finer_[a], finer_[b]));
-  lifted_.kind.push_back(0);
-  lifted_.line.push_back(-1);
-  held_.push_back(loose);
+  lifted_.kind.push_back(m_.hard[h] ? 1 : 0);
+  lifted_.line.push_back(m_.hard[h] ? lifted_.line[on_line(a, b) < 0 ? a : on_line(a, b)] : -1);
+  held_.push_back(m_.hard[h] ? slides : loose);
   facing_.push_back(facing);
   tried_.push_back(0);
   changed_.push_back(0);
   color_.push_back(-1);
-  for (int v : {m_.split(h), a, b, c, d}) edited(v);
+  const int m = m_.split(h);
+  for (int v : {m, a, b, c, d})
+    if (v >= 0) edited(v);
   for (std::vector<int>* label : {&lifted_.patch, &lifted_.part}) {
     label->push_back((*label)[h / 3]);
-    label->push_back((*label)[low]);
+    if (g >= 0) label->push_back((*label)[g / 3]);
   }
   ++report_.splits;
 }
@@ -107,8 +127,8 @@ bool Relaxer::collapse(int h, int gone, double worst, double longest) {
   Place place = lifted_.place[kept];
   Vec3 p = at(kept);
   if (held_[kept] == loose) {
-    place = ground_.walk.closest(lifted_.place[kept], lerp(at(gone), p, 0.5));
-    p = ground_.walk.point(place);
+    place = ground_->walk.closest(lifted_.place[kept], lerp(at(gone), p, 0.5));
+    p = ground_->walk.point(place);
   }
   if (held_[gone] == slides) {
     // the line's next vertex on the other side

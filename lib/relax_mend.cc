@@ -9,18 +9,21 @@
 
 namespace meshpipe {
 
+// --- tips ---
+
 /// Tips and ridges that the mesh cuts off are where it is farthest from the reference. For the vertices of
-/// the reference that lie farther than a tenth of the size, the farthest first, the mesh vertex nearest by
-/// goes there and stays, if it can walk there and leaves its star in good shape.
+/// the reference that lie farther than a tenth of the size, the farthest first, a mesh vertex goes there and
+/// stays.
 void Relaxer::reach_tips() {
   std::vector<int> number;
   const Mesh now = compact(number);
   if (now.tris.empty()) return;
   const Bvh tree(now);
-  const int n = (int)ground_.surface.points.size();
+  const Surface& s = ground_->surface;
+  const int n = (int)s.points.size();
   std::vector<Bvh::Hit> hit(n);
 #pragma omp parallel for schedule(static) if (n > 10000)
-  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(ground_.surface.points[v]);
+  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(s.points[v]);
   const double h = std::sqrt(4 / sqrt3 * total_area(now) / (double)now.tris.size());
   double farthest = 0;
   for (int v = 0; v < n; ++v) farthest = std::max(farthest, hit[v].distance);
@@ -29,31 +32,66 @@ void Relaxer::reach_tips() {
   for (int v = 0; v < n; ++v)
     if (hit[v].distance > far_enough) far.push_back({-hit[v].distance, v});
   std::sort(far.begin(), far.end());
+  std::vector<Place> place(n);
+  for (int t = 0; t < (int)s.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      place[s.tris[t][i]] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
   int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
   for (auto [minus_distance, v] : far) {
     if (left == 0) break;
-    const Vec3 tip = ground_.surface.points[v];
-    int nearest = -1;
-    for (int w : m_.tris[number[hit[v].place.face]])
-      if (held_[w] == loose && (nearest < 0 || norm(at(w) - tip) < norm(at(nearest) - tip))) nearest = w;
-    Star star;
-    if (nearest < 0 || !gather(nearest, star)) continue;
-    const Place place = ground_.walk.closest(lifted_.place[nearest], tip);
-    const Vec3 p = ground_.walk.point(place), facing = facing_at(place);
-    if (norm(p - tip) > 1e-6 * h) continue;
-    double worst = 0;
-    for (int i = 0; i < star.n; ++i) worst = std::max(worst, shape_energy(p, star.y[i], star.z[i]));
-    if (worst > 1.9 || folds(star.agreement(at(nearest), facing_[nearest]), star.agreement(p, facing)))
-      continue;
-    put(nearest, place, p, facing);
-    held_[nearest] = anchored;
-    listed_ = false;
-    --left;
-    touch(nearest);
+    int alive = -1;
+    for (int w : now.tris[hit[v].place.face])
+      if (m_.out[w] >= 0) alive = m_.out[w] / 3;
+    if (alive >= 0 && reach(place[v], alive, far_enough)) --left;
   }
   smooth(3);
   flip_to_shape();
   smooth(2);
+}
+
+/// Puts a vertex of the triangle nearest to `tip` there, or a new one on one of its edges, whichever leaves
+/// the better mesh when all round it has settled. `t`: a triangle near by. False if the tip is not farther
+/// than `far_enough`, cannot be walked to, or would spoil the mesh.
+bool Relaxer::reach(const Place& tip, int t, double far_enough) {
+  constexpr double spoils = 2e-3;  // about one triangle with nine tenths of the quality wanted
+  const Vec3 p = ground_->walk.point(tip);
+  double least = 1e300;
+  for (int s : triangles_round(t, 2)) {
+    const Tri& v = m_.tris[s];
+    const auto b = closest_on_triangle(p, at(v[0]), at(v[1]), at(v[2]));
+    const double d = norm(b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]) - p);
+    if (d < least) least = d, t = s;
+  }
+  if (least <= far_enough) return false;
+  auto walks_there = [&](int v) {
+    return held_[v] == loose &&
+           norm(ground_->walk.point(ground_->walk.closest(lifted_.place[v], p)) - p) < 1e-6 * size_at(v);
+  };
+  const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
+  const Relaxer before = patch(triangles, vertices);
+  const Vec3 facing = facing_at(tip);
+  double best = before.badness() + spoils;
+  Relaxer chosen = before;
+  bool found = false;
+  for (int i = 0; i < 6; ++i) {
+    const int h = i % 3;
+    if (!walks_there(m_.tris[t][h])) continue;
+    Relaxer after = before;
+    int v = after.m_.from(h);
+    if (i >= 3) {
+      if (before.m_.hard[h]) continue;
+      v = (int)after.m_.out.size();
+      after.insert(h, tip, p, facing);
+    }
+    after.put(v, tip, p, facing);
+    after.held_[v] = anchored;
+    after.listed_ = false;
+    after.settle();
+    if (const double bad = after.badness(); bad < best && after.least_agreeing() > 0)
+      best = bad, chosen = after, found = true;
+  }
+  if (found) adopt(chosen, triangles, vertices);
+  return found;
 }
 
 // --- the worst triangles ---
@@ -96,7 +134,16 @@ std::vector<int> Relaxer::triangles_round(int t, int rings) const {
   return found;
 }
 
-/// These triangles as a mesh of their own whose rim stays as it is. `vertices`: theirs, ascending.
+/// Their vertices, ascending.
+std::vector<int> Relaxer::vertices_of(const std::vector<int>& triangles) const {
+  std::vector<int> vertices;
+  for (int t : triangles) vertices.insert(vertices.end(), m_.tris[t].begin(), m_.tris[t].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+/// These triangles as a mesh of their own whose rim stays as it is. `vertices`: vertices_of them.
 Relaxer Relaxer::patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const {
   LiftedMesh part;
   auto local = [&](int v) {
@@ -116,7 +163,7 @@ Relaxer Relaxer::patch(const std::vector<int>& triangles, const std::vector<int>
   }
   part.patch.assign(triangles.size(), 0);
   part.part.assign(triangles.size(), 0);
-  Relaxer r(std::move(part), ground_, {}, {}, options_);
+  Relaxer r(std::move(part), *ground_, {}, {}, options_);
   for (int i = 0; i < (int)vertices.size(); ++i) {
     const int v = vertices[i];
     r.held_[i] = held_[v];
@@ -137,10 +184,21 @@ void Relaxer::try_edit(const Edit& edit) {
   if (edit.kind == Edit::collapse && m_.opp[edit.h] >= 0 && !m_.hard[edit.h])
     collapse(edit.h, edit.gone, 1e9, 2);
   if (edit.kind == Edit::split) split(edit.h);
+  settle();
+}
+
+void Relaxer::settle() {
   for (int i = 0; i < 2; ++i) {
     flip_to_shape();
     smooth(3);
   }
+}
+
+double Relaxer::least_agreeing() const {
+  double least = 1;
+  for (int t = 0; t < (int)m_.tris.size(); ++t)
+    if (!m_.dead(t)) least = std::min(least, agrees(m_.tris[t][0], m_.tris[t][1], m_.tris[t][2]));
+  return least;
 }
 
 /// Does here what was done to a patch.
@@ -151,7 +209,7 @@ void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vect
       flip(h);
     } else if (e.kind == Edit::split) {
       const int v = (int)vertices.size();
-      for (int i = 0; i < 2; ++i) triangles.push_back((int)m_.tris.size() + i);
+      for (int i = 0; i < (m_.opp[h] < 0 ? 1 : 2); ++i) triangles.push_back((int)m_.tris.size() + i);
       vertices.push_back((int)m_.out.size());
       insert(h, mended.lifted_.place[v], mended.at(v), mended.facing_[v]);
     } else {
@@ -163,47 +221,77 @@ void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vect
     }
   }
   for (int i = 0; i < (int)vertices.size(); ++i)
-    if (mended.m_.out[i] >= 0 && mended.held_[i] < fixed) {
+    if (mended.m_.out[i] >= 0 && (mended.held_[i] < fixed || mended.held_[i] == anchored)) {
+      held_[vertices[i]] = mended.held_[i];
       put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
       touch(vertices[i]);
     }
+  listed_ = false;
 }
 
-/// Tries every flip, split and collapse of the edges of t and of the triangles beside it, each on a copy of
-/// the neighbourhood and settled there, and adopts the best if it is better than what is.
-bool Relaxer::mend(int t, bool thorough) {
-  const std::vector<int> triangles = triangles_round(t, thorough ? 3 : 2);
-  std::vector<int> vertices;
-  for (int s : triangles) vertices.insert(vertices.end(), m_.tris[s].begin(), m_.tris[s].end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const Relaxer before = patch(triangles, vertices);
-  std::vector<Edit> edits;
-  const int near = thorough ? (int)triangles_round(t, 1).size() : 1;
-  for (int h = 0; h < 3 * near; ++h) {
-    const int g = before.m_.opp[h];
-    std::vector<int> edges{h};
-    if (!thorough && g >= 0) edges = {h, next(g), prev(g)};
-    if (thorough && g > h) continue;
-    for (int e : edges) {
-      edits.push_back({Edit::collapse, e, before.m_.from(e)});
-      edits.push_back({Edit::collapse, e, before.m_.to(e)});
-      if (before.m_.hard[e]) continue;
-      edits.push_back({Edit::flip, e, -1});
-      edits.push_back({Edit::split, e, -1});
+/// The flips, splits and collapses of the edges of t and of the triangles beside it; `wide`: of all that
+/// share a vertex with it.
+std::vector<Relaxer::Edit> Relaxer::edits_round(int t, bool wide) const {
+  std::vector<int> halfedges;
+  for (int s : wide ? triangles_round(t, 1) : std::vector<int>{t})
+    for (int h = 3 * s; h < 3 * s + 3; ++h) {
+      const int g = m_.opp[h];
+      if (wide) {
+        if (g < h) halfedges.push_back(h);
+      } else {
+        halfedges.push_back(h);
+        if (g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
+      }
     }
+  std::vector<Edit> edits;
+  for (int h : halfedges) {
+    edits.push_back({Edit::collapse, h, m_.from(h)});
+    edits.push_back({Edit::collapse, h, m_.to(h)});
+    edits.push_back({Edit::split, h, -1});
+    if (!m_.hard[h]) edits.push_back({Edit::flip, h, -1});
   }
-  std::vector<Relaxer> after(edits.size(), before);
-  std::vector<double> bad(edits.size());
+  return edits;
+}
+
+/// Tries the edits round t, each on a copy of the neighbourhood and settled there, and adopts the best if it
+/// is better than what is. `thorough`: also pairs of edits, the second where the best of the first leave
+/// their worst.
+bool Relaxer::mend(int t, bool thorough) {
+  const std::vector<int> triangles = triangles_round(t, thorough ? 3 : 2), vertices = vertices_of(triangles);
+  struct Trial {
+    double badness;
+    Relaxer state;
+  };
+  auto try_all = [](const Relaxer& from, const std::vector<Edit>& edits) {
+    std::vector<Trial> trials(edits.size(), {0, from});
 #pragma omp parallel for schedule(dynamic)
-  for (int i = 0; i < (int)edits.size(); ++i) {
-    after[i].try_edit(edits[i]);
-    bad[i] = after[i].badness();
+    for (int i = 0; i < (int)edits.size(); ++i) {
+      trials[i].state.try_edit(edits[i]);
+      trials[i].badness = trials[i].state.badness();
+    }
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.badness < b.badness; });
+    return trials;
+  };
+  const Relaxer before = patch(triangles, vertices);
+  const double good_enough = 0.9 * before.badness();
+  std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
+  Trial best = trials.front();
+  for (int i = 0; i < 5 && thorough && best.badness > good_enough; ++i) {
+    const Relaxer& from = trials[i].state;
+    const Trial second = try_all(from, from.edits_round(from.worst(), false)).front();
+    if (second.badness < best.badness) best = second;
   }
-  const auto best = std::min_element(bad.begin(), bad.end());
-  if (best == bad.end() || *best > 0.9 * before.badness()) return false;
-  adopt(after[best - bad.begin()], triangles, vertices);
+  if (best.badness > good_enough) return false;
+  adopt(best.state, triangles, vertices);
   return true;
+}
+
+int Relaxer::worst() const {
+  std::pair<double, int> least{1e300, -1};
+  for (int t = 0; t < (int)m_.tris.size(); ++t)
+    if (!m_.dead(t)) least = std::min(least, {quality(t), t});
+  return least.second;
 }
 
 /// Mends the triangles that are not good enough, the worst first.
@@ -214,7 +302,6 @@ void Relaxer::mend_worst() {
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
-    if (getenv("DBG")) fprintf(stderr, "bad %zu worst %g\n", bad.size(), bad.empty() ? 1 : bad[0].first);
     int mended = 0;
     for (auto [q, t] : bad)
       if (!m_.dead(t) && quality(t) < 1) mended += mend(t, round > 0);

@@ -57,15 +57,15 @@ bool Relaxer::slide(int v) {
   const double size = size_at(v), reach = std::min(norm(ahead - x), norm(behind - x)), probe = 0.1 * reach;
   const Vec3 direction = normalized(ahead - behind);
   if (reach <= 0) return false;
-  auto place_at = [&](double s) { return ground_.walk.slide(lifted_.place[v], x + s * direction); };
-  auto energy = [&](double s) { return star.energy(ground_.walk.point(place_at(s)), size); };
+  auto place_at = [&](double s) { return ground_->walk.slide(lifted_.place[v], x + s * direction); };
+  auto energy = [&](double s) { return star.energy(ground_->walk.point(place_at(s)), size); };
   const double now = star.energy(x, size), left = energy(-probe), right = energy(probe);
   const double bend = left - 2 * now + right;
   double s = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
   s = std::clamp(s, -0.4 * reach, 0.4 * reach);
   if (!(std::abs(s) >= no_step * size)) return false;
   const Place place = place_at(s);
-  const Vec3 p = ground_.walk.point(place), facing = facing_on_line(v, place);
+  const Vec3 p = ground_->walk.point(place), facing = facing_on_line(v, place);
   if (star.energy(p, size) > now * (1 - 1e-4) ||
       folds(star.agreement(x, facing_[v]), star.agreement(p, facing)))
     return false;
@@ -123,8 +123,8 @@ bool Relaxer::move(int v) {
   if (length > 0.5 * size) step = (0.5 * size / length) * step;
   const double now = star.energy(x, size), agreed = star.agreement(x, facing_[v]);
   for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
-    const Place place = ground_.walk.closest(lifted_.place[v], x + step.x * s + step.y * t);
-    const Vec3 p = ground_.walk.point(place);
+    const Place place = ground_->walk.closest(lifted_.place[v], x + step.x * s + step.y * t);
+    const Vec3 p = ground_->walk.point(place);
     if (star.energy(p, size) >= now) continue;
     const Vec3 facing = facing_at(place);
     if (folds(agreed, star.agreement(p, facing))) continue;

@@ -84,7 +84,7 @@ class Relaxer {
   Vec3 normal(int t) const {
     return normalized(area_vector(at(m_.tris[t][0]), at(m_.tris[t][1]), at(m_.tris[t][2])));
   }
-  Vec3 facing_at(const Place& p) const { return ground_.normal(p); }
+  Vec3 facing_at(const Place& p) const { return ground_->normal(p); }
   /// On a border the reference has a normal; on a model edge it has two, so none.
   Vec3 facing_on_line(int v, const Place& p) const { return m_.on_border(v) ? facing_at(p) : Vec3{}; }
   void touch(int v) { changed_[v] = ++clock_; }
@@ -113,6 +113,7 @@ class Relaxer {
   std::vector<int> ordered_edges(Test test, Key key) const;
   Place place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing) const;
   bool split(int h);
+  int on_line(int a, int b) const;
   void insert(int h, const Place& place, Vec3 p, Vec3 facing);
   void split_long(double above, double most);
   bool collapse(int h, int gone, double worst, double longest);
@@ -134,17 +135,23 @@ class Relaxer {
 
   // relax_mend.cc
   void reach_tips();
+  bool reach(const Place& tip, int t, double far_enough);
   double quality(int t) const;
   double badness() const;
   std::vector<int> triangles_round(int t, int rings) const;
+  std::vector<int> vertices_of(const std::vector<int>& triangles) const;
   Relaxer patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const;
+  void settle();
+  double least_agreeing() const;
   void try_edit(const Edit& edit);
   void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
+  int worst() const;
+  std::vector<Edit> edits_round(int t, bool wide) const;
   bool mend(int t, bool thorough);
   void mend_worst();
   void separate();
 
-  const Ground& ground_;
+  const Ground* ground_;
   LiftedMesh lifted_;
   EditMesh m_;
   RelaxOptions options_;
