@@ -162,7 +162,9 @@ class LevelSolver {
     keep_what_touches_the_border();
     std::vector<int> set_of;
     int n_sets = find_sets(set_of, truncated);
-    while (withdraw_holes(set_of, n_sets)) {
+    constexpr int most_rounds = 8;
+    for (int round = 0; round < most_rounds && withdraw_holes(set_of, n_sets); round++) {
+      keep_fans_whole();
       keep_what_touches_the_border();
       n_sets = find_sets(set_of, truncated);
     }
@@ -393,7 +395,9 @@ class LevelSolver {
     bool any = false;
     for (std::size_t f = 0; f + 1 < disk_.fan_begin.size(); f++) {
       const int begin = disk_.fan_begin[f], end = disk_.fan_begin[f + 1];
-      if (place_[begin] < 0 || small_[place_[begin]]) continue;  // whole, or not at all
+      bool good = true;
+      for (int t = begin; t < end; t++) good &= place_[t] >= 0 && !small_[place_[t]];
+      if (!good) continue;
       const Vec2 centre = uv_[corners_[place_[begin]][2]];
       double r = 0;
       for (int t = begin; t < end; t++) r = std::max(r, norm(uv_[corners_[place_[t]][0]] - centre));
