@@ -173,7 +173,7 @@ std::vector<double> best_field(const Part& part, const MultiscaleOptions& option
     drop_fragments(part, best);
     best_is = assess(part, best);
   }
-  constexpr int rounds = 10;
+  constexpr int rounds = 8;
   reach_holes(part.disk, part.opposite, best);
   balance_sides(part.disk, part.opposite, find_branches(part.disk, levels), best, rounds);
   drop_fragments(part, best);
