@@ -395,9 +395,10 @@ class LevelSolver {
     bool any = false;
     for (std::size_t f = 0; f + 1 < disk_.fan_begin.size(); f++) {
       const int begin = disk_.fan_begin[f], end = disk_.fan_begin[f + 1];
-      bool good = true;
-      for (int t = begin; t < end; t++) good &= place_[t] >= 0 && !small_[place_[t]];
-      if (!good) continue;
+      // only a fan that lies in the domain as a whole and is not withdrawn already
+      if (std::any_of(place_.begin() + begin, place_.begin() + end,
+                      [&](int i) { return i < 0 || small_[i]; }))
+        continue;
       const Vec2 centre = uv_[corners_[place_[begin]][2]];
       double r = 0;
       for (int t = begin; t < end; t++) r = std::max(r, norm(uv_[corners_[place_[t]][0]] - centre));

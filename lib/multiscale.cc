@@ -218,7 +218,7 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
     std::vector<Pair> pairs;
     for (int a = 0; a < n_parts; a++)
       for (int h : joiner.regions().border[a])
-        if (int o = opposite[h]; o >= 0 && was_cut[a] && was_cut[label[o / 3]] && a < label[o / 3])
+        if (int o = opposite[h]; o >= 0 && a < label[o / 3] && was_cut[a] && was_cut[label[o / 3]])
           pairs.push_back(
               {a, label[o / 3],
                norm(surface.points[target(surface.tris, h)] - surface.points[origin(surface.tris, h)])});

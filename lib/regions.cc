@@ -70,6 +70,7 @@ Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const s
   std::vector<int> of_vertex(mesh.points.size(), -1);
   constexpr int on_border = -2;
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    if (label[t] < 0) continue;
     const Tri& corner = mesh.tris[t];
     ++r.region[label[t]].faces;
     r.region[label[t]].area +=
