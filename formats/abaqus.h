@@ -5,7 +5,8 @@
 
 namespace meshpipe {
 
-/// Sets are named like their patch, with what Abaqus does not take in a name as '_'. Output only, always text.
+/// Sets are named like their patch, with what Abaqus does not take in a name as '_'. Output only, always
+/// text.
 std::string write_abaqus(const Stream& stream, bool ascii);
 
 }  // namespace meshpipe

@@ -48,10 +48,10 @@ const std::vector<Reader>& readers() {
 
 const std::vector<Writer>& writers() {
   static const std::vector<Writer> all = {
-      {".mply", write_stream}, {".ply", write_ply},    {".stl", write_stl},        {".obj", write_obj},
-      {".off", write_off},     {".msh", write_msh2},   {".msh2", write_msh2},      {".msh4", write_msh4},
+      {".mply", write_stream}, {".ply", write_ply},    {".stl", write_stl},      {".obj", write_obj},
+      {".off", write_off},     {".msh", write_msh2},   {".msh2", write_msh2},    {".msh4", write_msh4},
       {".vtu", write_vtu},     {".vtp", write_vtp},    {".vtk", write_vtk_grid}, {".mesh", write_mesh},
-      {".meshb", write_meshb}, {".sol", write_sol},    {".gts", write_gts},        {".bdf", write_nastran},
+      {".meshb", write_meshb}, {".sol", write_sol},    {".gts", write_gts},      {".bdf", write_nastran},
       {".nas", write_nastran}, {".inp", write_abaqus}, {".poly", write_poly},
   };
   return all;
@@ -66,9 +66,16 @@ Stream read_any(std::string_view bytes, const std::string& where) {
   throw BadInput(where + ":1: none of the known formats (" + known + ")" + guess(bytes));
 }
 
-std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
+std::string extension_of(const std::string& path) {
   const std::size_t dot = path.find_last_of("./");
-  const std::string extension = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
+  std::string extension = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
+  for (char& c : extension)
+    if ('A' <= c && c <= 'Z') c += 'a' - 'A';
+  return extension;
+}
+
+std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
+  const std::string extension = extension_of(path);
   std::string known;
   for (const Writer& w : writers()) {
     if (extension == w.extension) return w.write(stream, ascii);

@@ -10,13 +10,18 @@
 
 namespace meshpipe {
 
-/// Reads any known format, the stream included. Foreign meshes come as they are in the file (not welded, but for
-/// indexed formats' own numbering), polygons triangulated, with face column `patch` and its names.
-/// Throws BadInput with place and both numbers.
+/// Reads any known format, the stream included. Foreign meshes come as they are in the file (not welded, but
+/// for indexed formats' own numbering), polygons triangulated, with face column `patch` and its names. Throws
+/// BadInput with place and both numbers.
 Stream read_any(std::string_view bytes, const std::string& where);
 
+/// ".stl" of "a/part.STL": the last dot of the file's name and what follows, in lower case; empty without a
+/// dot.
+std::string extension_of(const std::string& path);
+
 /// The mesh in the format of the extension of `path` (".stl", ".vtu", ...; ".mply" is the stream).
-/// `ascii` asks for text where the format has both. Throws BadUsage naming the known ones for an unknown extension.
+/// `ascii` asks for text where the format has both. Throws BadUsage naming the known ones for an unknown
+/// extension.
 std::string write_as(const Stream& stream, const std::string& path, bool ascii);
 
 /// A reader knows its format by its first bytes (`matches`) and reads the whole.

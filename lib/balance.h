@@ -15,8 +15,9 @@ bool is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
 /// The branches of a part as its Laplace maps see them: the map of a tube of radius r is exp((-z + i s) / r)
 /// around the centre of the set or hole behind it.
 struct Branches {
-  std::vector<double> radius;  ///< of vertices: the distance to the nearest such centre over the map's stretch
-  std::vector<Vec3> axis;      ///< of triangles: the unit direction towards it, or zero
+  std::vector<double>
+      radius;              ///< of vertices: the distance to the nearest such centre over the map's stretch
+  std::vector<Vec3> axis;  ///< of triangles: the unit direction towards it, or zero
 };
 Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels);
 

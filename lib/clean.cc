@@ -99,6 +99,10 @@ void turn(Repair& r, int t) {
 /// majority. Components that are not orientable are noted, their triangles marked in `gone`.
 void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report) {
   const int n = (int)r.tris.size();
+  bool agree = true;
+  for (int h = 0; agree && h < 3 * n; ++h)
+    agree = r.opposite[h] < 0 || origin(r.tris, h) != origin(r.tris, r.opposite[h]);
+  if (agree) return;
   enum : char { unseen, as_seed, against };
   std::vector<char> side(n, unseen);
   std::vector<int> members;
@@ -114,8 +118,8 @@ void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone,
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const int o = r.opposite[h];
         if (o < 0) continue;
-        const bool agree = origin(r.tris, h) != origin(r.tris, o);
-        const char want = agree == (side[t] == as_seed) ? as_seed : against;
+        const char want =
+            (origin(r.tris, h) != origin(r.tris, o)) == (side[t] == as_seed) ? as_seed : against;
         if (side[o / 3] == unseen) {
           side[o / 3] = want;
           turned += want == against;
@@ -166,6 +170,7 @@ void split_fans(Repair& r, CleanReport& report) {
         if (!r.split[v]) apart.push_back(g / 3);
       }
       r.vertex.push_back(r.vertex[v]);
+      r.copied.push_back(v);
     }
     fans[v] = fans[v] == none ? one : many;
   }
@@ -178,9 +183,7 @@ void split_fans(Repair& r, CleanReport& report) {
 }
 
 /// Turns closed components inside out whose signed volume is clearly negative.
-void face_outward(Repair& r, const std::vector<Vec3>& points) {
-  std::vector<int> component;
-  const int n = components(r.opposite, component);
+void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n) {
   std::vector<char> closed(n, 1);
   std::vector<int> seed(n, -1);
   std::vector<double> volume(n, 0), area(n, 0);
@@ -228,11 +231,12 @@ bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanRep
   return true;
 }
 
-/// Undoes split_fans: copies become the vertices of the input again.
-void unite(Repair& r, int n_input) {
+/// Undoes split_fans.
+void unite(Repair& r) {
   for (Tri& t : r.tris)
-    for (int& v : t) v = r.vertex[v];
-  r.vertex.resize(n_input);
+    for (int& v : t) v = base(r, v);
+  r.vertex.resize(r.vertex.size() - r.copied.size());
+  r.copied.clear();
 }
 
 /// Leaves out vertices that no triangle uses, and numbers the others by first use.
@@ -306,18 +310,23 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   std::vector<char> used(n, 0);
   for (const Tri& t : surface.tris)
     for (int v : t) used[v] = 1;
-  std::vector<int> same = first_equal(surface.points, used);
-  for (int v = 0; v < n; ++v) report.welded += same[v] != v;
-  if (options.weld > 0) report.welded_near = merge_near(surface.points, used, options.weld, same);
+  std::vector<int> number = first_equal(surface.points, used);
+  for (int v = 0; v < n; ++v) report.welded += number[v] != v;
+  if (options.weld > 0) report.welded_near = merge_near(surface.points, used, options.weld, number);
 
-  Repair r;
-  r.vertex.resize(n);
-  std::iota(r.vertex.begin(), r.vertex.end(), 0);
+  Repair r;  // on the vertices that are left, in their order
+  for (int v = 0; v < n; ++v)
+    if (number[v] == v) {
+      number[v] = (int)r.vertex.size();
+      r.vertex.push_back(v);
+    } else {
+      number[v] = number[number[v]];  // which came before
+    }
   r.tris.reserve(surface.tris.size());
   r.face.reserve(surface.tris.size());
-  used.assign(n, 0);
+  used.assign(r.vertex.size(), 0);
   for (int t = 0; t < (int)surface.tris.size(); ++t) {
-    const Tri s = surface.tris[t], w{same[s[0]], same[s[1]], same[s[2]]};
+    const Tri s = surface.tris[t], w{number[s[0]], number[s[1]], number[s[2]]};
     if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) {
       ++report.degenerate;
       blame(report, t, Fault::degenerate);
@@ -327,7 +336,8 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     r.face.push_back(t);
     for (int v : w) used[v] = 1;
   }
-  for (int v = 0; v < n; ++v) report.unreferenced += same[v] == v && !used[v];
+  report.unreferenced = (int)std::count(used.begin(), used.end(), 0);
+  std::vector<int>().swap(number);
 
   r.flipped.assign(r.tris.size(), 0);
   std::vector<char> gone;
@@ -348,7 +358,7 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     }
     split_fans(r, report);
     if (!options.keep_components || !keep_largest(r, surface.points, options.keep_components, report)) break;
-    unite(r, n);
+    unite(r);
   }
   for (std::size_t t = 0; t < r.tris.size(); ++t)
     if (r.flipped[t]) blame(report, r.face[t], Fault::turned);
@@ -356,15 +366,15 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   report.flat = flat.left;
   report.degenerate += (int)flat.removed.size();
   for (int t : flat.removed) blame(report, t, Fault::degenerate);
-  std::vector<int> component;
-  report.components = components(r.opposite, component);
   if (options.fill_holes) {
     const HoleCounts holes = fill_holes(r, surface.points, options.fill_holes);
     report.holes_filled = holes.filled;
     report.hole_triangles = holes.triangles;
     report.holes_left = holes.left;
   }
-  face_outward(r, surface.points);  // at last, since a filled surface may be closed now
+  std::vector<int> component;
+  report.components = components(r.opposite, component);
+  face_outward(r, surface.points, component, report.components);  // last, when holes are filled
   report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
   sort_culprits(report);
   if (r.tris.empty())

@@ -12,8 +12,8 @@ namespace meshpipe {
 ///
 /// Only triangles with active[t] != 0 are cut (an empty `active` means all); an edge is cut if either of its
 /// triangles is active, so neighbours that are not active are split conformingly and get side -1.
-/// A crossing within `snap` of an edge's end is moved to the vertex (no slivers), as are levels that touch one.
-/// New vertices lie on existing edges and are appended; earlier vertices neither move nor change number.
+/// A crossing within `snap` of an edge's end is moved to the vertex (no slivers), as are levels that touch
+/// one. New vertices lie on existing edges and are appended; earlier vertices neither move nor change number.
 /// Every vertex column is interpolated, every face column copied to the pieces; `model` bits are split with
 /// their edges; `origin` (added as the identity when missing) keeps the triangle of the cleaned input.
 /// The diagonal of the remaining quadrilateral is the one with the better smallest angle in space.

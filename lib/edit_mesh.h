@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 /// An oriented manifold with borders. Triangles and vertices removed stay as gaps (tris[t][0] < 0, out[v] <
-/// 0) until compact(). Operations keep every invariant; their preconditions are the caller's to check.
+/// 0). Operations keep every invariant; their preconditions are the caller's to check.
 struct EditMesh {
   std::vector<Tri> tris;
   std::vector<int> opp;  ///< opposite half-edge, -1 on the border

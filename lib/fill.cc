@@ -71,15 +71,15 @@ HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most) {
   HoleCounts counts;
   // vertices that are copies of one another count as one here: filling may not make two edges or triangles at
   // the same place, even on different sheets
-  std::vector<int> spoke(r.vertex.size(), -1), copy(r.vertex.size(), -1), last(points.size(), -1);
+  std::vector<int> spoke(r.vertex.size(), -1), copy(r.vertex.size(), -1), last(r.split.size(), -1);
   for (int h = 0; h < (int)r.opposite.size(); ++h) {
     const int v = origin(r.tris, h);
     if (spoke[v] >= 0) continue;
     spoke[v] = h;
-    copy[v] = last[r.vertex[v]];
-    last[r.vertex[v]] = v;
+    copy[v] = last[base(r, v)];
+    last[base(r, v)] = v;
   }
-  std::vector<int> place(points.size(), -1);  // in the loop at hand
+  std::vector<int> place(r.split.size(), -1);  // in the loop at hand
   for (const std::vector<int>& loop : boundary_loops(r.opposite)) {
     const int n = (int)loop.size();
     if (n > most) continue;
@@ -88,22 +88,22 @@ HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most) {
     std::vector<Vec3> corners;
     bool sound = true;
     for (int i = n - 1; i >= 0; --i) {
-      const int v = target(r.tris, loop[i]), p = r.vertex[v];
+      const int v = target(r.tris, loop[i]), p = base(r, v);
       sound = sound && place[p] < 0 && !r.split[p];
       vertices.push_back(v);
-      corners.push_back(points[p]);
+      corners.push_back(points[r.vertex[v]]);
       place[p] = n - 1 - i;
     }
     std::vector<char> joined(n * n, 0);
     for (int i = 0; i < n; ++i)
-      for (int v = last[r.vertex[vertices[i]]]; v >= 0; v = copy[v])
+      for (int v = last[base(r, vertices[i])]; v >= 0; v = copy[v])
         for_each_spoke(r, spoke[v], [&](int g) {
-          const int j = place[r.vertex[target(r.tris, g)]], k = place[r.vertex[origin(r.tris, prev(g))]];
+          const int j = place[base(r, target(r.tris, g))], k = place[base(r, origin(r.tris, prev(g)))];
           for (int w : {j, k})
             if (w >= 0) joined[i * n + w] = joined[w * n + i] = 1;
           if (n == 3 && j >= 0 && k >= 0) sound = false;  // the triangle is there
         });
-    for (int v : vertices) place[r.vertex[v]] = -1;
+    for (int v : vertices) place[base(r, v)] = -1;
     const std::vector<Tri> tris = sound ? Polygon(corners, joined).triangles() : std::vector<Tri>{};
     if (tris.empty()) {
       ++counts.left;

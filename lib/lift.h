@@ -8,19 +8,19 @@ namespace meshpipe {
 
 /// A mesh each of whose vertices knows its place on a reference surface.
 struct LiftedMesh : Mesh {
-  std::vector<Place> place;          ///< triangle of the reference and barycentrics
-  std::vector<int> kind;             ///< 0 inside, 1 on a line, 2 corner (end of lines)
-  std::vector<int> line;             ///< line it lies on, or -1
-  std::vector<double> size;          ///< size field, interpolated
-  std::vector<int> patch;            ///< per triangle, by place on the reference
-  std::vector<int> part;             ///< per triangle
-  std::vector<std::uint8_t> model;   ///< per triangle: bit i: edge from corner i to i+1 is a model edge
+  std::vector<Place> place;         ///< triangle of the reference and barycentrics
+  std::vector<int> kind;            ///< 0 inside, 1 on a line, 2 corner (end of lines)
+  std::vector<int> line;            ///< line it lies on, or -1
+  std::vector<double> size;         ///< size field, interpolated
+  std::vector<int> patch;           ///< per triangle, by place on the reference
+  std::vector<int> part;            ///< per triangle
+  std::vector<std::uint8_t> model;  ///< per triangle: bit i: edge from corner i to i+1 is a model edge
 };
 
-/// Glues the plane meshes of all charts: a line point becomes one vertex whatever the number of charts that use it
-/// (line points first, by row; then inside points by part). Positions are exact on edges and linear in triangles.
-/// Patch labels are given region by region (triangles joined across edges that are not model edges or borders), by the
-/// area-weighted majority of the reference patches below.
+/// Glues the plane meshes of all charts: a line point becomes one vertex whatever the number of charts that
+/// use it (line points first, by row; then inside points by part). Positions are exact on edges and linear in
+/// triangles. Patch labels are given region by region (triangles joined across edges that are not model edges
+/// or borders), by the area-weighted majority of the reference patches below.
 LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes);
 

@@ -38,7 +38,6 @@ Regions find_regions(const Mesh& mesh, const std::vector<int>& opposite, const s
 /// Gives the edge-connected pieces of the labels the numbers 0..n-1, by their first triangles; returns n.
 int separate_pieces(const std::vector<int>& opposite, std::vector<int>& label);
 
-
 /// Joins regions one pair after another; looks only at their borders.
 class Joiner {
  public:

@@ -12,13 +12,13 @@ struct RelaxOptions {
 
 struct RelaxReport {
   int splits = 0, collapses = 0, flips = 0, moves = 0;
-  int intersections = 0;        ///< pairs left in the result
+  int intersections = 0;  ///< pairs left in the result
   double kappa_min = 0, kappa_mean = 0;
 };
 
-/// Flips, collapses, splits and moves until the mesh is regular, judged in space. Every vertex stays on the reference:
-/// moves walk over its triangles from the vertex's place. Borders, model edges and corners keep their chains; vertices of
-/// interface lines (line_kind[line] == interface_line) are free. Deterministic.
+/// Flips, collapses, splits and moves until the mesh is regular, judged in space. Every vertex stays on the
+/// reference: moves walk over its triangles from the vertex's place. Borders, model edges and corners keep
+/// their chains; vertices of interface lines (line_kind[line] == interface_line) are free. Deterministic.
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const RelaxOptions& options = {});
 

@@ -11,11 +11,18 @@ namespace meshpipe {
 struct Repair {
   std::vector<Tri> tris;
   std::vector<int> face;      ///< triangle of the input
-  std::vector<int> vertex;    ///< vertex of the input
+  std::vector<int> vertex;    ///< vertex of the input; copies made by splitting come last
+  std::vector<int> copied;    ///< the vertex each of them is a copy of
   std::vector<int> opposite;  ///< half-edges; may run the same way until the surface is oriented
   std::vector<char> split;    ///< vertices of non-manifold edges
   std::vector<char> flipped;  ///< triangles turned round
 };
+
+/// The vertex that v is, or is a copy of.
+inline int base(const Repair& r, int v) {
+  const int n = (int)(r.vertex.size() - r.copied.size());
+  return v < n ? v : r.copied[v - n];
+}
 
 /// Leaves out the triangles with gone != 0, the others keep their order; what they bordered on becomes
 /// border.

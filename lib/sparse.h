@@ -40,12 +40,12 @@ class Factorisation {
 /// Degenerate triangles get finite weights (lengths are mollified).
 std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor = -1e30);
 
-/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the values
-/// at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on return.
-/// weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an edge);
-/// one factorisation, both coordinates solved with it.
-/// `fans` lists loops of vertices, each joined to a virtual centre vertex by positive weights (a filled hole).
-/// Throws GoalMissed if the matrix is singular (a component without a fixed vertex).
+/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the
+/// values at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on
+/// return. weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an
+/// edge); one factorisation, both coordinates solved with it. `fans` lists loops of vertices, each joined to
+/// a virtual centre vertex by positive weights (a filled hole). Throws GoalMissed if the matrix is singular
+/// (a component without a fixed vertex).
 void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
                      const std::vector<char>& fixed, const std::vector<std::vector<int>>& fans,
                      std::vector<Vec2>& uv);

@@ -6,7 +6,6 @@
 #include <exception>
 #include <limits>
 #include <numbers>
-#include <queue>
 
 #include "lib/edges.h"
 #include "lib/error.h"
@@ -133,52 +132,67 @@ double box_size(const std::vector<Vec3>& points) {
   return size;
 }
 
-/// Largest of the distances along edges from the origins of `loop`, over the vertices they lead to
-/// (Dijkstra).
+/// Largest of the distances along edges from the origins of `loop`, over the vertices they lead to. Vertices
+/// wait in buckets as wide as a mean edge and may be reached again within one: in the end no distance can be
+/// shortened, which is what Dijkstra's order would give to the bit, for linear work.
 double edge_path_depth(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& loop) {
-  const double far = std::numeric_limits<double>::infinity();
-  std::vector<int> star(mesh.points.size(),
-                        -1);  // a half-edge that leaves the vertex; the border's, if there is one
-  for (int h = 0; h < (int)opposite.size(); ++h) {
-    int v = origin(mesh.tris, h);
-    if (star[v] < 0 || opposite[h] < 0) star[v] = h;
-  }
+  constexpr double far = std::numeric_limits<double>::infinity();
+  // a half-edge that leaves the vertex; the border's, if there is one
+  std::vector<int> star(mesh.points.size(), -1);
+  double width = 0;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const int v = origin(mesh.tris, h);
+      if (star[v] < 0 || opposite[h] < 0) star[v] = h;
+      width += norm(mesh.points[target(mesh.tris, h)] - mesh.points[v]);
+    }
+  width /= (double)opposite.size();
   std::vector<double> distance(mesh.points.size(), far);
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> heap;
+  std::vector<std::vector<int>> buckets(1);
+  auto bucket_of = [&](double d) { return (std::size_t)(d / width); };
   for (int h : loop) {
     distance[origin(mesh.tris, h)] = 0;
-    heap.push({0, origin(mesh.tris, h)});
+    buckets[0].push_back(origin(mesh.tris, h));
+  }
+  std::vector<int> waiting;
+  for (std::size_t b = 0; b < buckets.size(); ++b) {
+    while (!buckets[b].empty()) {
+      waiting.swap(buckets[b]);
+      buckets[b].clear();
+      for (int v : waiting) {
+        const double d = distance[v];
+        if (bucket_of(d) != b) continue;  // it went on with a shorter way
+        auto reach = [&](int w) {
+          const double along = d + norm(mesh.points[w] - mesh.points[v]);
+          if (!(along < distance[w])) return;
+          distance[w] = along;
+          const std::size_t to = bucket_of(along);
+          if (to >= buckets.size()) buckets.resize(to + 1);
+          buckets[to].push_back(w);
+        };
+        for (int h = star[v];;) {
+          reach(target(mesh.tris, h));
+          const int in = prev(h);
+          h = opposite[in];
+          if (h < 0) reach(origin(mesh.tris, in));
+          if (h < 0 || h == star[v]) break;
+        }
+      }
+    }
+    std::vector<int>().swap(buckets[b]);
   }
   double depth = 0;
-  while (!heap.empty()) {
-    auto [d, v] = heap.top();
-    heap.pop();
-    if (d > distance[v]) continue;
-    depth = d;
-    auto reach = [&, d = d, v = v](int w) {
-      double along = d + norm(mesh.points[w] - mesh.points[v]);
-      if (along < distance[w]) {
-        distance[w] = along;
-        heap.push({along, w});
-      }
-    };
-    for (int h = star[v];;) {
-      reach(target(mesh.tris, h));
-      int in = prev(h);
-      h = opposite[in];
-      if (h < 0) reach(origin(mesh.tris, in));
-      if (h < 0 || h == star[v]) break;
-    }
-  }
+  for (double d : distance)
+    if (d < far) depth = std::max(depth, d);
   return depth;
 }
 
-/// `number` translates the vertices for the message of a failure; empty: they are what they are.
-Topology measure(const Mesh& mesh, const std::vector<int>& number) {
+/// `pieces` is the number of components; `number` translates the vertices for the message of a failure;
+/// empty: they are what they are.
+Topology measure(const Mesh& mesh, const std::vector<int>& opposite, int pieces,
+                 const std::vector<int>& number) {
   Topology t;
-  int n = (int)mesh.points.size();
-  std::vector<int> opposite = opposite_halfedges(mesh.tris, n);
+  const int n = (int)mesh.points.size();
   int pinched = find_pinched_vertex(mesh.tris, opposite, n);
   if (pinched >= 0)
     throw NotAdmissible("vertex " + std::to_string(number.empty() ? pinched : number[pinched]) +
@@ -195,8 +209,7 @@ Topology measure(const Mesh& mesh, const std::vector<int>& number) {
     if (length > t.loop_length[longest]) longest = t.loop_length.size() - 1;
     border += loop.size();
   }
-  std::vector<int> component;
-  t.components = components(opposite, component);
+  t.components = pieces;
   t.vertices = (int)std::count(used.begin(), used.end(), 1);
   t.faces = (int)mesh.tris.size();
   t.edges = (int)((3 * mesh.tris.size() + border) / 2);
@@ -216,25 +229,53 @@ Topology measure(const Mesh& mesh, const std::vector<int>& number) {
   return t;
 }
 
-}  // namespace
+/// As measure, where neighbours are not known.
+Topology measure(const Mesh& mesh, const std::vector<int>& number) {
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  std::vector<int> component;
+  const int pieces = components(opposite, component);
+  return measure(mesh, opposite, pieces, number);
+}
 
-Topology topology_of(const Mesh& mesh) { return measure(mesh, {}); }
-
-std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
-  std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
+/// Calls of(p), which may throw, for every part in parallel; what is thrown for the first part is thrown.
+template <class Of>
+std::vector<Topology> for_parts(int n, const Of& of) {
   std::vector<Topology> parts(n);
   std::vector<std::exception_ptr> failure(n);
 #pragma omp parallel for schedule(dynamic)
   for (int p = 0; p < n; ++p) try {
-      parts[p] = measure(meshes[p], meshes[p].vertex);
-    } catch (const NotAdmissible& e) {
-      failure[p] = std::make_exception_ptr(NotAdmissible("part " + std::to_string(p) + ": " + e.what()));
+      parts[p] = of(p);
     } catch (...) {
       failure[p] = std::current_exception();
     }
   for (const std::exception_ptr& f : failure)
     if (f) std::rethrow_exception(f);
   return parts;
+}
+
+}  // namespace
+
+Topology topology_of(const Mesh& mesh) { return measure(mesh, {}); }
+
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
+  const std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
+  return for_parts(n, [&](int p) {
+    try {
+      return measure(meshes[p], meshes[p].vertex);
+    } catch (const NotAdmissible& e) {
+      throw NotAdmissible("part " + std::to_string(p) + ": " + e.what());
+    }
+  });
+}
+
+std::vector<Topology> topology_of_components(const Mesh& mesh, const std::vector<int>& opposite,
+                                             const std::vector<int>& component, int n) {
+  if (n == 1) return {measure(mesh, opposite, 1, {})};
+  const std::vector<SubMesh> meshes = split_by_label(mesh, component, n);
+  return for_parts(n, [&](int c) {
+    const SubMesh& m = meshes[c];
+    return measure(m, opposite_halfedges(m.tris, (int)m.points.size()), 1, m.vertex);
+  });
 }
 
 Table part_table(const std::vector<Topology>& parts) {

@@ -46,6 +46,9 @@ Topology topology_of(const Mesh& mesh);
 
 /// The same for every part of a surface: part[t] in 0..n-1. Parallel over the parts.
 std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n);
+/// The same for the components, as `components` has numbered them; `opposite` is the mesh's.
+std::vector<Topology> topology_of_components(const Mesh& mesh, const std::vector<int>& opposite,
+                                             const std::vector<int>& component, int n);
 
 /// The stream's table `part`, a row a part: int genus loops faces; double area eta_cyl eta_box eta_geo.
 Table part_table(const std::vector<Topology>& parts);

@@ -21,7 +21,8 @@ class SurfaceWalk {
   /// The place reached from `from`, which lies on a wall, by sliding along the wall towards `target`. Stops
   /// where the wall ends or others meet it. A place that is not on a wall is returned as it is.
   Place slide(const Place& from, Vec3 target) const;
-  /// The same point on the other side of the wall it lies on; a place that is on no wall inside the surface stays.
+  /// The same point on the other side of the wall it lies on; a place that is on no wall inside the surface
+  /// stays.
   Place across(const Place& place) const;
   Vec3 point(const Place& place) const;
   /// Unit normal of the triangle at a place.

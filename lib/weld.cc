@@ -22,17 +22,48 @@ std::uint64_t hash(const Cell& c) {
 }  // namespace
 
 std::vector<int> first_equal(const std::vector<Vec3>& points, const std::vector<char>& used) {
-  const std::size_t mask = std::bit_ceil(2 * points.size() + 2) - 1;
-  std::vector<int> slot(mask + 1, -1), same(points.size());
-  auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
-  for (int v = 0; v < (int)points.size(); ++v) {
-    same[v] = v;
-    if (!used[v]) continue;
-    const Vec3 p = points[v];
-    std::size_t i = mix(bits(p.x) + mix(bits(p.y) + mix(bits(p.z)))) & mask;
-    while (slot[i] >= 0 && !(points[slot[i]] == p)) i = (i + 1) & mask;
-    if (slot[i] < 0) slot[i] = v;
-    same[v] = slot[i];
+  const int n = (int)points.size();
+  std::vector<int> same(n);
+  // as large as a soup needs, whose vertices come six times each; it grows for other surfaces
+  std::size_t mask = std::bit_ceil(points.size() / 3 + 64) - 1, stored = 0;
+  std::vector<int> slot(mask + 1, -1);
+  auto hash_of = [&](const Vec3& p) {
+    auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
+    return mix(bits(p.x) + mix(bits(p.y) + mix(bits(p.z))));
+  };
+  // in blocks, so that what the table and the points hold is on its way when it is needed
+  constexpr int block = 32;
+  std::size_t place[block];
+  for (int first = 0; first < n; first += block) {
+    const int end = std::min(first + block, n);
+    if (2 * (stored + block) > slot.size()) {
+      std::vector<int> old = std::move(slot);
+      mask = 2 * mask + 1;
+      slot.assign(mask + 1, -1);
+      for (int v : old) {
+        if (v < 0) continue;
+        std::size_t i = hash_of(points[v]) & mask;
+        while (slot[i] >= 0) i = (i + 1) & mask;
+        slot[i] = v;
+      }
+    }
+    for (int v = first; v < end; ++v) {
+      place[v - first] = hash_of(points[v]) & mask;
+      __builtin_prefetch(&slot[place[v - first]]);
+    }
+    for (int v = first; v < end; ++v)
+      if (const int w = slot[place[v - first]]; w >= 0) __builtin_prefetch(&points[w]);
+    for (int v = first; v < end; ++v) {
+      same[v] = v;
+      if (!used[v]) continue;
+      std::size_t i = place[v - first];
+      while (slot[i] >= 0 && !(points[slot[i]] == points[v])) i = (i + 1) & mask;
+      if (slot[i] < 0) {
+        slot[i] = v;
+        ++stored;
+      }
+      same[v] = slot[i];
+    }
   }
   return same;
 }

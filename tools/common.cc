@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <new>
 
 namespace meshpipe {
@@ -70,19 +72,35 @@ void write_all(int fd, std::string_view bytes, const std::string& where) {
   }
 }
 
-std::string read_all(const std::string& path) {
+/// The bytes of a file, which may be large: not filled with zeros first, and large blocks grow in their
+/// place.
+struct Bytes {
+  std::unique_ptr<char, decltype(&std::free)> data{nullptr, std::free};
+  std::size_t size = 0, capacity = 0;
+
+  void grow(std::size_t more) {
+    if (size + more <= capacity) return;
+    capacity = std::max(size + more, 2 * capacity);
+    char* larger = static_cast<char*>(std::realloc(data.get(), capacity));
+    if (!larger) throw std::bad_alloc();
+    (void)data.release();
+    data.reset(larger);
+  }
+  operator std::string_view() const { return {data.get(), size}; }
+};
+
+Bytes read_all(const std::string& path) {
   const bool standard = path == "-";
   const std::string where = standard ? "stdin" : path;
   int fd = standard ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY);
   if (fd < 0) throw BadInput(where + ": " + reason());
-  std::string bytes;
+  Bytes bytes;
   struct stat info {};
-  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
-  std::size_t used = 0;
+  // a byte more, so that the end is seen without growing
+  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.grow(info.st_size + 1);
   for (;;) {
-    if (bytes.size() - used < 1 << 16)
-      bytes.resize(std::max(bytes.capacity(), used + (used >> 1) + (1 << 18)));
-    ssize_t n = ::read(fd, bytes.data() + used, bytes.size() - used);
+    if (bytes.size == bytes.capacity) bytes.grow(1 << 18);
+    ssize_t n = ::read(fd, bytes.data.get() + bytes.size, bytes.capacity - bytes.size);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       std::string why = reason();
@@ -90,26 +108,19 @@ std::string read_all(const std::string& path) {
       throw BadInput(where + ": " + why);
     }
     if (n == 0) break;
-    used += n;
+    bytes.size += n;
   }
-  bytes.resize(used);
   if (!standard) ::close(fd);
-  if (bytes.empty()) throw BadInput(where + ": the input is empty");
+  if (bytes.size == 0) throw BadInput(where + ": the input is empty");
   return bytes;
 }
 
-std::string extension_of(const std::string& path) {
-  std::size_t dot = path.find_last_of("./");
-  return dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot);
-}
-
-/// The bytes of a file: a format by its extension, the stream for any other.
+/// The bytes of a file: the stream for .ply, for no extension and on standard output, else the format of the
+/// extension.
 std::string encode(const std::string& path, const Stream& stream, bool text) {
-  const std::string ext = extension_of(path);
-  if (path != "-" && ext != ".ply")
-    for (const Writer& w : writers())
-      if (ext == w.extension) return w.write(stream, text);
-  return write_stream(stream, text);
+  const std::string extension = extension_of(path);
+  if (path == "-" || extension.empty() || extension == ".ply") return write_stream(stream, text);
+  return write_as(stream, path, text);
 }
 
 /// The options given on the command line that change the result, as they are recorded in the stream.
@@ -137,7 +148,7 @@ Stream Io::read() {
   return read(input);
 }
 
-std::string Io::read_bytes(const std::string& path) { return read_all(path); }
+std::string Io::read_bytes(const std::string& path) { return std::string(std::string_view(read_all(path))); }
 
 Stream Io::read(const std::string& path) const {
   return read_any(read_all(path), path == "-" ? "stdin" : path);
@@ -145,7 +156,13 @@ Stream Io::read(const std::string& path) const {
 
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
-  const bool text = ascii || (stream.ascii && !binary);
+  bool text = ascii || (stream.ascii && !binary);
+  const std::string extension = extension_of(output);
+  // only the text of STL has room for patches and their names
+  if (extension == ".stl" && !binary && !stream.names.empty()) text = true;
+  if (!stream.names.empty() && (extension == ".off" || extension == ".gts" || (extension == ".stl" && !text)))
+    say("names of patches are lost: " + std::string(text || extension != ".stl" ? extension : "binary .stl") +
+        " has none");
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   write_bytes(encode(output, stream, text));

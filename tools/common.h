@@ -21,7 +21,8 @@ class Io {
   Stream read(const std::string& path) const;
   /// The bytes of another file of the user's, or of standard input for "-".
   static std::string read_bytes(const std::string& path);
-  /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard output.
+  /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard
+  /// output.
   void write(Stream& stream);
   /// Writes another stream to a file of the user's, in the format of its extension.
   void write_to(const std::string& path, const Stream& stream) const;
@@ -38,7 +39,8 @@ class Io {
   std::string input = "-", output = "-";
   bool ascii = false, binary = false, quiet = false, verbose = false;
   int threads = 0;
-  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 4 (if it holds anything), 5, 6
+  nlohmann::ordered_json report;  ///< what --json FILE writes once the body has returned, or failed with 4
+                                  ///< (if it holds anything), 5, 6
   std::string json;
 
  private:
@@ -48,9 +50,10 @@ class Io {
   mutable bool written_ = false;  ///< something went to standard output: no failure line after it
 };
 
-/// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and turns exceptions into
-/// one line on standard error and the documented exit status. `summary` ends with the examples --help shows ("\n  mclean ...").
-/// Options of `options` that change the result are recorded in the stream; put those that do not in the group "Reports".
+/// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and
+/// turns exceptions into one line on standard error and the documented exit status. `summary` ends with the
+/// examples --help shows ("\n  mclean ..."). Options of `options` that change the result are recorded in the
+/// stream; put those that do not in the group "Reports".
 int run_tool(int argc, char** argv, const char* program, const char* summary,
              const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body);
 

@@ -172,10 +172,11 @@ int main(int argc, char** argv) {
         if (!stream.surface.face.has("patch"))
           stream.surface.face.set("patch", std::vector<int>(stream.surface.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one
-        if (stream.input_triangles == 0 || !report.nothing) {
+        if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
           stream.tables.clear();
-          stream.surface.face.erase("part");
-          stream.surface.face.erase("origin");
+          for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
+          for (const char* column : {"size", "ref_face", "b1", "b2", "kind", "line"})
+            stream.surface.vertex.erase(column);
         }
         stream.input_triangles = (int)stream.surface.tris.size();
         tell(io, report, stream.surface, options.weld);

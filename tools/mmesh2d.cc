@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mmesh2d",
       "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
-      "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o plane.ply",
+      "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o "
+      "plane.ply",
       options, body);
 }

@@ -7,6 +7,9 @@
 
 using namespace meshpipe;
 
+/// Half-edges are numbered by int.
+constexpr int most_triangles = 715827882;
+
 int main(int argc, char** argv) {
   double size = 0;
   int triangles = 0;
@@ -21,7 +24,7 @@ int main(int argc, char** argv) {
     auto* fixed = app.add_option("--size", size, "target edge length")->check(positive)->type_name("H");
     app.add_option("--triangles", triangles,
                    "the length that gives this many triangles (default: as many as the input had)")
-        ->check(CLI::Range(1, 715827882))
+        ->check(CLI::Range(1, most_triangles))
         ->type_name("N")
         ->excludes(fixed);
   };
@@ -33,6 +36,13 @@ int main(int argc, char** argv) {
       const int own = stream.input_triangles > 0 ? stream.input_triangles : static_cast<int>(s.tris.size());
       size = size_for_count(total_area(s), triangles > 0 ? triangles : own);
       if (!(size > 0)) throw NotAdmissible("the surface has no area");
+    }
+    const double wanted = total_area(s) / (std::sqrt(3.0) / 4 * size * size);
+    if (!(wanted < most_triangles)) {
+      char why[120];
+      std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, the limit is %d", size, wanted,
+                    most_triangles);
+      throw NotAdmissible(why);
     }
     s.vertex.set("size", std::vector<double>(s.points.size(), size));
     char text[64];

@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
             "box\teta_geo\t"
             "verdict\tloop_lengths\n";
         std::string kind = "component";
-        std::vector<Topology> pieces = topology_of_parts(s, component, n);
+        std::vector<Topology> pieces = topology_of_components(s, opposite, component, n);
         tell(io, kind, pieces, tsv);
         if (s.face.has("part")) {
           kind = "part";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One libFuzzer entry for every reader: READER is its name, HEADER where it is declared. Any bytes are either read
-// or refused by BadInput; what is read is a sound mesh, which the stream can hold.
+// One libFuzzer entry for every reader: READER is its name, HEADER where it is declared. Any bytes are either
+// read or refused by BadInput; what is read is a sound mesh, which the stream can hold.
 #include HEADER
 
 #include "formats/formats.h"

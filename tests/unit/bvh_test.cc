@@ -75,7 +75,9 @@ TEST(bvh, boxes_miss_no_triangle) {
     bvh.overlapping(box, [&](int t) { ++seen[t]; });
     for (int t = 0; t < (int)m.tris.size(); ++t) {
       EXPECT_LE(seen[t], 1);
-      if (overlap(box, box_of(m, t))) EXPECT_EQ(seen[t], 1);
+      if (overlap(box, box_of(m, t))) {
+        EXPECT_EQ(seen[t], 1);
+      }
     }
   }
 }

@@ -14,7 +14,8 @@ namespace {
 Mesh strip(int n) {
   Mesh m;
   for (int i = 0; i <= n; ++i)
-    for (int j = 0; j < 2; ++j) m.points.push_back(i <= 2 ? Vec3{1. * i, 1. * j, 0} : Vec3{2, 1. * j, i - 2.});
+    for (int j = 0; j < 2; ++j)
+      m.points.push_back(i <= 2 ? Vec3{1. * i, 1. * j, 0} : Vec3{2, 1. * j, i - 2.});
   for (int i = 0; i < n; ++i) {
     m.tris.push_back({2 * i, 2 * i + 2, 2 * i + 1});
     m.tris.push_back({2 * i + 2, 2 * i + 3, 2 * i + 1});
