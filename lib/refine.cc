@@ -2,217 +2,159 @@
 #include "lib/refine.h"
 
 #include <algorithm>
-#include <numeric>
-
-#include "lib/error.h"
-#include "lib/predicates.h"
+#include <cmath>
+#include <queue>
 
 namespace meshpipe {
 namespace {
 
-/// Where the charts have the vertices: rows of chart_vertex by vertex.
-class ChartRows {
- public:
-  ChartRows(Table& table, std::size_t n_vertices)
-      : part_(table.get<int>("part")),
-        vertex_(table.get<int>("vertex")),
-        u_(table.get<double>("u")),
-        v_(table.get<double>("v")),
-        start_(n_vertices + 1, 0),
-        row_(vertex_.size()) {
-    for (int v : vertex_) ++start_[v + 1];
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::vector<int> at(start_.begin(), start_.end() - 1);
-    for (int i = 0; i < static_cast<int>(vertex_.size()); ++i) row_[at[vertex_[i]]++] = i;
+// Lengths below are over the size, so that the wanted edge has length one.
+const double ideal_radius = 1 / std::sqrt(3.0);  // of the equilateral triangle's circumcircle
+struct Rule {
+  bool fronts;             // points go to the fronts first; otherwise always to circumcentres
+  double accepted_radius;  // a triangle below this needs no point
+  Spacing spacing;
+};
+// Measured together on flat, curved and sheared charts: the count is within 2 % of what the size asks for,
+// and shapes are best.
+constexpr Rule frontal_rule{true, 0.64, {0.8, 0.45}};
+constexpr Rule delaunay_rule{false, 0.755, {0.6, 0.3}};
+
+// A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first.
+struct Entry {
+  int rank;    // 0: has a front edge, 1: second try
+  double key;  // smaller first
+  std::int64_t order;
+  int triangle, version;
+  bool operator<(const Entry& e) const {
+    if (rank != e.rank) return rank > e.rank;
+    if (key != e.key) return key > e.key;
+    return order > e.order;
   }
-  Vec2 uv(int part, int vertex) const {
-    for (int k = start_[vertex]; k < start_[vertex + 1]; ++k)
-      if (part_[row_[k]] == part) return {u_[row_[k]], v_[row_[k]]};
-    throw BadInput("chart_vertex has no row for vertex " + std::to_string(vertex) + " in part " +
-                   std::to_string(part));
+};
+
+class Refiner {
+ public:
+  Refiner(SiteMesh& mesh, const SizeMetric& field, const Rule& rule)
+      : m_(mesh), cdt_(mesh.cdt), field_(field), rule_(rule) {}
+
+  void run() {
+    row_.assign(cdt_.points.size(), 0);
+    radius_.resize(cdt_.tris.size());
+    for (std::size_t t = 0; t < radius_.size(); ++t) radius_[t] = radius(t);
+    for (std::size_t t = 0; t < radius_.size(); ++t) offer(t);
+    while (!queue_.empty()) {
+      Entry e = queue_.top();
+      queue_.pop();
+      if (cdt_.version[e.triangle] != e.version) continue;
+      if (e.rank == 0 ? from_front(e.triangle) : at_centre(e.triangle)) continue;
+      if (e.rank == 0) queue_.push({1, -radius_[e.triangle], order_++, e.triangle, e.version});
+    }
   }
 
  private:
-  const std::vector<int>&part_, &vertex_;
-  const std::vector<double>&u_, &v_;
-  std::vector<int> start_, row_;
+  Vec2 point(int v) const { return cdt_.points[v]; }
+  const Site& site(int t, int i) const { return m_.site[cdt_.tris[t][i]]; }
+
+  double radius(int t) const {
+    const Site &a = site(t, 0), &b = site(t, 1), &c = site(t, 2);
+    Vec3 u = b.space - a.space, v = c.space - a.space;
+    double area2 = norm(cross(u, v)), h = (a.size + b.size + c.size) / 3;
+    return area2 > 0 ? norm(u) * norm(v) * norm(v - u) / (2 * area2 * h) : 1e300;
+  }
+
+  bool waits(int t) const { return radius_[t] > rule_.accepted_radius; }
+  int row(int h) const { return std::max(row_[cdt_.origin(h)], row_[cdt_.target(h)]); }
+
+  // The front edge of a waiting triangle: next to an accepted one or on a line, in the earliest row; -1 if
+  // none.
+  int front_edge(int t) const {
+    int best = -1;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (cdt_.fixed[h] || cdt_.opposite[h] < 0 || !waits(cdt_.opposite[h] / 3))
+        if (best < 0 || row(h) < row(best)) best = h;
+    return best;
+  }
+
+  void offer(int t) {
+    if (!waits(t)) return;
+    int h = rule_.fronts ? front_edge(t) : -1;
+    if (h >= 0)
+      queue_.push({0, (double)row(h), order_++, t, cdt_.version[t]});
+    else
+      queue_.push({1, -radius_[t], order_++, t, cdt_.version[t]});
+  }
+
+  // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther
+  // than the circumcentre's own triangle would reach. Judged in frame f.
+  bool rebay_point(int h, const Frame& f, Vec2& p) const {
+    Vec2 a = point(cdt_.origin(h));
+    Vec2 b = f.to(point(cdt_.target(h)) - a), c = f.to(point(cdt_.apex(h)) - a);
+    double half = 0.5 * norm(b), area2 = cross(b, c);
+    if (!(half > 0) || !(area2 > 0)) return false;
+    double q = half * dot(c, c - b) / area2;  // from the edge to the circumcentre
+    if (!(q > 0)) return false;
+    double r = std::min(std::max(ideal_radius, half), (half * half + q * q) / (2 * q));
+    double d = r + std::sqrt(std::max(0.0, r * r - half * half));
+    Vec2 normal = (0.5 / half) * Vec2{-b.y, b.x};
+    p = a + f.back(0.5 * b + d * normal);
+    return true;
+  }
+
+  bool from_front(int t) {
+    int h = front_edge(t);
+    if (h < 0) return false;
+    const Site &a = m_.site[cdt_.origin(h)], &b = m_.site[cdt_.target(h)];
+    Vec2 p;
+    if (!rebay_point(h, frame_of(0.5 * (a.metric + b.metric)), p)) return false;
+    // once more in the metric between the edge and there
+    Site there = field_.at(p, a.place.face);
+    if (!rebay_point(h, frame_of((1.0 / 3) * (a.metric + b.metric + there.metric)), p)) return false;
+    return insert(p, t, there.place.face, row(h) + 1);
+  }
+
+  bool at_centre(int t) {
+    const Tri& v = cdt_.tris[t];
+    Frame f = frame_of((1.0 / 3) * (site(t, 0).metric + site(t, 1).metric + site(t, 2).metric));
+    Vec2 b = f.to(point(v[1]) - point(v[0])), c = f.to(point(v[2]) - point(v[0]));
+    double area2 = cross(b, c);
+    if (!(area2 > 0)) return false;
+    Vec2 x = (0.5 / area2) * Vec2{c.y * dot(b, b) - b.y * dot(c, c), b.x * dot(c, c) - c.x * dot(b, b)};
+    int rows = std::max({row_[v[0]], row_[v[1]], row_[v[2]]});
+    return insert(point(v[0]) + f.back(x), t, site(t, 0).place.face, rows + 1);
+  }
+
+  bool insert(Vec2 p, int t, int hint, int row) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) return false;
+    int s = cdt_.walk(p, t);
+    if (s < 0) return false;
+    Site there = field_.at(p, hint);
+    if (!insert_site(m_, p, there, s, rule_.spacing)) return false;
+    row_.push_back(row);
+    radius_.resize(cdt_.tris.size());
+    for (int u : cdt_.fan()) radius_[u] = radius(u);
+    for (int u : cdt_.fan()) {
+      offer(u);
+      // its outer neighbour has got a front edge if this one is accepted
+      int o = cdt_.opposite[3 * u];
+      if (!waits(u) && o >= 0) offer(o / 3);
+    }
+    return true;
+  }
+
+  SiteMesh& m_;
+  Cdt& cdt_;
+  const SizeMetric& field_;
+  const Rule rule_;
+  std::vector<int> row_;
+  std::vector<double> radius_;
+  std::priority_queue<Entry> queue_;
+  std::int64_t order_ = 0;
 };
-
-/// Corners of a piece: 0 to 2 the triangle's own, 3 + i the middle of the edge from corner i to i+1.
-using Piece = std::array<int, 3>;
-
-/// The pieces of a triangle whose edges are marked as `marks` says (bit i: from corner i to i+1); of the two
-/// ways to cut a quadrilateral, `shorter(a, b, c, d)` says whether a to b is the better one than c to d.
-template <class Shorter>
-int pieces_of(int marks, Piece* out, const Shorter& shorter) {
-  if (marks == 0) {
-    out[0] = {0, 1, 2};
-    return 1;
-  }
-  if (marks == 7) {
-    out[0] = {0, 3, 5};
-    out[1] = {1, 4, 3};
-    out[2] = {2, 5, 4};
-    out[3] = {3, 4, 5};
-    return 4;
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    if (marks == 1 << i) {
-      out[0] = {i, 3 + i, k};
-      out[1] = {3 + i, j, k};
-      return 2;
-    }
-    if (marks == (1 << i | 1 << j)) {  // corner j is cut off
-      out[0] = {3 + i, j, 3 + j};
-      if (shorter(i, 3 + j, 3 + i, k)) {
-        out[1] = {i, 3 + i, 3 + j};
-        out[2] = {i, 3 + j, k};
-      } else {
-        out[1] = {i, 3 + i, k};
-        out[2] = {3 + i, 3 + j, k};
-      }
-      return 3;
-    }
-  }
-  return 0;
-}
-
-/// The edge (bit) of the triangle on which the edge from corner a to b of a piece lies, -1 inside.
-int edge_below(int a, int b) {
-  auto on = [](int c, int i) { return c == i || c == (i + 1) % 3 || c == 3 + i; };
-  for (int i = 0; i < 3; ++i)
-    if (on(a, i) && on(b, i)) return i;
-  return -1;
-}
-
-template <class T>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<int>& parent) {
-  std::vector<T> out;
-  out.reserve(parent.size());
-  for (int t : parent) out.push_back(values[t]);
-  return out;
-}
 
 }  // namespace
 
-std::vector<int> split_edges(Surface& surface, const std::vector<int>& opposite, std::vector<char> mark,
-                             Table* chart) {
-  const int n_tris = static_cast<int>(surface.tris.size());
-  const auto n_vertices = static_cast<int>(surface.points.size());
-  auto marks_of = [&](int t) { return mark[3 * t] | mark[3 * t + 1] << 1 | mark[3 * t + 2] << 2; };
-  auto corner = [&](int t, int c) {  // of a piece, in space
-    if (c < 3) return surface.points[surface.tris[t][c]];
-    return lerp(surface.points[surface.tris[t][c - 3]], surface.points[surface.tris[t][(c - 2) % 3]], 0.5);
-  };
-  auto cut = [&](int t, Piece* out) {
-    return pieces_of(marks_of(t), out, [&](int a, int b, int c, int d) {
-      return norm(corner(t, b) - corner(t, a)) < norm(corner(t, d) - corner(t, c));
-    });
-  };
-  for (int h = 0; h < 3 * n_tris; ++h) mark[h] = mark[h] || (opposite[h] >= 0 && mark[opposite[h]]);
-
-  Piece piece[4];
-  if (chart) {
-    const ChartRows rows(*chart, n_vertices);
-    const auto& part = surface.face.get<int>("part");
-    auto sound = [&](int t) {
-      Vec2 uv[6];
-      for (int i = 0; i < 3; ++i) uv[i] = rows.uv(part[t], surface.tris[t][i]);
-      for (int i = 0; i < 3; ++i) uv[3 + i] = lerp(uv[i], uv[(i + 1) % 3], 0.5);
-      const int n = cut(t, piece);
-      for (int k = 0; k < n; ++k)
-        if (orient2d(uv[piece[k][0]], uv[piece[k][1]], uv[piece[k][2]]) <= 0) return false;
-      return true;
-    };
-    for (bool again = true; again;) {  // taking marks away changes how the neighbours are cut
-      again = false;
-      for (int t = 0; t < n_tris; ++t) {
-        if (marks_of(t) == 0 || sound(t)) continue;
-        again = true;
-        for (int h = 3 * t; h < 3 * t + 3; ++h) {
-          mark[h] = 0;
-          if (opposite[h] >= 0) mark[opposite[h]] = 0;
-        }
-      }
-    }
-  }
-  std::vector<int> middle(3 * static_cast<std::size_t>(n_tris), -1), ends;  // ends: pairs
-  for (int h = 0; h < 3 * n_tris; ++h) {
-    if (!mark[h] || middle[h] >= 0) continue;
-    middle[h] = n_vertices + static_cast<int>(ends.size()) / 2;
-    if (opposite[h] >= 0) middle[opposite[h]] = middle[h];
-    ends.push_back(origin(surface.tris, h));
-    ends.push_back(target(surface.tris, h));
-  }
-  if (ends.empty()) return {};
-
-  if (chart) {
-    const std::vector<int> part = surface.face.get<int>("part");
-    std::vector<int> new_part, new_vertex;
-    std::vector<double> new_u, new_v;
-    const ChartRows rows(*chart, n_vertices);
-    for (int h = 0; h < 3 * n_tris; ++h) {
-      const int o = opposite[h];
-      if (middle[h] < 0 || (o >= 0 && o < h && part[o / 3] == part[h / 3])) continue;
-      const Vec2 m = lerp(rows.uv(part[h / 3], origin(surface.tris, h)),
-                          rows.uv(part[h / 3], target(surface.tris, h)), 0.5);
-      new_part.push_back(part[h / 3]);
-      new_vertex.push_back(middle[h]);
-      new_u.push_back(m.x);
-      new_v.push_back(m.y);
-    }
-    auto append = [&](auto& column, const auto& more) {
-      column.insert(column.end(), more.begin(), more.end());
-    };
-    append(chart->get<int>("part"), new_part);
-    append(chart->get<int>("vertex"), new_vertex);
-    append(chart->get<double>("u"), new_u);
-    append(chart->get<double>("v"), new_v);
-    chart->rows += new_part.size();
-  }
-
-  std::vector<Tri> tris;
-  std::vector<int> parent;
-  std::vector<std::uint8_t> model;
-  const std::vector<std::uint8_t>* bits =
-      surface.face.has("model") ? &surface.face.get<std::uint8_t>("model") : nullptr;
-  for (int t = 0; t < n_tris; ++t) {
-    const int n = cut(t, piece);
-    for (int k = 0; k < n; ++k) {
-      Tri v;
-      std::uint8_t m = 0;
-      for (int i = 0; i < 3; ++i) {
-        const int c = piece[k][i], below = edge_below(c, piece[k][(i + 1) % 3]);
-        v[i] = c < 3 ? surface.tris[t][c] : middle[3 * t + c - 3];
-        if (bits && below >= 0 && ((*bits)[t] >> below & 1)) m |= static_cast<std::uint8_t>(1 << i);
-      }
-      tris.push_back(v);
-      model.push_back(m);
-      parent.push_back(t);
-    }
-  }
-  const std::size_t n_new = ends.size() / 2;
-  for (std::size_t i = 0; i < n_new; ++i)
-    surface.points.push_back(lerp(surface.points[ends[2 * i]], surface.points[ends[2 * i + 1]], 0.5));
-  for (Column& c : surface.vertex.columns)
-    std::visit(
-        [&]<class T>(std::vector<T>& v) {
-          for (std::size_t i = 0; i < n_new; ++i) {
-            const int a = std::min(ends[2 * i], ends[2 * i + 1]), b = std::max(ends[2 * i], ends[2 * i + 1]);
-            if constexpr (std::is_same_v<T, double>)
-              v.push_back(0.5 * v[a] + 0.5 * v[b]);
-            else
-              v.push_back(v[a]);
-          }
-        },
-        c.data);
-  surface.vertex.rows = surface.points.size();
-  for (Column& c : surface.face.columns) std::visit([&](auto& v) { v = gathered(v, parent); }, c.data);
-  surface.face.rows = parent.size();
-  if (bits) surface.face.get<std::uint8_t>("model") = std::move(model);
-  surface.tris = std::move(tris);
-  return parent;
-}
+void refine_frontal(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, frontal_rule).run(); }
+void refine_delaunay(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, delaunay_rule).run(); }
 
 }  // namespace meshpipe

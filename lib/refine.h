@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splitting edges of a surface, and of its charts, in their middle.
+// Two meshers that insert points into a constrained Delaunay triangulation in the metric of a chart:
+// frontal-Delaunay (Rebay 1993) and Delaunay refinement at circumcentres (Bowyer, Watson 1981).
 #pragma once
-#include <vector>
-
-#include "lib/mesh.h"
+#include "lib/site_mesh.h"
 
 namespace meshpipe {
 
-/// Splits the edges whose half-edges are marked (both, where there are two) in their middle and triangles
-/// accordingly; the surface as a set of points stays. New vertices are appended; vertex columns of doubles
-/// are interpolated, of others copied from the end of the smaller number; face columns are copied, `model`
-/// bits are split with their edges. `chart` is the stream's table chart_vertex, or null: the maps stay linear
-/// on the earlier triangles, and no triangle is split that would lose its orientation in the plane by
-/// rounding. `opposite` belongs to the surface as it comes. Returns, per triangle of the result, the one it
-/// is part of; that is empty if nothing was split.
-std::vector<int> split_edges(Surface& surface, const std::vector<int>& opposite, std::vector<char> mark,
-                             Table* chart);
+/// Inserts points until every triangle is sized: in rows from the lines inwards, so that triangles come out
+/// nearly equilateral. Ends always: a triangle that takes no point is left as it is.
+void refine_frontal(SiteMesh& mesh, const SizeMetric& field);
+
+/// Inserts the circumcentre of the largest triangle until every one is sized. Ends always, the same way.
+void refine_delaunay(SiteMesh& mesh, const SizeMetric& field);
 
 }  // namespace meshpipe

@@ -8,7 +8,7 @@
 
 #include "lib/curvature.h"
 #include "lib/error.h"
-#include "lib/refine.h"
+#include "lib/split_edges.h"
 #include "lib/topology.h"
 
 namespace meshpipe {

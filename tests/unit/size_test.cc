@@ -10,8 +10,8 @@
 #include "lib/curvature.h"
 #include "lib/error.h"
 #include "lib/expression.h"
-#include "lib/refine.h"
 #include "lib/shape.h"
+#include "lib/split_edges.h"
 #include "lib/topology.h"
 
 using namespace meshpipe;
@@ -66,7 +66,7 @@ void expect_graded(const Mesh& m, const std::vector<double>& h, double slope) {
 
 }  // namespace
 
-TEST(Refine, SplitsAnEdgeOnBothSides) {
+TEST(SplitEdges, SplitsAnEdgeOnBothSides) {
   Surface s = square();
   Table charts = charts_of_square();
   const auto opposite = opposite_halfedges(s.tris, 4);
@@ -93,7 +93,7 @@ TEST(Refine, SplitsAnEdgeOnBothSides) {
 }
 
 // every set of marks leaves the same area, the same orientation and a manifold
-TEST(Refine, EveryPattern) {
+TEST(SplitEdges, EveryPattern) {
   for (int marks = 1; marks < 32; ++marks) {
     Surface s = square();
     Table charts = charts_of_square();
