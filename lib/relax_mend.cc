@@ -104,9 +104,12 @@ double Relaxer::quality(int t) const {
   return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
 }
 
-/// What is to be made small: counts the worst most, and nothing that is good with a margin.
+/// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside vertices
+/// whose valence is not 5, 6 or 7.
 double Relaxer::badness() const {
+  constexpr double irregular = 1e-3;
   double sum = 0;
+  for (int v = 0; v < (int)m_.out.size(); ++v) sum += irregular * irregularity(v);
   for (int t = 0; t < (int)m_.tris.size(); ++t) {
     if (m_.dead(t)) continue;
     const double lack = std::max(0.0, 1.05 - quality(t));
@@ -294,7 +297,13 @@ int Relaxer::worst() const {
   return least.second;
 }
 
-/// Mends the triangles that are not good enough, the worst first.
+/// By how much the valence of an inside vertex is off 5, 6 or 7.
+int Relaxer::irregularity(int v) const {
+  const bool inside = m_.out[v] >= 0 && (held_[v] == loose || held_[v] == anchored);
+  return inside ? std::max(0, std::abs(excess(v)) - 1) : 0;
+}
+
+/// Mends the triangles that are not good enough, the worst first, then vertices of a valence that is none of 5, 6, 7.
 void Relaxer::mend_worst() {
   for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
@@ -305,7 +314,13 @@ void Relaxer::mend_worst() {
     int mended = 0;
     for (auto [q, t] : bad)
       if (!m_.dead(t) && quality(t) < 1) mended += mend(t, round > 0);
-    if (bad.empty() || (round > 0 && mended == 0)) return;
+    bool all_regular = true;
+    for (int v = 0; v < (int)m_.out.size(); ++v)
+      if (irregularity(v)) {
+        all_regular = false;
+        mended += mend(m_.out[v] / 3, false);
+      }
+    if ((bad.empty() && all_regular) || (round > 0 && mended == 0)) return;
   }
 }
 

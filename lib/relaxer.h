@@ -137,6 +137,7 @@ class Relaxer {
   void reach_tips();
   bool reach(const Place& tip, int t, double far_enough);
   double quality(int t) const;
+  int irregularity(int v) const;
   double badness() const;
   std::vector<int> triangles_round(int t, int rings) const;
   std::vector<int> vertices_of(const std::vector<int>& triangles) const;
