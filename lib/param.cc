@@ -258,7 +258,8 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 8;
+  constexpr int most_rounds = 8, uneven_rounds = 2;  // unevenness is no failure: then it stays
+  constexpr double too_uneven = 1e8;
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   std::vector<Chart> charts;
   std::vector<char> waiting;
@@ -290,10 +291,12 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     }
     int n_before = n_parts;
     for (int p = 0; p < n_before; ++p) {
+      bool fresh = waiting[p];
       waiting[p] = 0;
-      if (!failure[p]) continue;
       try {
-        std::rethrow_exception(failure[p]);
+        if (failure[p]) std::rethrow_exception(failure[p]);
+        if (fresh && !options.strict && round < uneven_rounds && reports[p].area_scale > too_uneven)
+          n_parts = cut_along_limbs(surface, p, n_parts);
       } catch (const GoalMissed&) {
         if (options.strict || round == most_rounds || !bisect_part(surface, p, n_parts, reports[p].apart))
           throw;

@@ -197,9 +197,10 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
     moment[target(part.tris, h)] += half;
     total += 2 * half;
   }
-  // translations are in the kernel, and the map itself nearly: a shift makes the matrix definite
-  constexpr double shift = 1e-7;
-  for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v] + shift * std::abs(diagonal[v])});
+  // translations are in the kernel, and the map itself nearly: a shift by the moment, which changes no
+  // eigenvector, makes the matrix definite
+  constexpr double shift = 1e-6;
+  for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v] + shift * moment[v]});
   Factorisation<Complex> factorisation(n, matrix, time);
 
   std::vector<Complex> z(n, 0), before;
