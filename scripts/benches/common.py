@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the benchmarks share: running programs, generated surfaces, tables."""
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import tempfile
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+GENERATED = [
+    ("tube", ["tube", "--aspect", "25", "--triangles", "40000", "--noise", "0.1"], 20000),
+    ("tree", ["tree", "--triangles", "60000"], 25000),
+    ("airways", ["tree", "--outlets", "147", "--triangles", "90000"], 60000),
+    ("genus-5", ["genus", "--genus", "5", "--triangles", "60000"], 25000),
+    ("body", ["body"], 10000),
+]
+
+
+class Run:
+    """Status, wall and CPU seconds, megabytes (the largest resident size of one process) and the text of a command."""
+
+    def __init__(self, status, wall, cpu, megabytes, text):
+        self.status, self.wall, self.cpu, self.megabytes, self.text = status, wall, cpu, megabytes, text
+
+
+def run(command, timeout=None, output=None):
+    """Runs a command (a string: by the shell, with pipefail), its descendants included in CPU and memory. Its standard
+    output goes to the file `output` if given; otherwise both outputs are in `text`. A timeout gives status -1."""
+    words = ["bash", "-c", "set -o pipefail; " + command] if isinstance(command, str) else command
+    with tempfile.TemporaryFile() as log:
+        sink = open(output, "wb") if output else log
+        before = time.perf_counter()
+        child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=sink, stderr=log, start_new_session=True)
+        usage, status = wait(child, timeout)
+        wall = time.perf_counter() - before
+        if output:
+            sink.close()
+        log.seek(0)
+        text = log.read().decode(errors="replace")
+    return Run(status, wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text)
+
+
+def wait(child, timeout):
+    """Resource usage and exit status of `child` and what it has waited for; kills its process group after `timeout`."""
+    end = time.perf_counter() + timeout if timeout else None
+    while True:
+        pid, status, usage = os.wait4(child.pid, os.WNOHANG if end else 0)
+        if pid:
+            child.returncode = os.waitstatus_to_exitcode(status)
+            return usage, child.returncode
+        if time.perf_counter() > end:
+            os.killpg(child.pid, 9)
+            _, _, usage = os.wait4(child.pid, 0)
+            child.returncode = -1
+            return usage, -1
+        time.sleep(0.005)
+
+
+def median(runs, key):
+    return statistics.median(getattr(r, key) for r in runs)
+
+
+def interleaved(commands, times, timeout=None):
+    """Runs every command of the dictionary in turn, `times` times: name -> list of Run."""
+    runs = {name: [] for name in commands}
+    for _ in range(times):
+        for name, command in commands.items():
+            runs[name].append(run(command, timeout))
+    return runs
+
+
+def parser(doc):
+    """An argument parser with what every benchmark takes; its help is the text `doc`."""
+    p = argparse.ArgumentParser(usage=doc, add_help=False)
+    p.add_argument("--bin", default=os.path.join(ROOT, "build", "bin"))
+    p.add_argument("--json")
+    p.add_argument("-h", "--help", action="store_true")
+    p.add_argument("files", nargs="*")
+    return p
+
+
+def parse(p, words):
+    """The arguments; the programs of --bin come first on PATH."""
+    args = p.parse_args(words)
+    if args.help:
+        print(p.usage)
+        raise SystemExit(0)
+    os.environ["PATH"] = os.path.abspath(args.bin) + os.pathsep + os.environ["PATH"]
+    return args
+
+
+def surfaces(args, work, generated=None):
+    """(name, path, count) for every given FILE[:TRIANGLES], or for surfaces made by mshape."""
+    found = []
+    for spec in args.files:
+        path, _, count = spec.rpartition(":") if spec.rpartition(":")[2].isdigit() else (spec, "", "")
+        found.append((os.path.basename(path).split(".")[0], path, int(count or 0)))
+    if not found:
+        for name, shape, count in generated or GENERATED:
+            path = os.path.join(work, name + ".stl")
+            subprocess.run(["mshape", *shape, "-q", "-o", path], check=True)
+            found.append((name, path, count))
+    return found
+
+
+def table(columns):
+    """Prints the head of a Markdown table; returns a function that prints a row."""
+    print("| " + " | ".join(columns) + " |")
+    print("|" + "---|" + "--:|" * (len(columns) - 1))
+
+    def row(*cells):
+        print("| " + " | ".join(str(c) for c in cells) + " |", flush=True)
+
+    return row
+
+
+def save(args, rows):
+    if args.json:
+        with open(args.json, "w") as f:
+            json.dump(rows, f, indent=1)
