@@ -42,7 +42,7 @@ std::string findings_svg(const Findings& f) {
   const auto &a = f.reference_quality.kappas, &b = f.quality.kappas;
   return histogram_svg(
       {{"kappa", 0, 1, bins(a, 0, 1, 50), bins(b, 0, 1, 50)},
-       {"kappa, the smallest", 0, 0.1, bins(a, 0, 0.1, 50), bins(b, 0, 0.1, 50), (int)a.size(),
+       {"kappa, the smallest", 0, 0.1, bins(a, 0, 0.1, 20), bins(b, 0, 0.1, 20), (int)a.size(),
         (int)b.size()},
        {"smallest angle, degrees", 0, 60, f.reference_quality.angle_histogram, f.quality.angle_histogram}});
 }
