@@ -154,6 +154,7 @@ int main(int argc, char** argv) {
         CleanOptions options{.drop_nonorientable = o.drop_nonorientable,
                              .keep_components = count_or_all(o.keep),
                              .fill_holes = o.fill_holes};
+        if (!o.culprits.empty()) Io::expect_writable(o.culprits, true);
         Stream stream = io.read();
         if (!o.weld.empty()) options.weld = tolerance(o.weld, stream.surface);
         Surface input;

@@ -121,6 +121,7 @@ int main(int argc, char** argv) {
             ->group("Reports");
       },
       [&](Io& io) {
+        if (!tsv_file.empty()) Io::expect_writable(tsv_file);
         Stream stream = io.read();
         Surface& s = stream.surface;
         const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
