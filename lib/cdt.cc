@@ -62,6 +62,13 @@ void Cdt::set(int t, Tri corners) {
   ++version[t];
 }
 
+// Puts `outer` across h, or the border if it is -1.
+void Cdt::link(int h, int outer, std::uint8_t kind) {
+  opposite[h] = outer;
+  fixed[h] = kind;
+  if (outer >= 0) opposite[outer] = h;
+}
+
 int Cdt::walk(Vec2 p, int t) const {
   int from = -1;
   // a visibility walk may go round in circles in a triangulation that is not Delaunay, so its steps are
@@ -99,9 +106,7 @@ int Cdt::fill_cavity(Vec2 p) {
     auto [a, b, outer, kind] = rim_data_[k];
     int t = fan_[k];
     set(t, {a, b, v});
-    opposite[3 * t] = outer;
-    if (outer >= 0) opposite[outer] = 3 * t;
-    fixed[3 * t] = (std::uint8_t)kind;
+    link(3 * t, outer, (std::uint8_t)kind);
     fixed[3 * t + 1] = fixed[3 * t + 2] = free_edge;
     start_[a] = t;
   }
@@ -136,17 +141,62 @@ void Cdt::flip(int h) {
   Outer bc = outer(next(h)), ca = outer(prev(h)), ad = outer(next(o)), db = outer(prev(o));
   set(t, {d, c, a});
   set(s, {c, d, b});
-  auto link = [&](int e, Outer x) {
-    opposite[e] = x.opposite;
-    fixed[e] = x.kind;
-    if (x.opposite >= 0) opposite[x.opposite] = e;
-  };
-  link(3 * t, {3 * s, free_edge});
   fixed[3 * s] = free_edge;
-  link(3 * t + 1, ca);
-  link(3 * t + 2, ad);
-  link(3 * s + 1, db);
-  link(3 * s + 2, bc);
+  link(3 * t, 3 * s, free_edge);
+  link(3 * t + 1, ca.opposite, ca.kind);
+  link(3 * t + 2, ad.opposite, ad.kind);
+  link(3 * s + 1, db.opposite, db.kind);
+  link(3 * s + 2, bc.opposite, bc.kind);
+}
+
+bool Cdt::can_collapse(int h) const {
+  const int w = target(h);
+  for (int e = h;;) {
+    if (fixed[e] || opposite[e] < 0) return false;
+    if (target(e) != w && apex(e) != w && orient2d(points[w], points[target(e)], points[apex(e)]) <= 0)
+      return false;
+    e = opposite[prev(e)];
+    if (e < 0) return false;
+    if (e == h) return true;
+  }
+}
+
+void Cdt::collapse(int h) {
+  //      x            x
+  //    / | \        / |
+  //  ..  v--w   ->  .. w    t = vwx and s = wvy go; what is beyond their other sides meets
+  //    \ | /        \ |
+  //      y            y
+  const int v = origin(h), w = target(h), o = opposite[h], t = h / 3, s = o / 3;
+  const int x = apex(h), y = apex(o);
+  for (int e = opposite[prev(h)]; e / 3 != s; e = opposite[prev(e)]) {
+    tris[e / 3][e % 3] = w;
+    ++version[e / 3];
+  }
+  // the edges of v have a triangle on either side, those beyond may be on the border
+  const int xv = opposite[prev(h)], vy = opposite[next(o)];
+  link(xv, opposite[next(h)], fixed[next(h)]);
+  link(vy, opposite[prev(o)], fixed[prev(o)]);
+  at[v] = -1;
+  at[w] = at[x] = xv / 3;
+  at[y] = vy / 3;
+  erase(std::max(t, s));
+  erase(std::min(t, s));
+}
+
+// Takes out a triangle that nothing links to; the last one takes its number.
+void Cdt::erase(int t) {
+  const int last = (int)tris.size() - 1;
+  ++version[t];
+  if (t != last) {
+    set(t, tris[last]);
+    for (int i = 0; i < 3; ++i) link(3 * t + i, opposite[3 * last + i], fixed[3 * last + i]);
+  }
+  tris.pop_back();
+  opposite.resize(3 * last);
+  fixed.resize(3 * last);
+  version.pop_back();
+  mark_.pop_back();
 }
 
 int Cdt::half_edge(int a, int b) const {

@@ -26,7 +26,7 @@ class Cdt {
   std::vector<Tri> tris;
   std::vector<int> opposite;        ///< -1 on the border
   std::vector<std::uint8_t> fixed;  ///< per half-edge: never flipped nor crossed
-  std::vector<int> at;              ///< a triangle of each vertex
+  std::vector<int> at;              ///< a triangle of each vertex, -1 for vertices that were collapsed
   std::vector<int> version;         ///< per triangle: counts how often it was replaced
 
   /// Constrained Delaunay triangulation of the region that the border segments bound (odd parity from
@@ -57,6 +57,12 @@ class Cdt {
   /// Turns the diagonal; the new one runs between the former apexes and is half-edge 3 * (h / 3) of the
   /// result.
   void flip(int h);
+  /// True if the origin of h lies inside, on no fixed edge, and its triangles stay positive when it moves to
+  /// the target of h.
+  bool can_collapse(int h) const;
+  /// Moves the origin of h onto its target and takes out the two triangles of the edge. Precondition:
+  /// can_collapse(h). The last triangles take the numbers that become free.
+  void collapse(int h);
   /// Calls visit(h) for the half-edges that start at v, all round (or from border to border).
   template <class Visit>
   void around(int v, Visit visit) const;
@@ -64,6 +70,8 @@ class Cdt {
  private:
   int half_edge(int a, int b) const;
   void set(int t, Tri corners);
+  void link(int h, int outer, std::uint8_t kind);
+  void erase(int t);
   void insert_all(int n);
   void recover(int a, int b, std::uint8_t kind);
   void make_delaunay();

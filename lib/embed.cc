@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "lib/error.h"
+#include "lib/parallel.h"
 #include "lib/segments.h"
 
 namespace meshpipe {
@@ -330,9 +331,9 @@ void Embedder::run() {
       key += static_cast<int>(division_[l].size());
     }
     std::vector<Finding> findings(n_parts);
-#pragma omp parallel for schedule(dynamic)
-    for (int p = 0; p < n_parts; ++p)
+    parallel_for(n_parts, [&](int p) {
       if (dirty[p]) findings[p] = look_at(p, first_key);
+    });
 
     std::vector<SegmentOf> refine;
     std::vector<int> strip;  // lines to be cut at their vertices only

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <string>
 
+#include "lib/adapt.h"
 #include "lib/error.h"
-#include "lib/frontal.h"
+#include "lib/refine.h"
 
 namespace meshpipe {
 namespace {
@@ -106,7 +107,8 @@ class Numbers {
   std::vector<int> global_, half_edge_;
 };
 
-PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part) {
+PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+               Mesher mesher) {
   Drawing drawing = draw(lines, part);
   int n = (int)drawing.row.size();
   std::vector<int> wanted;
@@ -129,7 +131,17 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines&
   }
 
   SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n};
-  insert_frontal(m, field);
+  switch (mesher) {
+    case Mesher::frontal:
+      refine_frontal(m, field);
+      break;
+    case Mesher::delaunay:
+      refine_delaunay(m, field);
+      break;
+    case Mesher::meshadapt:
+      adapt_edges(m, field);
+      break;
+  }
   smooth_in_plane(m, field, smoothing_sweeps);
 
   PlaneMesh result;
@@ -142,9 +154,10 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines&
 
 }  // namespace
 
-PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part) {
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+                     Mesher mesher) {
   try {
-    return mesh(chart, size, lines, part);
+    return mesh(chart, size, lines, part, mesher);
   } catch (const GoalMissed& e) {
     throw GoalMissed("part " + std::to_string(part) + ": " + e.what());
   } catch (const NotAdmissible& e) {

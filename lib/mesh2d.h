@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frontal-Delaunay meshing of a chart in the plane under the metric of its map (the paper's step 5).
+// Meshing of a chart in the plane under the metric of its map (the paper's step 5).
 #pragma once
 #include "lib/chart.h"
 #include "lib/lines.h"
@@ -20,12 +20,17 @@ struct PlaneMesh {
   std::vector<Tri> tris;           ///< positively oriented in the plane
 };
 
+/// frontal: frontal-Delaunay (Rebay 1993). delaunay: refinement at circumcentres. meshadapt: edges split,
+/// collapsed and swapped.
+enum class Mesher { frontal, delaunay, meshadapt };
+
 /// Meshes one chart: constrained Delaunay triangulation of the lines that the part uses (borders, interfaces,
-/// embedded model edges), then frontal-Delaunay insertion (Rebay 1993) until every triangle is sized.
+/// embedded model edges), then the mesher's operations until every triangle is sized, and smoothing.
 /// `size` is per vertex of the chart's mesh; lengths and sizes are judged in space through the map's metric,
 /// averaged at vertices in log space. Exact predicates; location by walking with a hint.
 /// Every line segment is an edge of the result and the result covers exactly the region the lines bound.
 /// Throws GoalMissed with part and point if the segments cross (then nothing is meshed).
-PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part);
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+                     Mesher mesher = Mesher::frontal);
 
 }  // namespace meshpipe

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmesh2d: mesh every chart in the plane under the metric of its map.
-#include <omp.h>
-
-#include <chrono>
-#include <exception>
+#include <cmath>
+#include <ctime>
+#include <map>
 
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
+#include "lib/parallel.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -22,14 +22,16 @@ static std::vector<double> sizes_of(const Chart& chart, const std::vector<double
   return h;
 }
 
+static const std::map<std::string, Mesher> meshers = {
+    {"frontal", Mesher::frontal}, {"delaunay", Mesher::delaunay}, {"meshadapt", Mesher::meshadapt}};
+
 int main(int argc, char** argv) {
   std::string mesher = "frontal";
   auto options = [&](CLI::App& app) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
-        ->check(CLI::IsMember({"frontal", "delaunay", "meshadapt"}));
+        ->check(CLI::IsMember(meshers));
   };
   auto body = [&](Io& io) {
-    if (mesher != "frontal") throw BadUsage("--mesher " + mesher + " is not built yet");
     Stream stream = io.read();
     const std::vector<Chart> charts = read_charts(stream);
     const Lines lines = read_lines(stream);
@@ -37,21 +39,13 @@ int main(int argc, char** argv) {
       throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
     const auto& size = stream.surface.vertex.get<double>("size");
 
-    auto start = std::chrono::steady_clock::now();
-    int n = static_cast<int>(charts.size());
+    const std::clock_t start = std::clock();
+    const int n = static_cast<int>(charts.size());
     std::vector<PlaneMesh> meshes(n);
-    std::vector<std::exception_ptr> failed(n);
-#pragma omp parallel for schedule(dynamic)
-    for (int part = 0; part < n; ++part) {
-      try {
-        meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part);
-      } catch (...) {
-        failed[part] = std::current_exception();
-      }
-    }
-    for (const auto& e : failed)
-      if (e) std::rethrow_exception(e);
-    double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    parallel_for(n, [&](int part) {
+      meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part, meshers.at(mesher));
+    });
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 
     std::size_t points = 0, triangles = 0;
     for (const PlaneMesh& m : meshes) {
@@ -60,8 +54,8 @@ int main(int argc, char** argv) {
     }
     io.say(std::to_string(n) + " charts, " + std::to_string(points) + " points, " +
            std::to_string(triangles) + " triangles");
-    io.detail(std::to_string(static_cast<long>(triangles / seconds)) + " triangles per second on " +
-              std::to_string(omp_get_max_threads()) + " threads");
+    if (seconds > 0)
+      io.detail(std::to_string(std::lround(triangles / seconds)) + " triangles per second of a core");
     io.report["charts"] = n;
     io.report["points"] = points;
     io.report["triangles"] = triangles;

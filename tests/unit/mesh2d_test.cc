@@ -166,9 +166,11 @@ Figures examine(const PlaneMesh& mesh, const Lines& lines, const Map3& lift) {
   return f;
 }
 
-PlaneMesh mesh_with(const Chart& chart, const Lines& lines, double h) {
-  return mesh_chart(chart, std::vector<double>(chart.uv.size(), h), lines, 0);
+PlaneMesh mesh_with(const Chart& chart, const Lines& lines, double h, Mesher mesher = Mesher::frontal) {
+  return mesh_chart(chart, std::vector<double>(chart.uv.size(), h), lines, 0, mesher);
 }
+
+constexpr Mesher all_meshers[] = {Mesher::frontal, Mesher::delaunay, Mesher::meshadapt};
 
 double count_of(double area, double h) { return area / (std::sqrt(3.0) / 4 * h * h); }
 
@@ -228,6 +230,38 @@ TEST(Cdt, RecoversLongSegmentsAndCarvesHoles) {
   EXPECT_EQ(hole.tris.size(), 8u);
 }
 
+//   4---3    the inner vertices collapse one after the other until two triangles are left
+//   |\\ /|    (drawn with one inner vertex)
+//   | 5 |
+//   |/ \\|
+//   1---2
+TEST(Cdt, CollapsesInnerVerticesOntoOthers) {
+  std::vector<Vec2> p{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<Segment> frame{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
+  for (int i = 0; i < 60; ++i) p.push_back({0.05 + 0.9 * std::fmod(0.618 * i, 1), 0.05 + 0.9 * i / 60});
+  Cdt cdt(p, frame);
+  for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h)
+    EXPECT_FALSE(cdt.can_collapse(h) && (cdt.origin(h) < 4 || cdt.fixed[h]));
+  std::size_t left = cdt.tris.size();
+  for (bool any = true; any;) {
+    any = false;
+    for (int h = 0; h < 3 * (int)cdt.tris.size() && !any; ++h) {
+      if (!cdt.can_collapse(h)) continue;
+      cdt.collapse(h);
+      any = true;
+      left -= 2;
+      ASSERT_EQ(cdt.tris.size(), left);
+      EXPECT_EQ(cdt.opposite, opposite_halfedges(cdt.tris, 64));
+      for (const Tri& t : cdt.tris) EXPECT_EQ(orient2d(p[t[0]], p[t[1]], p[t[2]]), 1);
+      for (int v = 0; v < 64; ++v) {
+        const int t = cdt.at[v];
+        EXPECT_TRUE(t < 0 || std::count(cdt.tris[t].begin(), cdt.tris[t].end(), v) == 1);
+      }
+    }
+  }
+  EXPECT_EQ(left, 2u);
+}
+
 TEST(PlaneMetric, FrameUndoesTheLogarithm) {
   // the map (u, v) -> (3 u, v, 2 u) has M = [13 0; 0 1]; sheared by v -> u + v the off-diagonal is not zero
   for (double shear : {0.0, 1.0, -2.0}) {
@@ -255,6 +289,32 @@ TEST(Mesh2d, FlatSquareHasTheCountItsSizeAsksFor) {
     EXPECT_GT(f.kappa_min, 0.5);
     EXPECT_NEAR(f.edge_mean / h, 1, 0.05);
   }
+}
+
+// What every mesher promises, flat, curved, sheared and with holes; the frontal one makes the best triangles.
+TEST(Mesh2d, AllMeshersMeetSizeAndShape) {
+  const Map3 shear = [](Vec2 p) { return Vec3{4 * p.x + 1.5 * p.y, p.y, 0}; };
+  const Map3 dome = [](Vec2 p) { return Vec3{p.x, p.y, 1.5 * (p.x * p.x + p.y * p.y)}; };
+  struct Case {
+    Chart chart;
+    Map3 lift;
+    double h;
+  };
+  const Case cases[] = {{square(10), flat, 0.03},
+                        {square(10, shear), shear, 0.06},
+                        {annulus(60, 6, 0.3), flat, 0.05},
+                        {annulus(120, 40, 0.02, dome), dome, 0.06}};
+  for (Mesher mesher : all_meshers)
+    for (const Case& c : cases) {
+      SCOPED_TRACE((int)mesher);
+      Lines lines = border_lines(c.chart, c.h);
+      PlaneMesh mesh = mesh_with(c.chart, lines, c.h, mesher);
+      Figures f = examine(mesh, lines, c.lift);
+      EXPECT_GT(f.kappa_mean, mesher == Mesher::frontal ? 0.965 : 0.945);
+      EXPECT_GT(f.kappa_min, 0.3);
+      EXPECT_NEAR(f.edge_mean / c.h, 1, 0.05);
+      EXPECT_NEAR(mesh.tris.size() / count_of(total_area(c.chart.mesh), c.h), 1, 0.08);
+    }
 }
 
 TEST(Mesh2d, ScaleDoesNotMatter) {
@@ -315,11 +375,13 @@ TEST(Mesh2d, EmbeddedLinesAreEdges) {
   for (int i = 0; i < 4; ++i) loop.push_back(v(13, 14 - i));
   for (const auto& chain : {dangling, stem, up, down}) add_line(lines, chart, chain, model_line, false, h);
   add_line(lines, chart, loop, model_line, true, h);
-  PlaneMesh mesh = mesh_with(chart, lines, h);
-  Figures f = examine(mesh, lines, flat);
-  EXPECT_NEAR(f.area_uv, 1, 1e-12);
-  EXPECT_GT(f.kappa_mean, 0.94);
-  EXPECT_GT(f.kappa_min, 0.25);
+  for (Mesher mesher : all_meshers) {
+    PlaneMesh mesh = mesh_with(chart, lines, h, mesher);
+    Figures f = examine(mesh, lines, flat);
+    EXPECT_NEAR(f.area_uv, 1, 1e-12);
+    EXPECT_GT(f.kappa_mean, 0.93);
+    EXPECT_GT(f.kappa_min, 0.25);
+  }
 }
 
 TEST(Mesh2d, JudgesInSpaceUnderAShearedAndStretchedMap) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/frontal.h"
+#include "lib/refine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,15 @@ namespace {
 
 // Lengths below are over the size, so that the wanted edge has length one.
 const double ideal_radius = 1 / std::sqrt(3.0);  // of the equilateral triangle's circumcircle
+struct Rule {
+  bool fronts;             // points go to the fronts first; otherwise always to circumcentres
+  double accepted_radius;  // a triangle below this needs no point
+  Spacing spacing;
+};
 // Measured together on flat, curved and sheared charts: the count is within 2 % of what the size asks for,
 // and shapes are best.
-constexpr double accepted_radius = 0.64;  // a triangle below this needs no point
-constexpr double closest = 0.8;           // no new edge is shorter
-constexpr double closest_to_line = 0.45;  // no new point is nearer to a fixed edge
+constexpr Rule frontal_rule{true, 0.64, {0.8, 0.45}};
+constexpr Rule delaunay_rule{false, 0.755, {0.6, 0.3}};
 
 // A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first.
 struct Entry {
@@ -29,9 +33,10 @@ struct Entry {
   }
 };
 
-class Front {
+class Refiner {
  public:
-  Front(SiteMesh& mesh, const SizeMetric& field) : m_(mesh), cdt_(mesh.cdt), field_(field) {}
+  Refiner(SiteMesh& mesh, const SizeMetric& field, const Rule& rule)
+      : m_(mesh), cdt_(mesh.cdt), field_(field), rule_(rule) {}
 
   void run() {
     row_.assign(cdt_.points.size(), 0);
@@ -58,7 +63,7 @@ class Front {
     return area2 > 0 ? norm(u) * norm(v) * norm(v - u) / (2 * area2 * h) : 1e300;
   }
 
-  bool waits(int t) const { return radius_[t] > accepted_radius; }
+  bool waits(int t) const { return radius_[t] > rule_.accepted_radius; }
   int row(int h) const { return std::max(row_[cdt_.origin(h)], row_[cdt_.target(h)]); }
 
   // The front edge of a waiting triangle: next to an accepted one or on a line, in the earliest row; -1 if
@@ -73,7 +78,7 @@ class Front {
 
   void offer(int t) {
     if (!waits(t)) return;
-    int h = front_edge(t);
+    int h = rule_.fronts ? front_edge(t) : -1;
     if (h >= 0)
       queue_.push({0, (double)row(h), order_++, t, cdt_.version[t]});
     else
@@ -124,23 +129,7 @@ class Front {
     int s = cdt_.walk(p, t);
     if (s < 0) return false;
     Site there = field_.at(p, hint);
-    Frame f = frame_of(there.metric);
-    bool free = cdt_.grow_cavity(p, s, [&](int u) {
-      // in-circle in the metric at p: plain rounding will do, as the cavity is kept star-shaped exactly
-      Vec2 a = f.to(point(cdt_.tris[u][0]) - p), b = f.to(point(cdt_.tris[u][1]) - p),
-           c = f.to(point(cdt_.tris[u][2]) - p);
-      return dot(a, a) * cross(b, c) + dot(b, b) * cross(c, a) + dot(c, c) * cross(a, b) > 0;
-    });
-    if (!free) return false;
-    for (int h : cdt_.rim()) {
-      Vec3 a = m_.site[cdt_.origin(h)].space - there.space;
-      if (norm(a) < closest * there.size) return false;
-      if (!cdt_.fixed[h]) continue;
-      Vec3 b = m_.site[cdt_.target(h)].space - there.space;
-      if (norm(cross(a, b)) < closest_to_line * there.size * norm(b - a)) return false;
-    }
-    cdt_.fill_cavity(p);
-    m_.site.push_back(there);
+    if (!insert_site(m_, p, there, s, rule_.spacing)) return false;
     row_.push_back(row);
     radius_.resize(cdt_.tris.size());
     for (int u : cdt_.fan()) radius_[u] = radius(u);
@@ -156,6 +145,7 @@ class Front {
   SiteMesh& m_;
   Cdt& cdt_;
   const SizeMetric& field_;
+  const Rule rule_;
   std::vector<int> row_;
   std::vector<double> radius_;
   std::priority_queue<Entry> queue_;
@@ -164,71 +154,7 @@ class Front {
 
 }  // namespace
 
-void insert_frontal(SiteMesh& mesh, const SizeMetric& field) { Front(mesh, field).run(); }
-
-static void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
-  Cdt& cdt = m.cdt;
-  // on a curved surface flips might go round in circles: bounded
-  for (std::size_t budget = 10 * todo.size(); !todo.empty() && budget > 0; --budget) {
-    int h = todo.back(), o = cdt.opposite[h];
-    todo.pop_back();
-    if (o < 0 || cdt.fixed[h]) continue;
-    Vec3 a = m.site[cdt.origin(h)].space, b = m.site[cdt.target(h)].space, c = m.site[cdt.apex(h)].space,
-         d = m.site[cdt.apex(o)].space;
-    // sin(gamma + delta) < 0 for the angles that look at the edge: not Delaunay
-    double ca = norm(cross(a - c, b - c)), da = norm(cross(a - d, b - d));
-    double sine = ca * dot(a - d, b - d) + dot(a - c, b - c) * da;
-    double scale = norm(a - c) * norm(b - c) * norm(a - d) * norm(b - d);
-    if (!(sine < -1e-10 * scale) || !cdt.can_flip(h)) continue;
-    int t = h / 3, s = o / 3;
-    cdt.flip(h);
-    for (int e : {3 * t + 1, 3 * t + 2, 3 * s + 1, 3 * s + 2}) todo.push_back(e);
-  }
-  todo.clear();
-}
-
-// Area over squared edges of the worst triangle at v, were it at x.
-static double worst_shape(const SiteMesh& m, int v, Vec3 x) {
-  double worst = 1e300;
-  m.cdt.around(v, [&](int h) {
-    Vec3 a = m.site[m.cdt.target(h)].space - x, b = m.site[m.cdt.apex(h)].space - x;
-    worst = std::min(worst, norm(cross(a, b)) / (dot(a, a) + dot(b, b) + dot(b - a, b - a)));
-  });
-  return worst;
-}
-
-void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
-  Cdt& cdt = m.cdt;
-  std::vector<int> todo;
-  for (int sweep = 0;; ++sweep) {
-    for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h)
-      if (h < cdt.opposite[h]) todo.push_back(h);
-    flip_to_delaunay(m, todo);
-    if (sweep == sweeps) return;
-    for (int v = m.line_points; v < (int)cdt.points.size(); ++v) {
-      Vec3 sum{};
-      double weight = 0;
-      cdt.around(v, [&](int h) {
-        // a long edge pulls more, so that edges even out
-        Vec3 d = m.site[cdt.target(h)].space - m.site[v].space;
-        double w = norm(d);
-        sum = sum + w * d;
-        weight += w;
-      });
-      if (!(weight > 0)) continue;
-      Vec2 q = cdt.points[v] + field.to_plane(m.site[v].place.face, (1 / weight) * sum);
-      bool good = std::isfinite(q.x) && std::isfinite(q.y);
-      cdt.around(v, [&](int h) {
-        good = good && orient2d(q, cdt.points[cdt.target(h)], cdt.points[cdt.apex(h)]) > 0;
-      });
-      if (!good) continue;
-      Site there = field.at(q, m.site[v].place.face);
-      double worst = worst_shape(m, v, there.space);
-      if (worst < 0.2 && worst < worst_shape(m, v, m.site[v].space)) continue;
-      cdt.points[v] = q;
-      m.site[v] = there;
-    }
-  }
-}
+void refine_frontal(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, frontal_rule).run(); }
+void refine_delaunay(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, delaunay_rule).run(); }
 
 }  // namespace meshpipe
