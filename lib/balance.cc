@@ -281,7 +281,7 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
   std::vector<double> level(n), again;
   std::vector<int> changes, rest;
   auto settle = [&](int most_rounds) {
-    for (int round = 0, flipped = 1; round < most_rounds && flipped > 0; ++round) {
+    for (int round = 0, flipped = n; round < most_rounds && flipped > n / 10000; ++round) {
       for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
       again = level;
       apply(section, again);

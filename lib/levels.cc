@@ -162,7 +162,9 @@ class LevelSolver {
     keep_what_touches_the_border();
     std::vector<int> set_of;
     int n_sets = find_sets(set_of, truncated);
-    while (withdraw_holes(set_of, n_sets)) {
+    constexpr int most_rounds = 8;
+    for (int round = 0; round < most_rounds && withdraw_holes(set_of, n_sets); round++) {
+      keep_fans_whole();
       keep_what_touches_the_border();
       n_sets = find_sets(set_of, truncated);
     }

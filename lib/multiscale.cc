@@ -173,7 +173,7 @@ std::vector<double> best_field(const Part& part, const MultiscaleOptions& option
     drop_fragments(part, best);
     best_is = assess(part, best);
   }
-  constexpr int rounds = 10;
+  constexpr int rounds = 8;
   reach_holes(part.disk, part.opposite, best);
   balance_sides(part.disk, part.opposite, find_branches(part.disk, levels), best, rounds);
   drop_fragments(part, best);
@@ -197,7 +197,7 @@ int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topolo
   return loops;
 }
 
-/// Joins neighbours that were cut here, those with the longest shared border first, while the union is
+/// Joins neighbours one of which was cut here, those with the longest shared border first, while the union is
 /// admissible: a ring's two long arcs, each cut lengthwise, make two flat rings. Returns the number of parts.
 int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, double max_aspect,
                std::vector<MultiscaleCut>* cuts) {
@@ -218,7 +218,7 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
     std::vector<Pair> pairs;
     for (int a = 0; a < n_parts; a++)
       for (int h : joiner.regions().border[a])
-        if (int o = opposite[h]; o >= 0 && a < label[o / 3] && was_cut[a] && was_cut[label[o / 3]])
+        if (int o = opposite[h]; o >= 0 && a < label[o / 3] && (was_cut[a] || was_cut[label[o / 3]]))
           pairs.push_back(
               {a, label[o / 3],
                norm(surface.points[target(surface.tris, h)] - surface.points[origin(surface.tris, h)])});
@@ -260,8 +260,17 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
   if (cuts)
     for (MultiscaleCut& c : *cuts)
       for (int& half : c.halves) half = number[becomes[half]];
+  constexpr int few = 8;  // each attempt copies the surface
+  if (n > few) return n;
   constexpr double snap = 0.1;
-  straighten_interfaces(surface, n, snap);
+  Surface straight = surface;
+  std::vector<char> is_union(n, 0);
+  for (int p = 0; p < n_parts; p++)
+    if (becomes[p] != p) is_union[number[becomes[p]]] = 1;
+  straighten_interfaces(straight, n, snap, 0, is_union);
+  const std::vector<Topology> is = topology_of_parts(straight, straight.face.get<int>("part"), n);
+  if (std::all_of(is.begin(), is.end(), [&](const Topology& t) { return admissible(t, max_aspect); }))
+    surface = std::move(straight);
   return n;
 }
 
@@ -345,8 +354,8 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     was_cut.resize(n_parts, 0);
     for (int half : cut.halves) was_cut[half] = 1;
   }
-  return n_parts > given_parts + 1 ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
-                                   : n_parts;
+  return n_parts > std::max(given_parts, 2) ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
+                                            : n_parts;
 }
 
 }  // namespace meshpipe

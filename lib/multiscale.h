@@ -10,7 +10,7 @@ struct MultiscaleOptions {
   double max_aspect = 4;    ///< eta_max of eq. (5)
   double min_area = 1e-10;  ///< A_min, relative to the level's disk
   int min_set = 10;         ///< smaller sets of small triangles stay good (the paper's footnote)
-  int directions = 16;      ///< root directions tried
+  int directions = 6;       ///< root directions tried
 };
 
 /// One cut that was made.
@@ -26,8 +26,8 @@ struct MultiscaleCut {
 /// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, and
 /// renumbers parts 0..n-1: halves keep the place of their part in the order. Each result is edge-connected,
 /// vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1. Triangles are split along the cut
-/// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves of
-/// different cuts whose union is admissible are joined again. Precondition: parts of genus 0 with a boundary.
+/// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves are joined
+/// to neighbours where the union is admissible. Precondition: parts of genus 0 with a boundary.
 /// Triangles of no part (-1) are left alone, and then nothing is joined. Throws GoalMissed if a part cannot
 /// be cut. Returns the number of parts; `cuts`, if given, receives what was done, in order.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},

@@ -405,7 +405,8 @@ std::vector<Handle> straighten_together(Surface& s, const std::vector<Handle>& h
 
 }  // namespace
 
-void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces) {
+void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
+                           const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
   auto curves_of = [&] {
     return find_curves(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
@@ -417,7 +418,8 @@ void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_f
     std::vector<Handle> open;
     for (const Curve& c : curves_of())
       for (const PairColour& p : pairs)
-        if (p.a == c.a && p.b == c.b && p.colour == colour) open.push_back(handle_of(surface, c));
+        if (p.a == c.a && p.b == c.b && p.colour == colour && (chosen.empty() || chosen[p.a] || chosen[p.b]))
+          open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
     for (const Attempt& attempt : attempts) open = straighten_together(surface, open, attempt, limits);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Straightens the interfaces between the parts of a surface by diffusion and iso-cutting.
 #pragma once
+#include <vector>
+
 #include "lib/mesh.h"
 
 namespace meshpipe {
@@ -10,6 +12,8 @@ namespace meshpipe {
 /// the two parts' triangles change hands there, all other parts only get split along. Interface edges that
 /// are model edges stay. Where the result would not be admissible (part_fault) or longer, the interface of
 /// that pair stays as it was. Precondition: parts without fault.
-void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces = 0);
+/// With `chosen`, only the interfaces of the parts that it marks.
+void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces = 0,
+                           const std::vector<char>& chosen = {});
 
 }  // namespace meshpipe
