@@ -251,7 +251,8 @@ void Io::detail(const std::string& line) const {
 }
 
 int run_tool(int argc, char** argv, const char* program, const char* summary,
-             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body, Usage usage) {
+             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,
+             Usage usage) {
   handle_signals();
   Io io;
   io.program = program;
@@ -282,8 +283,10 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
     // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
     const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
-    const bool said = culprit != program && std::getenv("MESHPIPE_DRIVER");  // by the culprit, and mremesh ran it
-    if (!said && (!pass_on || culprit == program)) std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
+    const bool said =
+        culprit != program && std::getenv("MESHPIPE_DRIVER");  // by the culprit, and mremesh ran it
+    if (!said && (!pass_on || culprit == program))
+      std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
     if (pass_on) {
       std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
       (void)!::write(STDOUT_FILENO, line.data(), line.size());

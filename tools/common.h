@@ -50,7 +50,7 @@ class Io {
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
                       const std::function<void(Io&)>&, struct Usage);
   std::string arguments_;
-  mutable bool written_ = false;   ///< something went to standard output: no failure line after it
+  mutable bool written_ = false;  ///< something went to standard output: no failure line after it
   mutable std::string finished_;  ///< the file of -o, once it has its name: removed by a failure after that
 };
 
