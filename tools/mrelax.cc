@@ -49,7 +49,7 @@ std::string left_over(const RelaxReport& r, const LiftedMesh& mesh, const Surfac
 int main(int argc, char** argv) {
   Options o;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--sweeps", o.relax.sweeps, "rounds of flips, moves and count keeping (default 6)")
+    app.add_option("--sweeps", o.relax.sweeps, "rounds of flips, moves and count keeping (default 4)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
     app.add_option("--reference", o.reference, "relax any mesh on this surface")->type_name("FILE");
