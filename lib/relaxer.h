@@ -4,6 +4,7 @@
 // it.
 #pragma once
 #include <initializer_list>
+#include <optional>
 
 #include "lib/edit_mesh.h"
 #include "lib/relax.h"
@@ -148,7 +149,9 @@ class Relaxer {
   void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
   int worst() const;
   std::vector<Edit> edits_round(int t, bool wide) const;
-  bool mend(int t, bool thorough);
+  std::optional<Relaxer> mended(const std::vector<int>& triangles, bool thorough) const;
+  template <class Wanted>
+  int mend_each(std::vector<int> triangles, bool thorough, Wanted wanted);
   void mend_worst();
   void separate();
 
