@@ -14,9 +14,9 @@ namespace meshpipe {
 namespace {
 
 /// Writes rows of a section, in text or binary.
-class Sink {
+class Rows {
  public:
-  explicit Sink(bool ascii) : ascii_(ascii) {}
+  explicit Rows(bool ascii) : ascii_(ascii) {}
 
   void integer(long long v) { ascii_ ? word(v) : put(out, static_cast<int>(v)); }
   /// What version 4 writes in eight bytes.
@@ -44,7 +44,7 @@ class Sink {
   bool ascii_;
 };
 
-void head(Sink& sink, const char* version, bool ascii) {
+void head(Rows& sink, const char* version, bool ascii) {
   sink.out = std::string("$MeshFormat\n") + version + (ascii ? " 0 8\n" : " 1 8\n");
   if (!ascii) {
     put(sink.out, 1);
@@ -83,7 +83,7 @@ Curves curves_of(const Stream& stream) {
   return c;
 }
 
-void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
+void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
   std::string named;
   int n_named = 0;
   auto add = [&](int dim, int tag, long long shown) {
@@ -99,7 +99,7 @@ void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift,
 }
 
 /// `more` elements that are no triangles have zeros, since readers want data for all elements or none.
-void data(Sink& sink, const char* section, const Table& table, std::size_t more) {
+void data(Rows& sink, const char* section, const Table& table, std::size_t more) {
   for (const Group& g : groups_of(table)) {
     if (g.name == "patch") continue;
     const std::size_t n = g.columns[0]->size(), m = g.columns.size();
@@ -132,7 +132,7 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
   const Curves curves = curves_of(stream);
-  Sink sink(ascii);
+  Rows sink(ascii);
   head(sink, "2.2", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
   names(sink, stream, by, shift, curves);
@@ -176,7 +176,7 @@ std::string write_msh4(const Stream& stream, bool ascii) {
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
   const Curves curves = curves_of(stream);
-  Sink sink(ascii);
+  Rows sink(ascii);
   head(sink, "4.1", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
   names(sink, stream, by, shift, curves);
