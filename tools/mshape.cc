@@ -89,8 +89,6 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(30);
   };
   auto body = [&](Io& io) {
-    if (io.input != "-")
-      throw BadUsage("mshape reads no input, but '" + io.input + "' is given; see mshape --help");
     Body shape = make(o);
     Stream stream;
     static_cast<Mesh&>(stream.surface) = std::move(static_cast<Mesh&>(shape));
@@ -116,5 +114,5 @@ int main(int argc, char** argv) {
                   "90000 -o airways.stl\n"
                   "  mshape body --patches 850 --triangles 1000000 -o gear.msh\n"
                   "  mshape tube --aspect 100 --noise 0.1 | mclean | mtopo > tube.ply",
-                  add_options, body);
+                  add_options, body, {.reads = false});
 }
