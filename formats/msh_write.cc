@@ -63,6 +63,7 @@ long long checked_shift(const ByPatch& by) {
 
 /// The model edges that have a label, by label.
 struct Curves {
+  bool all = false;  ///< there are some, and all model edges have a label: bits need not be written
   std::vector<LineEdge> edges;
   std::vector<int> tags;
   std::vector<std::size_t> first;  ///< edges first[k] .. first[k+1] have tags[k]
@@ -71,7 +72,7 @@ struct Curves {
 Curves curves_of(const Stream& stream) {
   Curves c;
   c.edges = model_lines(stream);
-  std::erase_if(c.edges, [](const LineEdge& e) { return e.tag <= 0; });
+  c.all = !c.edges.empty() && std::erase_if(c.edges, [](const LineEdge& e) { return e.tag <= 0; }) == 0;
   std::stable_sort(c.edges.begin(), c.edges.end(),
                    [](const LineEdge& x, const LineEdge& y) { return x.tag < y.tag; });
   for (std::size_t i = 0; i < c.edges.size(); ++i)
@@ -98,10 +99,11 @@ void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift,
     sink.out += "$PhysicalNames\n" + (std::to_string(n_named) + '\n') + named + "$EndPhysicalNames\n";
 }
 
-/// `more` elements that are no triangles have zeros, since readers want data for all elements or none.
-void data(Rows& sink, const char* section, const Table& table, std::size_t more) {
+/// Data of all triangles; elements of curves have zeros, since readers want data for all elements or none.
+void data(Rows& sink, const char* section, const Table& table, const Curves& curves) {
+  const std::size_t more = table.name == "face" ? curves.edges.size() : 0;
   for (const Group& g : groups_of(table)) {
-    if (g.name == "patch") continue;
+    if (g.name == "patch" || (g.name == "model" && curves.all)) continue;
     const std::size_t n = g.columns[0]->size(), m = g.columns.size();
     sink.out += std::string("$") + section + "\n1\n\"" + quotable(one_line(g.name)) + "\"\n1\n0\n3\n0\n" +
                 std::to_string(m) + '\n' + std::to_string(n + more) + '\n';
@@ -166,8 +168,8 @@ std::string write_msh2(const Stream& stream, bool ascii) {
     sink.end_row();
   }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex, 0);
-  data(sink, "ElementData", s.face, curves.edges.size());
+  data(sink, "NodeData", s.vertex, curves);
+  data(sink, "ElementData", s.face, curves);
   return std::move(sink.out);
 }
 
@@ -268,8 +270,8 @@ std::string write_msh4(const Stream& stream, bool ascii) {
     }
   }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex, 0);
-  data(sink, "ElementData", s.face, curves.edges.size());
+  data(sink, "NodeData", s.vertex, curves);
+  data(sink, "ElementData", s.face, curves);
   return std::move(sink.out);
 }
 
