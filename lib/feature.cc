@@ -14,8 +14,9 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
-constexpr double smooth_turn = 20 * degree;    ///< mean change of the turning vector from vertex to vertex
-constexpr double design_share = 0.5;           ///< of the strong edges, by length, in good chains
+constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
+constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
+constexpr double design_share = 0.5;         ///< of the strong edges, by length, in good chains
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 class Creases {
@@ -43,8 +44,8 @@ class Creases {
       given_[h] = o >= 0 && given && (*given)[h];
       patch_[h] = given_[h] || (o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3]);
       merged_[h] = o >= 0 && !patch_[h] && before && options.mode == FeatureOptions::automatic &&
-                   (*before)[h / 3] != (*before)[o / 3];
-      if (o < 0 || patch_[h]) anchor_[v] = anchor_[to(h)] = 1;
+                   angle_[h] <= step && (*before)[h / 3] != (*before)[o / 3];
+      if (o < 0 || patch_[h] || merged_[h]) anchor_[v] = anchor_[to(h)] = 1;
     }
     // what looks designed is a matter of the input's own edges, what is worth keeping of the target's; a
     // coarse model of few triangles has no longer chains than a tenth of itself
@@ -269,9 +270,9 @@ class Creases {
   std::vector<char> merged_;       ///< between two patches that have become one
   std::vector<int> star_;          ///< a half-edge that leaves the vertex, on the border the border's
   std::vector<int> valence_;       ///< of the network of creases
-  std::vector<char> anchor_;       ///< on a patch border or the surface's: chains may end there
-  double short_ = 0;               ///< pieces below this length are dropped
-  double telling_ = 0;             ///< chains above this length tell whether the surface is designed
+  std::vector<char> anchor_;  ///< on a patch border, former ones too, or the surface's: chains may end there
+  double short_ = 0;          ///< pieces below this length are dropped
+  double telling_ = 0;        ///< chains above this length tell whether the surface is designed
 };
 
 }  // namespace

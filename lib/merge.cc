@@ -12,6 +12,10 @@
 namespace meshpipe {
 namespace {
 
+/// A small patch that turns by more than this on all sides (60 degrees) is a step or an edge with a
+/// thickness; triangles across its border would cut through the solid.
+constexpr double steepest = 1.0471975511965976;
+
 /// The common border of two patches, by their indices.
 struct Border {
   int a, b;
@@ -126,7 +130,7 @@ void merge_automatically(PatchMerge& merge, const Surface& surface, double h, do
 
   Sets sets(n);
   for (const Border& r : rows)
-    if (r.sharp <= 0.01 * r.length) sets.join(r.a, r.b);
+    if (r.sharp <= 0.05 * r.length) sets.join(r.a, r.b);
   for (;;) {
     const std::vector<Border> now = borders_of(rows, sets);
     std::vector<double> size(n, 0), perimeter(n, 0);
@@ -152,7 +156,8 @@ void merge_automatically(PatchMerge& merge, const Surface& surface, double h, do
     bool joined = false;
     std::vector<char> changed(n, 0);  // what a set that changed is like is known in the next round
     for (int i : small) {
-      if (best[i] < 0 || changed[now[best[i]].a] || changed[now[best[i]].b]) continue;
+      if (best[i] < 0 || now[best[i]].turn > steepest * now[best[i]].length) continue;
+      if (changed[now[best[i]].a] || changed[now[best[i]].b]) continue;
       changed[now[best[i]].a] = changed[now[best[i]].b] = joined = true;
       sets.join(now[best[i]].a, now[best[i]].b);
     }

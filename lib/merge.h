@@ -22,9 +22,10 @@ PatchMerge no_merge(const Surface& surface);
 void merge_groups(PatchMerge& merge, const std::vector<std::vector<int>>& groups);
 
 /// Merges patches that are tangent, the normals on both sides of their common border differing by at most
-/// `angle` radians over 99 % of its length; then, smallest first, patches that are smaller than the mesh size
+/// `angle` radians over 95 % of its length; then, smallest first, patches that are smaller than the mesh size
 /// h (twice the area over the perimeter, which is half a square's side and a strip's width, is below h / 2)
-/// into the neighbour to which they turn least. A merged patch has the label of its largest member.
+/// into the neighbour to which they turn least, if that is by at most 60 degrees. A merged patch has the
+/// label of its largest member.
 void merge_automatically(PatchMerge& merge, const Surface& surface, double h, double angle);
 
 }  // namespace meshpipe
