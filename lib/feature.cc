@@ -41,10 +41,11 @@ class Creases {
       if (star_[v] < 0 || o < 0) star_[v] = h;
       sum += length(h);
       if (o >= 0) angle_[h] = angle(normal[h / 3], normal[o / 3]);
-      given_[h] = o >= 0 && given && (*given)[h];
-      patch_[h] = given_[h] || (o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3]);
-      merged_[h] = o >= 0 && !patch_[h] && before && options.mode == FeatureOptions::automatic &&
-                   angle_[h] <= step && (*before)[h / 3] != (*before)[o / 3];
+      const bool border = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
+      const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
+      given_[h] = o >= 0 && !merged && given && (*given)[h];
+      patch_[h] = border || given_[h];
+      merged_[h] = merged && options.mode == FeatureOptions::automatic && angle_[h] <= step;
       if (o < 0 || patch_[h] || merged_[h]) anchor_[v] = anchor_[to(h)] = 1;
     }
     // what looks designed is a matter of the input's own edges, what is worth keeping of the target's; a

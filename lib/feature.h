@@ -28,7 +28,8 @@ struct FeatureReport {
 /// input. Otherwise free ends are dropped if shorter than 3 h. Pieces below 3 h are dropped in automatic
 /// mode. `before`, if not null, holds the patches before some were merged: in automatic mode no crease runs
 /// along a border that vanished, unless it bends by more than 60 degrees. `given`, if not null, marks
-/// half-edges (both, where there are two) that are model edges in any mode. Throws like opposite_halfedges.
+/// half-edges (both, where there are two) that are model edges in any mode, but for borders that vanished.
+/// Throws like opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<char>* given = nullptr);

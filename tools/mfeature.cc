@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "formats/groups.h"
+#include "formats/model_edges.h"
 #include "lib/feature.h"
 #include "lib/merge.h"
 #include "lib/size.h"
@@ -49,7 +50,7 @@ void relabel(Stream& stream, const PatchMerge& merge, const std::vector<PatchGro
 int main(int argc, char** argv) {
   FeatureOptions options;
   std::string angles = "auto";
-  std::string group_file;
+  std::string group_file, edge_file;
   bool merge_auto = false;
   double triangles = 0;
   return run_tool(
@@ -72,6 +73,9 @@ int main(int argc, char** argv) {
             ->type_name("N");
         app.add_option("--merge", group_file, "make one patch of each group of patches in this file")
             ->type_name("FILE");
+        app.add_option("--edges", edge_file,
+                       "the lines of this mesh are model edges too; none: nor are those of the input's file")
+            ->type_name("FILE|none");
         app.add_flag("--merge-auto", merge_auto,
                      "merge patches that are tangent to each other, or smaller than the mesh size");
       },
@@ -100,12 +104,20 @@ int main(int argc, char** argv) {
         }
         io.report["patches_before"] = merge.patch.size();
         io.report["patches"] = merge.count();
-        const FeatureReport r = mark_features(surface, options, before.empty() ? nullptr : &before);
+        ModelSegments lines = edge_file == "none" ? ModelSegments() : read_model_edges(stream);
+        if (!edge_file.empty() && edge_file != "none") append(lines, segments_of(io.read(edge_file)));
+        write_model_edges(stream, lines);
+        std::vector<char> given(3 * surface.tris.size());
+        const std::vector<int> under = segments_under(surface, lines);
+        for (std::size_t h = 0; h < given.size(); ++h) given[h] = under[h] >= 0;
+        const FeatureReport r = mark_features(surface, options, before.empty() ? nullptr : &before, &given);
         io.say(std::to_string(r.model_edges) + " model edges: " + std::to_string(r.patch_edges) +
-               " between patches, " + std::to_string(r.crease_edges) + " on creases; " +
-               std::to_string(r.corners) + " corners");
+               " between patches, " +
+               (r.given_edges ? std::to_string(r.given_edges) + " given, " : std::string()) +
+               std::to_string(r.crease_edges) + " on creases; " + std::to_string(r.corners) + " corners");
         io.report["model_edges"] = r.model_edges;
         io.report["patch_edges"] = r.patch_edges;
+        io.report["given_edges"] = r.given_edges;
         io.report["crease_edges"] = r.crease_edges;
         io.report["corners"] = r.corners;
         io.write(stream);
