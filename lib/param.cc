@@ -102,6 +102,24 @@ class Search {
     if (!valid && options_.map == MapKind::conformal) valid = try_bends(uv);
     for (MapKind kind : {MapKind::harmonic, MapKind::convex})
       if (!valid && kind > options_.map) valid = try_circle(kind, uv);
+    if (!valid && options_.map != MapKind::conformal) {
+      // circles that shrink a limb below what doubles hold: a free border may not
+      std::vector<Vec2> other;
+      report_.used = MapKind::conformal;
+      if (try_bends(other)) {
+        uv = std::move(other);
+        valid = true;
+      }
+    }
+    if (!valid) uv.resize(part_.points.size());  // none if every system of equations was singular
+    if (!valid && report_.apart.empty()) {
+      // what has shrunk to nothing, from the border
+      std::vector<std::array<int, 2>> pairs;
+      for (const Tri& t : part_.tris)
+        if (orient2d(uv[t[0]], uv[t[1]], uv[t[2]]) <= 0)
+          pairs.push_back({t[0], origin(part_.tris, disk_.loops[0][0])});
+      report_.apart = sample(pairs);
+    }
     if (!valid)
       throw GoalMissed("no one-to-one map: " + std::to_string(count_inverted(part_.tris, uv)) + " of " +
                        std::to_string(part_.tris.size()) + " triangles of the convex map inverted or flat");
@@ -208,7 +226,9 @@ class Search {
 
   bool try_bends(std::vector<Vec2>& uv) {
     try {
-      for (double bend : {0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
+      for (double bend : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
+        if (bend == 0 && options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first)
+          continue;  // that was the map asked for
         uv = bent(bend);
         if (uv.empty() || (!valid_map(uv) && !repaired(uv))) continue;
         report_.bend = bend;
@@ -326,9 +346,12 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
         if (!missed && uneven > too_uneven && round < limb_rounds)
           n_parts = cut_along_limbs(surface, p, n_parts);
         if (n_parts == n && uneven > unresolved) {
-          // places that should be apart first; halves of the part if that has not helped
-          if (round >= limb_rounds) reports[p].apart.clear();
-          if (bisect_part(surface, p, n_parts, reports[p].apart)) ++n_parts;
+          // places that should be apart, and halves of the part; the latter first if the former has not
+          // helped
+          std::vector<std::array<int, 2>> choice[2] = {reports[p].apart, {}};
+          if (round >= limb_rounds) std::swap(choice[0], choice[1]);
+          if (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]))
+            ++n_parts;
         }
       }
       if (n_parts > n)
