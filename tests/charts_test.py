@@ -241,10 +241,12 @@ def all_maps(parts, name, work, more=()):
 
 
 def through_chain(source, parts):
-    chain = "mtopo -q | mfeature -q | mpartition -q | mmultiscale -q"
-    clean = f"mclean -q {source} -o {source}.clean 2>/dev/null || mclean -q --drop-nonorientable {source} -o {source}.clean"
-    command = f"set -o pipefail; ({clean}) && {chain} -o {parts}"
-    return subprocess.run(["bash", "-c", command.replace("mtopo -q", f"mtopo -q {source}.clean", 1)], capture_output=True, text=True)
+    clean = os.path.join(os.path.dirname(parts), "clean.ply")
+    command = (
+        f"set -o pipefail; (mclean -q {source} -o {clean} 2>/dev/null || mclean -q --drop-nonorientable {source} -o {clean}) &&"
+        f" mtopo -q {clean} | mfeature -q | mpartition -q | mmultiscale -q -o {parts}"
+    )
+    return subprocess.run(["bash", "-c", command], capture_output=True, text=True)
 
 
 def generated(work):
