@@ -18,10 +18,10 @@ struct Distance {
 
 /// Mean and RMS are taken from points spread evenly over each surface, `samples` at most on each. What is
 /// known from them is the start of a branch and bound: a ball of radius r about a point that is d away is at
-/// most d + r away, and a triangle is no farther from any one triangle of the other surface than its corners
-/// are. What may be farther than the farthest point known is divided, down to a bound of 5 % or 1e-4 of the
-/// diagonal, with at most 4 `samples` more points a side. Deterministic at any thread count. Precondition:
-/// both have triangles.
+/// most d + r away; a triangle is no farther from any one triangle of the other surface than its corners are,
+/// nor than the part of the other surface that covers it, seen along its normal. What may be farther than the
+/// farthest point known is divided, down to a bound of 5 % or 1e-4 of the diagonal, with at most 4 `samples`
+/// more points a side. Deterministic at any thread count. Precondition: both have triangles.
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                           const Bvh& mesh_tree, int samples = 20000);
 
