@@ -210,7 +210,7 @@ double OneSided::overlay_upper(const Piece& piece, double enough) const {
                tip_y = dot(c[2] - c[0], y);
   if (!(area > 0)) return infinity;
   double covered = 0, highest = 0;
-  const Vec3 margin{enough, enough, enough};
+  const Vec3 margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
   to_tree_.overlapping(
       {lower(lower(c[0], c[1]), c[2]) - margin, meshpipe::upper(meshpipe::upper(c[0], c[1]), c[2]) + margin},
       [&](int t) {
@@ -320,16 +320,16 @@ void OneSided::bound(int budget) {
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                           const Bvh& mesh_tree, int samples) {
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
-  // no more than what a few points in every triangle are
-  const long long enough = 2 * ((long long)reference.tris.size() + (long long)mesh.tris.size()) + 500;
+  // small meshes need no more than this for the mean to be right within a percent
+  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 2 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   OneSided there(mesh, mesh_tree, reference, reference_tree, d),
       back(reference, reference_tree, mesh, mesh_tree, d);
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
-  there.bound(4 * n);
+  there.bound(8 * samples);
   back.known = there.largest;
-  back.bound(4 * n);
+  back.bound(8 * samples);
   const OneSided& worse = there.largest >= back.largest ? there : back;
   Distance r;
   r.to_reference = there.largest / unit;

@@ -20,10 +20,10 @@ struct Distance {
 /// known from them is the start of a branch and bound: a ball of radius r about a point that is d away is at
 /// most d + r away; a triangle is no farther from any one triangle of the other surface than its corners are,
 /// nor than the part of the other surface that covers it, seen along its normal. What may be farther than the
-/// farthest point known is divided, down to a bound of 5 % or 1e-4 of the diagonal, with at most 4 `samples`
+/// farthest point known is divided, down to a bound of 5 % or 1e-4 of the diagonal, with at most 8 `samples`
 /// more points a side. Deterministic at any thread count. Precondition: both have triangles.
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples = 20000);
+                          const Bvh& mesh_tree, int samples = 10000);
 
 /// Distances of the mesh's vertices from a surface (0 for vertices that no triangle uses). `mesh_tree` is the
 /// mesh's, `tree` the surface's.

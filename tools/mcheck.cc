@@ -18,7 +18,7 @@ namespace {
 struct Options {
   std::string reference, require = default_contract, histogram, culprits;
   bool accept = false;
-  int samples = 20000;
+  int samples = 10000;
 };
 
 /// Files as STL hold every triangle on its own.
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
     auto report = [&](const char* name, auto& value, const char* what) {
       return app.add_option(name, value, what)->group("Reports");
     };
-    report("--samples", o.samples, "points on each surface for the distance (default 20000)")
+    report("--samples", o.samples, "points on each surface for the distance (default 10000)")
         ->check(CLI::Range(1, 100000000));
     report("--histogram", o.histogram, "draw kappa and angles of both meshes")->type_name("FILE.svg");
     report("--culprits", o.culprits, "write the triangles at fault")->type_name("FILE");
