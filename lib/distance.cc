@@ -355,6 +355,55 @@ std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, con
   return distances;
 }
 
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree) {
+  std::vector<double> errors(mesh.tris.size(), 0);
+  struct Found {
+    int triangle;
+    double distance;
+  };
+  for (const bool back : {false, true}) {
+    const Mesh& from = back ? reference : mesh;
+    const Bvh &from_tree = back ? reference_tree : mesh_tree, &tree = back ? mesh_tree : reference_tree;
+    const auto& order = from_tree.order();
+    const int n = (int)order.size(), chunks = (n + chunk - 1) / chunk;
+    constexpr double weights[7][3] = {{1, 0, 0},   {0, 1, 0},   {0, 0, 1},  {1.0 / 3, 1.0 / 3, 1.0 / 3},
+                                      {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}};
+    std::vector<std::vector<Found>> found(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c) {
+      Seeker seek(tree);
+      for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+        const Tri& t = from.tris[order[i]];
+        for (const auto& w : weights) {
+          const Near near =
+              seek(w[0] * from.points[t[0]] + w[1] * from.points[t[1]] + w[2] * from.points[t[2]]);
+          if (near.distance > 0) found[c].push_back({back ? near.face : order[i], near.distance});
+        }
+      }
+    }
+    for (const auto& part : found)
+      for (const Found& f : part) errors[f.triangle] = std::max(errors[f.triangle], f.distance);
+  }
+  return errors;
+}
+
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit) {
+  std::vector<double> factor(size.size(), 1);
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t) {
+    if (errors[t] <= 0.6 * limit) continue;  // well within, since the next mesh is another
+    for (int v : mesh.tris[t]) factor[v] = std::min(factor[v], std::max(0.25, 0.6 * limit / errors[t]));
+  }
+  // the neighbours too, or a dip as narrow as a triangle would be lost in the next mesh
+  std::vector<double> refined = size;
+  for (const Tri& t : mesh.tris) {
+    const double least = std::min({factor[t[0]], factor[t[1]], factor[t[2]]});
+    for (int v : t) refined[v] = std::min(refined[v], least * size[v]);
+  }
+  return refined;
+}
+
 double curve_distance(const Mesh& a, const Mesh& b) {
   if (a.tris.empty() && b.tris.empty()) return 0;
   if (a.tris.empty() || b.tris.empty()) return infinity;

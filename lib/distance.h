@@ -29,6 +29,18 @@ Distance distance_between(const Mesh& reference, const Bvh& reference_tree, cons
 /// mesh's, `tree` the surface's.
 std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree);
 
+/// How far the two surfaces are apart at every triangle of the mesh, a length: the largest distance of its
+/// centre and sides' middles from the reference, and of the reference's vertices, centres and sides' middles
+/// from it, where it is the nearest.
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree);
+
+/// The size (per vertex) that brings the mesh nearer to within `limit` of the reference: smaller in proportion
+/// where a triangle's error is larger, by no more than a factor of 4. (Where a surface is smooth the error goes
+/// with the square of the size, but on its ridges and tips only with the size.) Other sizes stay.
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit);
+
 /// Edges as triangles (a, b, b), which a Bvh takes as the segments that they are: half-edges for which
 /// wanted(h). Linear.
 template <class Wanted>
