@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "lib/error.h"
+#include "lib/forecast.h"
 #include "lib/graph.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
@@ -27,14 +28,12 @@ struct Component {
   Region whole;
 };
 
-/// How a labelling compares: fewer parts first, long ones counted twice, then the cheaper cut.
+/// How a labelling compares: fewer charts in the end first, then the cheaper cut.
 struct Labelling {
   std::vector<int> label;
   int burden = 0, parts = 0;
   std::int64_t cost = 0;
-  bool operator<(const Labelling& o) const {
-    return std::tie(burden, parts, cost) < std::tie(o.burden, o.parts, o.cost);
-  }
+  bool operator<(const Labelling& o) const { return std::tie(burden, cost) < std::tie(o.burden, o.cost); }
 };
 
 /// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
@@ -225,32 +224,45 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
   return {};
 }
 
-/// A part counts twice if it is so long that the multiscale partitioner will have to cut it: eta > 4, where
-/// the border along the triangles' edges is about 15 % longer than it will be.
-int burden(const Region& r) { return r.faces == 0 ? 0 : r.aspect() > 3 ? 2 : 1; }
+/// How many charts a part will come to: the multiscale partitioner halves one whose map would be too uneven,
+/// if it is a tree or tube and no sponge, and mparam cuts one whose map overlaps until it does not. The limit
+/// is below what is admissible, since the forecast is for a border along the triangles' edges.
+int burden(const Region& r, const Forecast& f) {
+  constexpr double uneven = 1e7;
+  constexpr int holes_of_a_cut = 4;
+  return 1 + f.crossings + (f.unevenness > uneven ? 1 + r.loops / holes_of_a_cut : 0);
+}
 
 /// Joins neighbours, those with the longest shared border first, while their union maps to the plane and is a
-/// lesser burden.
-Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
+/// lesser burden. Leaves the burden of each label in `load`, 0 where there is none any more.
+Regions merge(const Component& c, const Forecaster& forecaster, std::vector<int>& label, Regions regions,
+              std::vector<int>& load) {
   std::vector<Shared> shared = shared_borders(c, label, regions);
+  load.clear();
+  for (int l = 0; l < (int)regions.region.size(); ++l)
+    load.push_back(burden(regions.region[l], forecaster.of(label, l, l, regions.border[l])));
   Joiner joiner(c.mesh, c.opposite, label, std::move(regions));
   std::vector<std::pair<int, int>> refused;  // sorted
   for (;;) {
     std::sort(shared.begin(), shared.end(), [](const Shared& p, const Shared& q) {
       return std::tuple(-p.weight, p.a, p.b) < std::tuple(-q.weight, q.a, q.b);
     });
+    int together = 0;
     auto found = std::find_if(shared.begin(), shared.end(), [&](const Shared& s) {
       auto place = std::lower_bound(refused.begin(), refused.end(), std::pair(s.a, s.b));
       if (place != refused.end() && *place == std::pair(s.a, s.b)) return false;
-      const Region r = joiner.joined(s.a, s.b);
-      const auto& all = joiner.regions().region;
-      if (r.maps_to_the_plane() && burden(r) < burden(all[s.a]) + burden(all[s.b])) return true;
+      if (const Region r = joiner.joined(s.a, s.b); r.maps_to_the_plane()) {
+        together = burden(r, forecaster.of(label, s.a, s.b, joiner.border_of_union()));
+        if (together < load[s.a] + load[s.b]) return true;
+      }
       refused.insert(place, {s.a, s.b});
       return false;
     });
     if (found == shared.end()) break;
     const int a = found->a, b = found->b;
     joiner.join(a, b);
+    load[a] = together;
+    load[b] = 0;
     std::erase_if(refused,
                   [&](auto& p) { return p.first == a || p.second == a || p.first == b || p.second == b; });
     shared = shared_borders(c, label, joiner.regions());
@@ -271,20 +283,67 @@ std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, cons
   return cost;
 }
 
-Labelling finish(const Component& c, std::vector<int> label, int seed) {
+/// Halves the parts whose maps would overlap. Returns true if there was one.
+bool halve_tangled(const Component& c, const Forecaster& forecaster, std::vector<int>& label,
+                   const Regions& regions, int seed) {
+  constexpr int few = 100;  // triangles
+  int n = (int)regions.region.size();
+  std::vector<int> tangled(n, -1);
+  std::vector<std::vector<int>> triangles;
+  for (int l = 0; l < (int)tangled.size(); ++l)
+    if (regions.region[l].faces > few && forecaster.of(label, l, l, regions.border[l]).crossings > 0)
+      tangled[l] = (int)triangles.size(), triangles.emplace_back();
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (tangled[label[t]] >= 0) triangles[tangled[label[t]]].push_back((int)t);
+  for (const auto& ts : triangles) bisect(c, ts, label, n++, seed);
+  return !triangles.empty();
+}
+
+Labelling finish(const Component& c, const Forecaster& forecaster, std::vector<int> label, int seed) {
   Labelling l;
   Regions r = make_admissible(c, label, seed);
+  for (int round = 0; round < 4 && halve_tangled(c, forecaster, label, r, seed); ++round)
+    r = make_admissible(c, label, seed);
   if (r.region.empty()) return l;
-  r = merge(c, label, std::move(r));
-  for (const Region& x : r.region) {
-    l.parts += x.faces > 0;
-    l.burden += burden(x);
+  std::vector<int> load;
+  r = merge(c, forecaster, label, std::move(r), load);
+  for (int x : load) {
+    l.parts += x > 0;
+    l.burden += x;
   }
   for (const Shared& s : shared_borders(c, label, r)) l.cost += s.weight;
   l.cost += bridge_cost(c, label, r);
   separate_pieces(c.opposite, label);
   l.label = std::move(label);
   return l;
+}
+
+/// The two sides of the surface as seen from far away: the sign of the normal's component along `axis`,
+/// smoothed over a few per cent of the surface. Each limb is divided lengthwise, so that neither side has one
+/// that would shrink to nothing in the plane.
+std::vector<int> two_sides(const Component& c, Vec3 axis) {
+  const int n = (int)c.mesh.tris.size(), steps = std::clamp((int)std::sqrt(n) / 8, 4, 60);
+  std::vector<double> facing(n), smooth(n);
+  for (int t = 0; t < n; ++t) {
+    const Tri& v = c.mesh.tris[t];
+    facing[t] =
+        dot(normalized(area_vector(c.mesh.points[v[0]], c.mesh.points[v[1]], c.mesh.points[v[2]])), axis);
+  }
+  for (int step = 0; step < steps; ++step) {
+    for (int t = 0; t < n; ++t) {
+      double sum = c.area[t] * facing[t], weight = c.area[t];
+      for (int h = 3 * t; h < 3 * t + 3; ++h)
+        if (int o = c.opposite[h] / 3; c.opposite[h] >= 0) {
+          sum += c.area[o] * facing[o];
+          weight += c.area[o];
+        }
+      smooth[t] = weight > 0 ? sum / weight : 0;
+    }
+    facing.swap(smooth);
+  }
+  std::vector<int> label(n);
+  for (int t = 0; t < n; ++t) label[t] = facing[t] < 0;
+  return label;
 }
 
 /// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
@@ -296,28 +355,35 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
 
   // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear. Joining neighbours
   // afterwards makes the number of parts asked for uncritical: about G + 2 does best
-  const int trials = std::clamp(500000 / n, 6, 40), genus = c.whole.genus();
+  const int most_trials = std::clamp(500000 / n, 3, 40), genus = c.whole.genus();
   std::vector<int> ks{genus + 2};
   for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
     ks.push_back(genus + 2 + d);
     ks.push_back(genus + 2 - d);
   }
   const double balances[] = {0.3, 0.1, 0.5};
-  std::vector<Labelling> tried(trials);
-  std::exception_ptr failure;  // must not leave the parallel region by itself
+  const Forecaster forecaster(c.mesh, c.opposite);
+  constexpr int batch = 3, bound = 2;  // one part does not do
+  const Vec3 axes[batch] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Labelling best;
+  for (int tried = 0; tried < most_trials && best.burden != bound; tried += batch) {
+    Labelling found[2 * batch];
+    std::exception_ptr failure;  // must not leave the parallel region by itself
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < trials; ++i) try {
-      const int k = ks[i % ks.size()], seed = options.seed + i;
-      tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
-    } catch (...) {
+    for (int i = 0; i < batch; ++i) try {
+        const int trial = tried + i, seed = options.seed + trial, k = ks[trial % ks.size()];
+        found[i] =
+            finish(c, forecaster, partition_graph(graph, k, balances[trial / ks.size() % 3], seed), seed);
+        if (tried == 0) found[batch + i] = finish(c, forecaster, two_sides(c, axes[i]), seed);
+      } catch (...) {
 #pragma omp critical
-      failure = std::current_exception();
-    }
-  if (failure) std::rethrow_exception(failure);
-  auto best = tried.begin();
-  for (auto l = tried.begin(); l != tried.end(); ++l)
-    if (l->parts > 0 && (best->parts == 0 || *l < *best)) best = l;
-  return std::move(*best);
+        failure = std::current_exception();
+      }
+    if (failure) std::rethrow_exception(failure);
+    for (Labelling& l : found)
+      if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+  }
+  return best;
 }
 
 Component make_component(const Surface& surface, SubMesh sub) {
