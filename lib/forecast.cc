@@ -46,23 +46,6 @@ std::vector<Loop> loops_of(const Mesh& mesh, const std::vector<int>& opposite, s
   return loops;
 }
 
-/// The edges that a cell has in common with another, or with the rim.
-struct Contact {
-  double length = 0;
-  Vec3 middle,
-      across;  // their first moment; the sum of their normals outward in the triangle, of their length
-  void add(const Mesh& mesh, int h) {
-    const Vec3 p = mesh.points[origin(mesh.tris, h)], q = mesh.points[target(mesh.tris, h)];
-    const double l = norm(q - p);
-    middle = middle + l * lerp(p, q, 0.5);
-    length += l;
-    across = across + cross(q - p, normalized(area_vector(p, q, mesh.points[origin(mesh.tris, prev(h))])));
-  }
-  Vec3 place() const { return (1 / length) * middle; }
-  /// Its width for a flow in this direction: a ragged contact conducts like a straight one.
-  double width(Vec3 direction) const { return std::max(dot(across, normalized(direction)), 0.1 * length); }
-};
-
 bool cross_each_other(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   return cross(b - a, c - a) * cross(b - a, d - a) < 0 && cross(d - c, a - c) * cross(d - c, b - c) < 0;
 }
@@ -99,65 +82,25 @@ int outline_crossings(const Mesh& mesh, const Loop& rim, const std::vector<doubl
 
 }  // namespace
 
+void CellContact::add(const Mesh& mesh, int h) {
+  const Vec3 p = mesh.points[origin(mesh.tris, h)], q = mesh.points[target(mesh.tris, h)];
+  const double l = norm(q - p);
+  middle = middle + l * lerp(p, q, 0.5);
+  length += l;
+  across = across + cross(q - p, normalized(area_vector(p, q, mesh.points[origin(mesh.tris, prev(h))])));
+}
+
+double CellContact::width(Vec3 direction) const {
+  return std::max(dot(across, normalized(direction)), 0.1 * length);
+}
+
 Forecaster::Forecaster(const Mesh& mesh, const std::vector<int>& opposite)
     : mesh_(mesh), opposite_(opposite) {
-  grow_cells();
-  spread_curvature();
-}
-
-/// Breadth first to an equal share of the area each.
-void Forecaster::grow_cells() {
-  const int n = (int)mesh_.tris.size(), wanted = std::clamp(n / 20, 8, 2000);
-  double total = 0;
-  for (const Tri& v : mesh_.tris) {
-    area_.push_back(0.5 * norm(area_vector(mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]])));
-    total += area_.back();
-  }
-  cell_.assign(n, -1);
-  std::vector<int> front;
-  for (int seed = 0; seed < n; ++seed) {
-    if (cell_[seed] >= 0) continue;
-    front.assign(1, seed);
-    cell_[seed] = n_cells_;
-    double area = 0;
-    std::size_t at = 0;
-    for (; at < front.size() && area < total / wanted; ++at) {
-      area += area_[front[at]];
-      for (int h = 3 * front[at]; h < 3 * front[at] + 3; ++h)
-        if (int o = opposite_[h]; o >= 0 && cell_[o / 3] < 0) {
-          cell_[o / 3] = n_cells_;
-          front.push_back(o / 3);
-        }
-    }
-    for (; at < front.size(); ++at) cell_[front[at]] = -1;
-    ++n_cells_;
-  }
-  // what is left between the others joins one of them
-  std::vector<double> size(n_cells_, 0);
-  for (int t = 0; t < n; ++t) size[cell_[t]] += area_[t];
-  for (bool again = true; again;) {
-    again = false;
-    for (int t = 0; t < n; ++t) {
-      if (size[cell_[t]] >= 0.3 * total / wanted) continue;
-      for (int h = 3 * t; h < 3 * t + 3; ++h)
-        if (int o = opposite_[h]; o >= 0 && size[cell_[o / 3]] >= 0.3 * total / wanted) {
-          cell_[t] = cell_[o / 3];
-          again = true;
-          break;
-        }
-    }
-  }
-  for (int h = 0; h < 3 * n; ++h)
-    if (int o = opposite_[h]; o >= 0 && cell_[h / 3] < cell_[o / 3]) crossing_.push_back(h);
-  std::sort(crossing_.begin(), crossing_.end(), [&](int g, int h) {
-    return std::tuple(cell_[g / 3], cell_[opposite_[g] / 3], g) <
-           std::tuple(cell_[h / 3], cell_[opposite_[h] / 3], h);
-  });
-}
-
-/// The angle defect of an inner vertex goes to its triangles by their share of its angles.
-void Forecaster::spread_curvature() {
   const int n = (int)mesh_.tris.size();
+  for (const Tri& v : mesh_.tris)
+    area_.push_back(0.5 * norm(area_vector(mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]])));
+  cells_ = grow_cells(opposite_, area_, std::clamp(n / 20, std::min(8, n / 2), 2000));
+  // the angle defect of an inner vertex goes to its triangles by their share of its angles
   round_.assign(mesh_.points.size(), 0);
   on_border_.assign(mesh_.points.size(), 0);
   angle_.resize(3 * n);
@@ -171,27 +114,57 @@ void Forecaster::spread_curvature() {
   for (int h = 0; h < 3 * n; ++h)
     if (int v = origin(mesh_.tris, h); !on_border_[v] && round_[v] > 0)
       curvature_[h / 3] += (2 * pi / round_[v] - 1) * angle_[h];
+  start_.assign(cells_.n + 1, 0);
+  for (int c : cells_.of) ++start_[c + 1];
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  member_.resize(n);
+  std::vector<int> fill(start_.begin(), start_.end() - 1);
+  for (int t = 0; t < n; ++t) member_[fill[cells_.of[t]]++] = t;
+  for (int i = 0; i < (int)cells_.crossing.size(); ++i) {
+    const int h = cells_.crossing[i];
+    if (contact_.empty() || cells_.of[h / 3] != cells_.of[cells_.crossing[contact_.back().first] / 3] ||
+        cells_.of[opposite_[h] / 3] != cells_.of[opposite_[cells_.crossing[contact_.back().first]] / 3])
+      contact_.emplace_back().first = i;
+    contact_.back().last = i + 1;
+    contact_.back().add(mesh_, h);
+  }
+  for (int c = 0; c < cells_.n; ++c) whole_.push_back(gather(c, [](int) { return true; }));
+}
+
+template <class Inside>
+Forecaster::Bulk Forecaster::gather(int cell, Inside inside) const {
+  Bulk bulk;
+  for (int i = start_[cell]; i < start_[cell + 1]; ++i) {
+    const int t = member_[i];
+    if (!inside(t)) continue;
+    const Tri& v = mesh_.tris[t];
+    bulk.area += area_[t];
+    bulk.curvature += curvature_[t];
+    bulk.middle =
+        bulk.middle + (area_[t] / 3) * (mesh_.points[v[0]] + mesh_.points[v[1]] + mesh_.points[v[2]]);
+  }
+  return bulk;
 }
 
 Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::vector<int>& border) const {
   auto inside = [&](int t) { return label[t] == a || label[t] == b; };
-  std::vector<double> area(n_cells_, 0), charge(n_cells_, 0);
-  std::vector<Vec3> middle(n_cells_);
-  for (int t = 0; t < (int)label.size(); ++t) {
-    if (!inside(t)) continue;
-    const int c = cell_[t];
-    const Tri& v = mesh_.tris[t];
-    area[c] += area_[t];
-    charge[c] -= curvature_[t];
-    middle[c] = middle[c] + (area_[t] / 3) * (mesh_.points[v[0]] + mesh_.points[v[1]] + mesh_.points[v[2]]);
+  // a cell is divided if the border runs inside it; the others are taken as they are
+  std::vector<char> divided(cells_.n, 0);
+  for (int h : border)
+    if (int o = opposite_[h]; o >= 0 && cells_.of[h / 3] == cells_.of[o / 3]) divided[cells_.of[h / 3]] = 1;
+  std::vector<double> area(cells_.n, 0), charge(cells_.n, 0);
+  std::vector<Vec3> middle(cells_.n);
+  std::vector<int> unknown(cells_.n, -1), cells;
+  for (int c = 0; c < cells_.n; ++c) {
+    if (!divided[c] && !inside(member_[start_[c]])) continue;
+    const Bulk bulk = divided[c] ? gather(c, inside) : whole_[c];
+    if (!(bulk.area > 0)) continue;
+    unknown[c] = (int)cells.size();
+    cells.push_back(c);
+    area[c] = bulk.area;
+    charge[c] = -bulk.curvature;
+    middle[c] = (1 / bulk.area) * bulk.middle;
   }
-  std::vector<int> unknown(n_cells_, -1), cells;
-  for (int c = 0; c < n_cells_; ++c)
-    if (area[c] > 0) {
-      unknown[c] = (int)cells.size();
-      cells.push_back(c);
-      middle[c] = (1 / area[c]) * middle[c];
-    }
   // the curvature of a vertex on the border is in its turn instead: the angle missing to a half turn, in the
   // order of the loop's edges at their origins
   std::vector<Loop> loops = loops_of(mesh_, opposite_, border, inside);
@@ -202,7 +175,7 @@ Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::
       double fan = angle_[h];
       for (int g = prev(h); opposite_[g] >= 0 && inside(opposite_[g] / 3); g = prev(opposite_[g]))
         fan += angle_[opposite_[g]];
-      if (!on_border_[v] && round_[v] > 0) charge[cell_[h / 3]] += (2 * pi / round_[v] - 1) * fan;
+      if (!on_border_[v] && round_[v] > 0) charge[cells_.of[h / 3]] += (2 * pi / round_[v] - 1) * fan;
       turn.push_back(pi - fan);
     }
     return turn;
@@ -220,14 +193,14 @@ Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::
     // a hole turns once round the other way, in all
     for (std::size_t i = 0; i < here.size(); ++i) {
       const int h = loops[l].half_edges[i];
-      charge[cell_[h / 3]] -= here[i] + 2 * pi * edge_length(mesh_, h) / loops[l].length;
+      charge[cells_.of[h / 3]] -= here[i] + 2 * pi * edge_length(mesh_, h) / loops[l].length;
     }
   }
 
   const Loop& rim = loops[longest];
-  std::vector<Contact> with_rim(n_cells_);
-  for (int h : rim.half_edges) with_rim[cell_[h / 3]].add(mesh_, h);
-  std::vector<double> rim_weight(n_cells_, 0), diagonal(cells.size(), 0);
+  std::vector<CellContact> with_rim(cells_.n);
+  for (int h : rim.half_edges) with_rim[cells_.of[h / 3]].add(mesh_, h);
+  std::vector<double> rim_weight(cells_.n, 0), diagonal(cells.size(), 0);
   std::vector<Entry<double>> entries;
   for (int c : cells)
     if (with_rim[c].length > 0) {
@@ -235,13 +208,16 @@ Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::
       diagonal[unknown[c]] = rim_weight[c] =
           with_rim[c].width(way) / std::max(norm(way), 0.1 * std::sqrt(area[c]));
     }
-  for (std::size_t i = 0, j; i < crossing_.size(); i = j) {
-    const int c = cell_[crossing_[i] / 3], d = cell_[opposite_[crossing_[i]] / 3];
-    Contact contact;
-    for (j = i; j < crossing_.size(); ++j) {
-      const int h = crossing_[j], o = opposite_[h];
-      if (cell_[h / 3] != c || cell_[o / 3] != d) break;
-      if (inside(h / 3) && inside(o / 3)) contact.add(mesh_, h);
+  for (const CellContact& both : contact_) {
+    const int c = cells_.of[cells_.crossing[both.first] / 3];
+    const int d = cells_.of[opposite_[cells_.crossing[both.first]] / 3];
+    if (unknown[c] < 0 || unknown[d] < 0) continue;
+    CellContact contact = both;
+    if (divided[c] || divided[d]) {
+      contact = {};
+      for (int i = both.first; i < both.last; ++i)
+        if (const int h = cells_.crossing[i]; inside(h / 3) && inside(opposite_[h] / 3))
+          contact.add(mesh_, h);
     }
     if (!(contact.length > 0)) continue;
     const Vec3 m = contact.place();
@@ -272,7 +248,7 @@ Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::
   forecast.unevenness = std::exp(2 * (high - low));
   const std::size_t n = rim.half_edges.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const int h = rim.half_edges[i], c = cell_[h / 3];
+    const int h = rim.half_edges[i], c = cells_.of[h / 3];
     const double flux = -rim_weight[c] * scale[unknown[c]] * edge_length(mesh_, h) / with_rim[c].length;
     turn[i] += flux / 2;
     turn[(i + 1) % n] += flux / 2;

@@ -8,9 +8,11 @@
 #include <string>
 #include <tuple>
 
+#include "lib/cells.h"
 #include "lib/error.h"
 #include "lib/forecast.h"
 #include "lib/graph.h"
+#include "lib/handles.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
@@ -18,13 +20,14 @@
 namespace meshpipe {
 namespace {
 
-/// A component of the surface with its dual graph: triangles joined across edges, weighed by the edge's
+/// A component of the surface with what its graph is made of: cells joined across edges, weighed by their
 /// length.
 struct Component {
   SubMesh mesh;
   std::vector<int> opposite;
   std::vector<double> area;  // of each triangle
   std::vector<int> weight;   // of each half-edge, as in the graph: the cost of a cut along it
+  Cells cells;
   Region whole;
 };
 
@@ -68,24 +71,53 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
   return weight;
 }
 
-/// The dual graph of the triangles with this label (all of them if `label` is empty), on their own numbers.
-Graph dual_graph(const Component& c, const std::vector<int>& triangles, const std::vector<int>& local) {
-  Graph g;
-  g.start.push_back(0);
-  double mean = 0;
-  for (int t : triangles) mean += c.area[t];
-  mean /= (double)triangles.size();
-  for (int t : triangles) {
-    for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      int o = c.opposite[h];
-      if (o < 0 || local[o / 3] < 0) continue;
-      g.adjacency.push_back(local[o / 3]);
-      g.edge_weight.push_back(c.weight[h]);
+/// Cuts the triangles of a label into k parts by METIS, along borders of cells: the first part keeps the
+/// label, the others get next, next + 1, ... False if METIS leaves them together.
+bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, double imbalance, int seed,
+               int next) {
+  std::vector<int> node(c.cells.n, -1);
+  std::vector<double> area(c.cells.n, 0);
+  int n = 0;
+  double total = 0;
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (label[t] == mine) {
+      const int cell = c.cells.of[t];
+      if (node[cell] < 0) node[cell] = n++;
+      area[cell] += c.area[t];
+      total += c.area[t];
     }
-    g.start.push_back((int)g.adjacency.size());
-    g.vertex_weight.push_back(mean > 0 ? (int)std::clamp(std::round(10 * c.area[t] / mean), 1.0, 1000.0) : 1);
+  struct Link {
+    int a, b, weight;
+  };
+  std::vector<Link> links;
+  for (int h : c.cells.crossing) {
+    const int o = c.opposite[h];
+    if (label[h / 3] != mine || label[o / 3] != mine) continue;
+    const int a = node[c.cells.of[h / 3]], b = node[c.cells.of[o / 3]];
+    if (links.empty() || links.back().a != a || links.back().b != b) links.push_back({a, b, 0});
+    links.back().weight += c.weight[h];
   }
-  return g;
+  Graph g;
+  g.start.assign(n + 1, 0);
+  for (const Link& l : links) ++g.start[l.a + 1], ++g.start[l.b + 1];
+  std::partial_sum(g.start.begin(), g.start.end(), g.start.begin());
+  g.adjacency.resize(g.start.back());
+  g.edge_weight.resize(g.start.back());
+  std::vector<int> fill(g.start.begin(), g.start.end() - 1);
+  for (const Link& l : links)
+    for (auto [from, to] : {std::pair(l.a, l.b), std::pair(l.b, l.a)}) {
+      g.adjacency[fill[from]] = to;
+      g.edge_weight[fill[from]++] = l.weight;
+    }
+  g.vertex_weight.assign(n, 1);
+  for (int cell = 0; cell < c.cells.n; ++cell)
+    if (node[cell] >= 0 && total > 0)
+      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * area[cell] * n / total), 1.0, 1000.0);
+  const std::vector<int> part = partition_graph(g, k, imbalance, seed);
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (label[t] == mine)
+      if (int p = part[node[c.cells.of[t]]]; p > 0) label[t] = next + p - 1;
+  return std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) != part.end();
 }
 
 /// Borders between labels: (a, b, weight), a < b, each pair once, sorted.
@@ -185,16 +217,13 @@ bool open_pinches(const Component& c, std::vector<int>& label, const Regions& re
   return changed;
 }
 
-/// Halves the triangles by METIS, or by their numbers if it leaves them together.
-void bisect(const Component& c, const std::vector<int>& triangles, std::vector<int>& label, int new_label,
-            int seed) {
-  std::vector<int> local(c.mesh.tris.size(), -1);
-  for (std::size_t i = 0; i < triangles.size(); ++i) local[triangles[i]] = (int)i;
-  std::vector<int> part = partition_graph(dual_graph(c, triangles, local), 2, 0.3, seed);
-  if (std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) == part.end())
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = 2 * i < part.size();
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (part[i]) label[triangles[i]] = new_label;
+/// Halves the triangles of a label by METIS, or by their numbers if it leaves them together.
+void bisect(const Component& c, std::vector<int>& label, int mine, int new_label, int seed) {
+  if (cut_label(c, label, mine, 2, 0.3, seed, new_label)) return;
+  const auto all = std::count(label.begin(), label.end(), mine);
+  std::ptrdiff_t seen = 0;
+  for (int& l : label)
+    if (l == mine && 2 * seen++ < all) l = new_label;
 }
 
 /// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
@@ -212,14 +241,9 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
     if (absorb_fragments(c, label, r, min_faces, min_area)) r = regions_of_pieces();
     for (int i = 0; i < 8 && open_pinches(c, label, r); ++i) r = regions_of_pieces();
     int n = (int)r.region.size();
-    std::vector<int> bad(n, -1);
-    std::vector<std::vector<int>> triangles;
-    for (int l = 0; l < n; ++l)
-      if (!r.region[l].maps_to_the_plane()) bad[l] = (int)triangles.size(), triangles.emplace_back();
-    if (triangles.empty()) return r;
-    for (int t = 0; t < n_faces; ++t)
-      if (bad[label[t]] >= 0) triangles[bad[label[t]]].push_back(t);
-    for (const auto& ts : triangles) bisect(c, ts, label, n++, seed);
+    for (int l = 0; l < (int)r.region.size(); ++l)
+      if (!r.region[l].maps_to_the_plane()) bisect(c, label, l, n++, seed);
+    if (n == (int)r.region.size()) return r;
   }
   return {};
 }
@@ -288,15 +312,10 @@ bool halve_tangled(const Component& c, const Forecaster& forecaster, std::vector
                    const Regions& regions, int seed) {
   constexpr int few = 100;  // triangles
   int n = (int)regions.region.size();
-  std::vector<int> tangled(n, -1);
-  std::vector<std::vector<int>> triangles;
-  for (int l = 0; l < (int)tangled.size(); ++l)
+  for (int l = 0; l < (int)regions.region.size(); ++l)
     if (regions.region[l].faces > few && forecaster.of(label, l, l, regions.border[l]).crossings > 0)
-      tangled[l] = (int)triangles.size(), triangles.emplace_back();
-  for (std::size_t t = 0; t < label.size(); ++t)
-    if (tangled[label[t]] >= 0) triangles[tangled[label[t]]].push_back((int)t);
-  for (const auto& ts : triangles) bisect(c, ts, label, n++, seed);
-  return !triangles.empty();
+      bisect(c, label, l, n++, seed);
+  return n > (int)regions.region.size();
 }
 
 Labelling finish(const Component& c, const Forecaster& forecaster, std::vector<int> label, int seed) {
@@ -349,13 +368,11 @@ std::vector<int> two_sides(const Component& c, Vec3 axis) {
 /// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
 Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   const int n = (int)c.mesh.tris.size();
-  std::vector<int> all(n);
-  std::iota(all.begin(), all.end(), 0);
-  const Graph graph = dual_graph(c, all, all);
-
-  // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear. Joining neighbours
-  // afterwards makes the number of parts asked for uncritical: about G + 2 does best
-  const int most_trials = std::clamp(500000 / n, 3, 40), genus = c.whole.genus();
+  // Joining neighbours afterwards makes the number of parts asked for uncritical: about G + 2 does best. On
+  // a large surface the trials end with a labelling that is good enough
+  const int genus = c.whole.genus();
+  const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 40),
+            enough = n > 20000 ? std::max(2, genus + 1) : 2;
   std::vector<int> ks{genus + 2};
   for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
     ks.push_back(genus + 2 + d);
@@ -363,17 +380,18 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   }
   const double balances[] = {0.3, 0.1, 0.5};
   const Forecaster forecaster(c.mesh, c.opposite);
-  constexpr int batch = 3, bound = 2;  // one part does not do
+  constexpr int batch = 3;
   const Vec3 axes[batch] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Labelling best;
-  for (int tried = 0; tried < most_trials && best.burden != bound; tried += batch) {
+  for (int tried = 0; tried < most_trials && (best.parts == 0 || best.burden > enough); tried += batch) {
     Labelling found[2 * batch];
     std::exception_ptr failure;  // must not leave the parallel region by itself
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < batch; ++i) try {
         const int trial = tried + i, seed = options.seed + trial, k = ks[trial % ks.size()];
-        found[i] =
-            finish(c, forecaster, partition_graph(graph, k, balances[trial / ks.size() % 3], seed), seed);
+        std::vector<int> label(n, 0);
+        cut_label(c, label, 0, k, balances[trial / ks.size() % 3], seed, 1);
+        found[i] = finish(c, forecaster, std::move(label), seed);
         if (tried == 0) found[batch + i] = finish(c, forecaster, two_sides(c, axes[i]), seed);
       } catch (...) {
 #pragma omp critical
@@ -382,6 +400,13 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
     if (failure) std::rethrow_exception(failure);
     for (Labelling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+  }
+  if (genus > 0 && (options.homology || best.burden > genus + 2)) {
+    const auto loops = handle_loops(c.mesh, c.opposite, genus);
+    if ((int)loops.size() == genus) {
+      Labelling l = finish(c, forecaster, label_by_sides(c.mesh, c.opposite, loops), options.seed);
+      if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+    }
   }
   return best;
 }
@@ -396,6 +421,10 @@ Component make_component(const Surface& surface, SubMesh sub) {
   if (surface.face.has("model"))
     for (int t : c.mesh.face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
   c.weight = cut_weights(c.mesh, c.opposite, model);
+  // METIS takes 0.7 us a node: cells of some triangles do as well on large surfaces, for the interface is
+  // straightened afterwards
+  const int n = (int)c.mesh.tris.size();
+  c.cells = grow_cells(c.opposite, c.area, std::max(20000, n / 8));
   c.whole = find_regions(c.mesh, c.opposite, std::vector<int>(c.mesh.tris.size(), 0), 1).region[0];
   return c;
 }
@@ -405,11 +434,11 @@ void bound_faces(const Component& c, Labelling& l, const PartitionOptions& optio
   const int limit = std::max(1, (int)(0.9 * options.max_faces));
   for (int round = 0; round < 60; ++round) {
     bool again = false;
-    std::vector<std::vector<int>> triangles(l.parts);
-    for (std::size_t t = 0; t < l.label.size(); ++t) triangles[l.label[t]].push_back((int)t);
+    std::vector<int> faces(l.parts, 0);
+    for (int x : l.label) ++faces[x];
     int n = l.parts;
-    for (const auto& ts : triangles)
-      if ((int)ts.size() > limit) bisect(c, ts, l.label, n++, options.seed), again = true;
+    for (int p = 0; p < (int)faces.size(); ++p)
+      if (faces[p] > limit) bisect(c, l.label, p, n++, options.seed), again = true;
     if (!again) return;
     l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
     if (l.parts == 0) return;

@@ -215,6 +215,17 @@ TEST(Partition, NeedsAtMostTwoMorePartsThanHandles) {
   }
 }
 
+TEST(Partition, CutsAlongHandlesAreNoWorse) {
+  Surface s = slab(3, 3), t = s;
+  const Surface before = s;
+  PartitionOptions options;
+  const int n = partition_to_disks(s, options);
+  options.homology = true;
+  EXPECT_LE(partition_to_disks(t, options), n + 1);  // charts count, and a part may come to two
+  EXPECT_EQ(part_fault(t), "");
+  expect_same_surface(before, t);
+}
+
 TEST(Partition, CutsTheSmallestSurfaces) {
   Surface s = cube(1);
   s.face.erase("model");
