@@ -380,19 +380,23 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   }
   const double balances[] = {0.3, 0.1, 0.5};
   const Forecaster forecaster(c.mesh, c.opposite);
-  constexpr int batch = 3;
-  const Vec3 axes[batch] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  constexpr int batch = 2, first_side = 2, sides = 3;  // the sides of the surface come after two trials
+  const Vec3 axes[sides] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  auto candidate = [&](int i) {
+    if (i >= first_side && i < first_side + sides) return two_sides(c, axes[i - first_side]);
+    const int trial = i < first_side ? i : i - sides;
+    std::vector<int> label(n, 0);
+    cut_label(c, label, 0, ks[trial % ks.size()], balances[trial / ks.size() % 3], options.seed + trial, 1);
+    return label;
+  };
   Labelling best;
-  for (int tried = 0; tried < most_trials && (best.parts == 0 || best.burden > enough); tried += batch) {
-    Labelling found[2 * batch];
+  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.burden > enough);
+       tried += batch) {
+    Labelling found[batch];
     std::exception_ptr failure;  // must not leave the parallel region by itself
 #pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < batch; ++i) try {
-        const int trial = tried + i, seed = options.seed + trial, k = ks[trial % ks.size()];
-        std::vector<int> label(n, 0);
-        cut_label(c, label, 0, k, balances[trial / ks.size() % 3], seed, 1);
-        found[i] = finish(c, forecaster, std::move(label), seed);
-        if (tried == 0) found[batch + i] = finish(c, forecaster, two_sides(c, axes[i]), seed);
+        found[i] = finish(c, forecaster, candidate(tried + i), options.seed + tried + i);
       } catch (...) {
 #pragma omp critical
         failure = std::current_exception();
