@@ -112,8 +112,8 @@ class LevelSolver {
   }
 
   /// Gathers domain_: the triangles of the set within `depth` of its border; breadth first, so distances are
-  /// those of the tree: an upper bound. Returns whether some were left out.
-  bool gather(const Pending& set, double depth) {
+  /// those of the tree: an upper bound. Gives up beyond `most`. Returns whether some were left out.
+  bool gather(const Pending& set, double depth, std::size_t most = SIZE_MAX) {
     for (int t : domain_) place_[t] = -1;
     domain_.clear();
     distance_.clear();
@@ -124,6 +124,7 @@ class LevelSolver {
     }
     bool truncated = false;
     for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (domain_.size() > most) return true;
       int t = domain_[i];
       for (int h = 3 * t; h < 3 * t + 3; h++) {
         int n = disk_.opposite[h] < 0 ? -1 : disk_.opposite[h] / 3;
@@ -154,6 +155,12 @@ class LevelSolver {
     bool truncated;
     for (;; depth *= 2) {
       truncated = gather(set, depth);
+      // a small remainder is cheaper solved along than found to be needed
+      const std::size_t most = domain_.size() + domain_.size() / 4;
+      if (truncated && gather(set, 1e300, most))
+        gather(set, depth);
+      else
+        truncated = false;
       map(set);
       find_small(area_limit, stretch_limit);
       keep_fans_whole();
