@@ -42,6 +42,7 @@ const std::vector<Reader>& readers() {
       {"vtk", is_vtk_legacy, read_vtk_legacy},
       {"mesh", is_inria, read_inria},
       {"obj", is_obj, read_obj},
+      {"stl", is_odd_stl, read_stl},
   };
   return all;
 }
@@ -51,8 +52,8 @@ const std::vector<Writer>& writers() {
       {".mply", write_stream}, {".ply", write_ply},    {".stl", write_stl},      {".obj", write_obj},
       {".off", write_off},     {".msh", write_msh2},   {".msh2", write_msh2},    {".msh4", write_msh4},
       {".vtu", write_vtu},     {".vtp", write_vtp},    {".vtk", write_vtk_grid}, {".mesh", write_mesh},
-      {".meshb", write_meshb}, {".sol", write_sol},    {".gts", write_gts},      {".bdf", write_nastran},
-      {".nas", write_nastran}, {".inp", write_abaqus}, {".poly", write_poly},
+      {".meshb", write_meshb}, {".sol", write_sol},    {".solb", write_solb},    {".gts", write_gts},
+      {".bdf", write_nastran}, {".nas", write_nastran}, {".inp", write_abaqus}, {".poly", write_poly},
   };
   return all;
 }
@@ -62,7 +63,8 @@ Stream read_any(std::string_view bytes, const std::string& where) {
   for (const Reader& r : readers())
     if (r.matches(bytes)) return r.read(bytes, where);
   std::string known;
-  for (const Reader& r : readers()) known += std::string(known.empty() ? "" : ", ") + r.format;
+  for (const Reader& r : readers())
+    if (r.matches != is_odd_stl) known += std::string(known.empty() ? "" : ", ") + r.format;
   throw BadInput(where + ":1: none of the known formats (" + known + ")" + guess(bytes));
 }
 

@@ -7,9 +7,9 @@
 
 #include "formats/bytes.h"
 #include "formats/columns.h"
+#include "formats/model_lines.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
-#include "lib/edges.h"
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -53,11 +53,6 @@ bool is_binary(std::string_view bytes) {
         load<int>(bytes.data(), swap) == 1 && version >= 1 && version <= 4)
       return true;
   return false;
-}
-
-/// An edge as one number: its smaller vertex above the larger one.
-std::uint64_t key(int a, int b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
 }
 
 class InriaReader {
@@ -184,9 +179,14 @@ class InriaReader {
       case edges:
         for (int i = 0, n = count("the number of edges", 3); i < n; ++i) {
           const int a = vertex(), b = vertex();
-          integer("a reference");
-          edges_.push_back(key(a, b));
+          edges_.push_back({a, b, integer("a reference"), false, false});
         }
+        break;
+      case ridges:
+        numbers(ridges_, "the number of ridges");
+        break;
+      case required_edges:
+        numbers(required_edges_, "the number of required edges");
         break;
       case triangles:
         faces(3);
@@ -201,18 +201,20 @@ class InriaReader {
         marks("required");
         break;
       case required_triangles:
-        for (int i = 0, n = count("the number of required triangles", 1); i < n; ++i)
-          required_triangles_.push_back(integer("a triangle number"));
+        numbers(required_triangles_, "the number of required triangles");
         break;
       case solution:
         read_solution();
         break;
       default:
-        // ridges and required edges are among the edges
         if (!binary_) skip_numbers();
         break;
     }
     if (binary_) at_ = std::max(std::min(next_, bytes_.size()), at_);
+  }
+
+  void numbers(std::vector<int>& into, const char* what) {
+    for (int i = 0, n = count(what, 1); i < n; ++i) into.push_back(integer("a number"));
   }
 
   void skip_numbers() {
@@ -298,14 +300,16 @@ class InriaReader {
       polygons_.columns.set("required", std::move(required));
     }
     set_faces(stream_, polygons_);
-    if (edges_.empty()) return;
-    std::sort(edges_.begin(), edges_.end());
-    const std::vector<Tri>& tris = stream_.surface.tris;
-    std::vector<std::uint8_t> model(tris.size(), 0);
-    for (int h = 0; h < 3 * static_cast<int>(tris.size()); ++h)
-      if (std::binary_search(edges_.begin(), edges_.end(), key(origin(tris, h), target(tris, h))))
-        model[h / 3] |= static_cast<std::uint8_t>(1 << h % 3);
-    stream_.surface.face.set("model", std::move(model));
+    auto mark = [&](const std::vector<int>& numbers, const char* what, bool LineEdge::*flag) {
+      for (int e : numbers) {
+        if (e < 1 || e > static_cast<int>(edges_.size()))
+          fail(what + std::to_string(e) + ", but there are " + std::to_string(edges_.size()) + " edges");
+        edges_[e - 1].*flag = true;
+      }
+    };
+    mark(ridges_, "ridge ", &LineEdge::ridge);
+    mark(required_edges_, "required edge ", &LineEdge::required);
+    set_model_lines(stream_, edges_);
   }
 
   std::string_view bytes_;
@@ -319,8 +323,8 @@ class InriaReader {
   bool has_vertices_ = false;
   std::size_t first_triangle_ = 0;
   int n_triangles_ = 0;
-  std::vector<int> required_triangles_;
-  std::vector<std::uint64_t> edges_;
+  std::vector<int> required_triangles_, ridges_, required_edges_;
+  std::vector<LineEdge> edges_;
 };
 
 /// Writes sections in either encoding.
@@ -336,14 +340,15 @@ class InriaWriter {
     put(out, 3);
   }
 
-  /// A section of n rows; `bytes` a row in binary. Files of version 3 have positions of 64 bits.
-  void section(const char* name, Keyword keyword, std::size_t n, std::size_t bytes) {
+  /// A section of n rows; `bytes` a row in binary, and `more` before them. Files of version 3 have positions
+  /// of 64 bits.
+  void section(const char* name, Keyword keyword, std::size_t n, std::size_t bytes, std::size_t more = 0) {
     if (ascii_) {
       out += std::string("\n") + name + '\n' + std::to_string(n) + '\n';
       return;
     }
     put(out, static_cast<int>(keyword));
-    put(out, static_cast<std::int64_t>(out.size() + 12 + n * bytes));
+    put(out, static_cast<std::int64_t>(out.size() + 12 + more + n * bytes));
     put(out, static_cast<int>(n));
   }
   void integer(int v) { ascii_ ? word(static_cast<long long>(v)) : put(out, v); }
@@ -409,31 +414,37 @@ std::string write(const Stream& stream, bool ascii) {
     w.integer(patch[t]);
     w.end_row();
   }
-  std::vector<std::array<int, 2>> model;
-  if (const Column* c = s.face.find("model");
-      c && std::holds_alternative<std::vector<std::uint8_t>>(c->data)) {
-    const auto& bits = std::get<std::vector<std::uint8_t>>(c->data);
-    for_each_edge(s.tris, static_cast<int>(s.points.size()), [&](std::span<const EdgeUse> uses) {
-      for (EdgeUse e : uses)
-        if (const int h = half_edge(e); bits[h / 3] >> h % 3 & 1) {
-          model.push_back({origin(s.tris, h) + 1, target(s.tris, h) + 1});
-          return;
-        }
-    });
-  }
-  if (!model.empty()) {
-    w.section("Edges", edges, model.size(), 12);
-    std::vector<int> all(model.size());
-    for (std::size_t i = 0; i < model.size(); ++i) {
-      for (int v : {model[i][0], model[i][1], 0}) w.integer(v);
+  if (const std::vector<LineEdge> lines = model_lines(stream); !lines.empty()) {
+    w.section("Edges", edges, lines.size(), 12);
+    std::vector<int> of_ridges, of_required;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      for (int v : {lines[i].a + 1, lines[i].b + 1, lines[i].tag}) w.integer(v);
       w.end_row();
-      all[i] = static_cast<int>(i) + 1;
+      if (lines[i].ridge) of_ridges.push_back(static_cast<int>(i) + 1);
+      if (lines[i].required) of_required.push_back(static_cast<int>(i) + 1);
     }
-    w.numbers("Ridges", ridges, all);
+    w.numbers("Ridges", ridges, of_ridges);
+    w.numbers("RequiredEdges", required_edges, of_required);
   }
   w.numbers("Corners", corners, marked(s.vertex, "corner"));
   w.numbers("RequiredVertices", required_vertices, marked(s.vertex, "required"));
   w.numbers("RequiredTriangles", required_triangles, marked(s.face, "required"));
+  return w.finish();
+}
+
+std::string write_sizes(const Stream& stream, bool ascii) {
+  if (!stream.surface.vertex.has("size"))
+    throw NotAdmissible("no vertex column 'size' to write as .sol; run msize first");
+  const auto& size = stream.surface.vertex.get<double>("size");
+  InriaWriter w(ascii);
+  w.section("SolAtVertices", solution, size.size(), 8, 8);
+  w.integer(1);
+  w.integer(1);
+  w.end_row();
+  for (double x : size) {
+    w.real(x);
+    w.end_row();
+  }
   return w.finish();
 }
 
@@ -457,18 +468,7 @@ void read_sol(Stream& stream, std::string_view bytes, const std::string& where) 
 std::string write_mesh(const Stream& stream, bool) { return write(stream, true); }
 std::string write_meshb(const Stream& stream, bool) { return write(stream, false); }
 
-std::string write_sol(const Stream& stream, bool) {
-  if (!stream.surface.vertex.has("size"))
-    throw NotAdmissible("no vertex column 'size' to write as .sol; run msize first");
-  const auto& size = stream.surface.vertex.get<double>("size");
-  InriaWriter w(true);
-  w.section("SolAtVertices", solution, size.size(), 8);
-  w.out += "1 1\n";
-  for (double x : size) {
-    w.real(x);
-    w.end_row();
-  }
-  return w.finish();
-}
+std::string write_sol(const Stream& stream, bool) { return write_sizes(stream, true); }
+std::string write_solb(const Stream& stream, bool) { return write_sizes(stream, false); }
 
 }  // namespace meshpipe

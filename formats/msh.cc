@@ -7,6 +7,7 @@
 
 #include "formats/bytes.h"
 #include "formats/columns.h"
+#include "formats/model_lines.h"
 #include "formats/numbers.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
@@ -15,13 +16,21 @@
 namespace meshpipe {
 namespace {
 
-/// Nodes of an element by its type; 0 for a type that is not known.
-int nodes_of_type(int type) {
-  static constexpr int nodes[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
-                                  8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
-  if (type == 92) return 64;
-  if (type == 93) return 125;
-  return type >= 1 && type < static_cast<int>(std::size(nodes)) ? nodes[type] : 0;
+/// What the types of elements are: lines (2 corners) and surface elements (3 or 4) of any order, their
+/// corners first among their nodes; of the others, which are left out, only the number of nodes.
+struct Kind {
+  int corners = 0, nodes = 0;
+};
+Kind kind_of(int type) {
+  static constexpr Kind kinds[] = {
+      {},      {2, 2},  {3, 3},  {4, 4},  {0, 4},  {0, 8},  {0, 6},   {0, 5},  {2, 3},  {3, 6},  {4, 9},
+      {0, 10}, {0, 27}, {0, 18}, {0, 14}, {0, 1},  {4, 8},  {0, 20},  {0, 15}, {0, 13}, {3, 9},  {3, 10},
+      {3, 12}, {3, 15}, {3, 15}, {3, 21}, {2, 4},  {2, 5},  {2, 6},   {0, 20}, {0, 35}, {0, 56}, {0, 22},
+      {0, 28}, {},      {},      {4, 16}, {4, 25}, {4, 36}, {4, 12},  {4, 16}, {4, 20}, {3, 28}, {3, 36},
+      {3, 45}, {3, 55}, {3, 66}, {4, 49}, {4, 64}, {4, 81}, {4, 100}, {4, 121}};
+  if (type == 92) return {0, 64};
+  if (type == 93) return {0, 125};
+  return type >= 1 && type < static_cast<int>(std::size(kinds)) ? kinds[type] : Kind{};
 }
 
 /// Values of a section: words of the current line, or bytes.
@@ -42,6 +51,10 @@ class Source {
     if (!binary) text.need_line(what, static_cast<int>(i), static_cast<int>(n));
   }
   int integer(const char* what) { return binary ? get<int>(what) : text.integer(what); }
+  /// A number of a node or element: eight bytes if `is_wide`, and any whole number in a text.
+  long long number(const char* what, bool is_wide) {
+    return is_wide || !binary ? wide(what) : get<int>(what);
+  }
   double real(const char* what) {
     if (!binary) return text.number(what);
     const double x = get<double>(what);
@@ -49,10 +62,7 @@ class Source {
     return x;
   }
   /// What version 4 writes in eight bytes.
-  long long wide(const char* what) {
-    if (binary) return get<long long>(what);
-    return whole_word(what);
-  }
+  long long wide(const char* what) { return binary ? get<long long>(what) : text.wide(what); }
   Vec3 point() {
     const double x = real("a coordinate"), y = real("a coordinate"), z = real("a coordinate");
     return {x, y, z};
@@ -92,13 +102,6 @@ class Source {
     text.skip(sizeof(T));
     return value;
   }
-  long long whole_word(const char* what) {
-    const std::string_view w = text.word();
-    long long value;
-    if (!parse_integer(w, value)) text.fail(quoted(w) + " where " + what + " is due");
-    return value;
-  }
-
   std::string_view bytes_;
   const std::string& where_;
   bool swap_ = false;
@@ -128,7 +131,7 @@ class MshReader {
       else if (section == "NodeData")
         data(stream_.surface.vertex, node_numbers_);
       else if (section == "ElementData")
-        data(polygons_.columns, element_numbers_);
+        data(elements_table_, element_numbers_);
       else
         known = false;
       if (known) {
@@ -142,8 +145,7 @@ class MshReader {
     }
     if (!has_nodes_) text.fail("the file ends where $Nodes is due");
     if (!has_elements_) text.fail("the file ends where $Elements is due");
-    label();
-    set_faces(stream_, polygons_);
+    finish();
     return std::move(stream_);
   }
 
@@ -187,7 +189,7 @@ class MshReader {
     for (int i = 0; i < n; ++i) {
       text.need_line("physical name", i, n);
       const int dim = text.integer("a dimension"), tag = text.integer("a physical tag");
-      if (dim == 2) stream_.names.push_back({2, tag, std::string(unquoted())});
+      if (dim == 1 || dim == 2) stream_.names.push_back({dim, tag, unescaped(unquoted())});
     }
   }
 
@@ -198,7 +200,7 @@ class MshReader {
                                                                          : name;
   }
 
-  /// The first physical tag of each surface of version 4.
+  /// The first physical tag of each curve and surface of version 4.
   void entities() {
     in_.row("the counts of entities");
     long long counts[4];
@@ -214,19 +216,22 @@ class MshReader {
         for (int k = 0; k < n; ++k)
           if (const int p = in_.integer("a physical tag"); k == 0) physical = p;
         // a negative one says that the elements are turned round
-        if (dim == 2 && physical != std::numeric_limits<int>::min())
-          surfaces_.push_back({tag, std::abs(physical)});
+        if ((dim == 1 || dim == 2) && physical != std::numeric_limits<int>::min())
+          entities_[dim].push_back({tag, std::abs(physical)});
         if (in_.binary && dim > 0)
           in_.skip(4 * static_cast<std::size_t>(in_.count("the count of bounding entities", true, 4, 2)),
                    "a bounding entity");
       }
-    std::stable_sort(surfaces_.begin(), surfaces_.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (auto& all : entities_)
+      std::stable_sort(all.begin(), all.end(),
+                       [](const auto& a, const auto& b) { return a.first < b.first; });
   }
 
-  int physical_of(int surface) const {
-    const auto at = std::lower_bound(surfaces_.begin(), surfaces_.end(), std::pair{surface, 0});
-    return at != surfaces_.end() && at->first == surface ? at->second : 0;
+  int physical_of(int dim, int tag) const {
+    const auto& all = entities_[dim];
+    const auto at = std::lower_bound(all.begin(), all.end(), tag,
+                                     [](const auto& entity, int t) { return entity.first < t; });
+    return at != all.end() && at->first == tag ? at->second : 0;
   }
 
   void add_node_number(long long number) {
@@ -244,7 +249,7 @@ class MshReader {
       points.reserve(n);
       for (int i = 0; i < n; ++i) {
         in_.row("node", i, n);
-        add_node_number(in_.integer("a node number"));
+        add_node_number(in_.number("a node number", false));
         points.push_back(in_.point());
       }
     } else {
@@ -276,7 +281,7 @@ class MshReader {
       }
     for (int i = 0; i < n; ++i) {
       in_.row("node", i, n);
-      if (version_ == 4) add_node_number(in_.integer("a node number"));
+      if (version_ == 4) add_node_number(in_.number("a node number", false));
       stream_.surface.points.push_back(in_.point());
       in_.skip(more, "the parameters of a node");
     }
@@ -295,34 +300,36 @@ class MshReader {
     element_numbers_.finish();
   }
 
-  /// Corners of a surface element, 0 for another; throws for the kinds of higher order: their corners alone
-  /// would be another surface.
-  int corners_of(int type) const {
-    for (int curved : {9, 10, 16, 20, 21, 22, 23, 24, 25})
-      if (type == curved)
-        in_.fail("element type " + std::to_string(type) +
-                 " is curved, but only triangles and quadrilaterals of the first order are read");
-    return type == 2 ? 3 : type == 3 ? 4 : 0;
-  }
-
-  /// A surface element whose nodes come next.
-  void element(long long number, int corners, int physical, int elementary, bool is_wide) {
-    const std::size_t i = physical_.size();
-    element_numbers_.add(number);
-    physical_.push_back(physical);
-    elementary_.push_back(elementary);
-    for (int k = 0; k < corners; ++k) {
-      const long long node = is_wide ? in_.wide("a node number") : in_.integer("a node number");
-      const int row = node_numbers_.row(node);
-      if (row < 0)
-        in_.fail("surface element " + std::to_string(i) + " uses node " + std::to_string(node) +
-                 ", which is none of the " + std::to_string(node_numbers_.size()));
-      polygons_.corners.push_back(row);
+  /// An element whose nodes come next.
+  void element(long long number, Kind kind, int physical, int elementary, bool is_wide) {
+    const bool is_line = kind.corners == 2;
+    const std::string what = (is_line ? "line element " : "surface element ") +
+                             std::to_string(is_line ? lines_.size() : surfaces_.size());
+    nodes_.clear();
+    for (int k = 0; k < kind.nodes; ++k) {
+      const long long node = in_.number("a node number", is_wide);
+      nodes_.push_back(node_numbers_.row(node));
+      if (nodes_.back() < 0)
+        in_.fail(what + " uses node " + std::to_string(node) + ", which is none of the " +
+                 std::to_string(node_numbers_.size()));
     }
     if (!in_.binary && !in_.text.line_ends())
-      in_.fail("surface element " + std::to_string(i) + " has more than its " + std::to_string(corners) +
-               " nodes");
-    polygons_.ends.push_back(polygons_.corners.size());
+      in_.fail(what + " has more than its " + std::to_string(kind.nodes) + " nodes");
+    if (is_line) {
+      lines_.push_back({physical, elementary});
+      if (kind.nodes == 3) {  // as add_element has it
+        line_edges_.push_back({nodes_[0], nodes_[2], 0});
+        line_edges_.push_back({nodes_[2], nodes_[1], 0});
+        lines_.push_back(lines_.back());
+      } else {
+        line_edges_.push_back({nodes_[0], nodes_[1], 0});
+      }
+      return;
+    }
+    const int added = add_element(polygons_, nodes_.data(), kind.corners, kind.nodes);
+    element_.insert(element_.end(), added, static_cast<int>(surfaces_.size()));
+    element_numbers_.add(number);
+    surfaces_.push_back({physical, elementary});
   }
 
   void elements_text() {
@@ -331,9 +338,9 @@ class MshReader {
     const int n = text.count("the count of elements", 8);
     for (int i = 0; i < n; ++i) {
       text.need_line("element", i, n);
-      const int number = text.integer("an element number"), type = text.integer("an element type");
-      const int corners = corners_of(type);
-      if (corners == 0) continue;
+      const long long number = text.wide("an element number");
+      const Kind kind = kind_of(text.integer("an element type"));
+      if (kind.corners == 0) continue;
       // version 1 has two tags and the number of nodes, version 2 the number of tags and the tags
       const int tags = version_ < 2 ? 2 : text.integer("a number of tags");
       int tag[2] = {0, 0};
@@ -342,10 +349,10 @@ class MshReader {
         if (k < 2) tag[k] = t;
       }
       if (version_ < 2)
-        if (const int nodes = text.integer("the number of nodes"); nodes != corners)
+        if (const int nodes = text.integer("the number of nodes"); nodes != kind.nodes)
           text.fail("element " + std::to_string(i) + " has " + std::to_string(nodes) + " nodes, " +
-                    std::to_string(corners) + " are due");
-      element(number, corners, tag[0], tag[1], false);
+                    std::to_string(kind.nodes) + " are due");
+      element(number, kind, tag[0], tag[1], false);
     }
   }
 
@@ -354,9 +361,9 @@ class MshReader {
     const int n = in_.text.count("the count of elements", 8);
     for (int done = 0; done < n;) {
       const int type = in_.integer("an element type"), follow = in_.integer("the number of elements"),
-                tags = in_.integer("a number of tags"), corners = corners_of(type),
-                nodes = nodes_of_type(type);
-      if (nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
+                tags = in_.integer("a number of tags");
+      const Kind kind = kind_of(type);
+      if (kind.nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
       if (follow < 1 || follow > n - done)
         in_.fail("a block of " + std::to_string(follow) + " elements, but " + std::to_string(n - done) +
                  " are left");
@@ -367,10 +374,10 @@ class MshReader {
         const int physical = tags > 0 ? in_.integer("a tag") : 0,
                   elementary = tags > 1 ? in_.integer("a tag") : 0;
         in_.skip(4 * static_cast<std::size_t>(std::max(tags - 2, 0)), "a tag");
-        if (corners)
-          element(number, corners, physical, elementary, false);
+        if (kind.corners)
+          element(number, kind, physical, elementary, false);
         else
-          in_.skip(4 * static_cast<std::size_t>(nodes), "a node number");
+          in_.skip(4 * static_cast<std::size_t>(kind.nodes), "a node number");
       }
     }
   }
@@ -386,24 +393,24 @@ class MshReader {
       in_.row("block of elements", b, blocks);
       int dim = in_.integer("the dimension of an entity"), tag = in_.integer("the tag of an entity");
       if (!is_wide) std::swap(dim, tag);
-      const int type = in_.integer("an element type"), corners = corners_of(type),
-                nodes = nodes_of_type(type);
-      const int physical = corners ? physical_of(tag) : 0;
+      const int type = in_.integer("an element type");
+      const Kind kind = kind_of(type);
+      const int physical = kind.corners ? physical_of(kind.corners == 2 ? 1 : 2, tag) : 0;
       const int in_block = in_.count("the count of elements", true, 8, 4);
       if (in_block > left)
         in_.fail("a block of " + std::to_string(in_block) + " elements, but " + std::to_string(left) +
                  " are left");
       left -= in_block;
-      if (in_.binary && corners == 0) {
-        if (nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
-        in_.skip((is_wide ? 8 : 4) * static_cast<std::size_t>(nodes + 1) * in_block, "an element");
+      if (in_.binary && kind.corners == 0) {
+        if (kind.nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
+        in_.skip((is_wide ? 8 : 4) * static_cast<std::size_t>(kind.nodes + 1) * in_block, "an element");
         continue;
       }
       for (int i = 0; i < in_block; ++i) {
         in_.row("element", i, in_block);
-        if (corners == 0) continue;
-        const long long number = is_wide ? in_.wide("an element number") : in_.integer("an element number");
-        element(number, corners, physical, tag, is_wide);
+        if (kind.corners == 0) continue;
+        const long long number = in_.number("an element number", is_wide);
+        element(number, kind, physical, tag, is_wide);
       }
     }
     if (left)
@@ -419,7 +426,7 @@ class MshReader {
     text.need_line("the number of string tags");
     for (int i = 0, n = text.count("the number of string tags", 1); i < n; ++i) {
       text.need_line("string tag", i, n);
-      if (i == 0) array.name = unquoted();
+      if (i == 0) array.name = unescaped(unquoted());
     }
     text.need_line("the number of real tags");
     for (int i = 0, n = text.count("the number of real tags", 1); i < n; ++i)
@@ -444,7 +451,7 @@ class MshReader {
     std::size_t n_given = 0;
     for (int i = 0; i < tags[2]; ++i) {
       in_.row("a row of data", i, tags[2]);
-      const int row = numbers.row(in_.integer("a number"));
+      const int row = numbers.row(in_.number("a number", false));
       for (int k = 0; k < array.components; ++k) {
         const double x = in_.real("a value");
         if (row >= 0) values[static_cast<std::size_t>(row) * array.components + k] = x;
@@ -461,18 +468,38 @@ class MshReader {
     add_columns(stream_, table, numbers.size(), std::move(array));
   }
 
-  void label() {
-    const int largest =
-        physical_.empty() ? 0 : std::max(0, *std::max_element(physical_.begin(), physical_.end()));
-    polygons_.patch.resize(physical_.size());
-    for (std::size_t i = 0; i < physical_.size(); ++i) {
-      const long long tag =
-          physical_[i] != 0 ? physical_[i] : static_cast<long long>(largest) + elementary_[i];
+  struct Tags {
+    int physical, elementary;
+  };
+  /// The label of an element: its physical tag, or its elementary one counted on from the largest physical.
+  std::vector<int> labels(const std::vector<Tags>& tags) const {
+    int largest = 0;
+    for (const Tags& t : tags) largest = std::max(largest, t.physical);
+    std::vector<int> label;
+    label.reserve(tags.size());
+    for (const Tags& t : tags) {
+      const long long tag = t.physical != 0 ? t.physical : static_cast<long long>(largest) + t.elementary;
       if (tag > std::numeric_limits<int>::max())
-        in_.text.fail("elementary tag " + std::to_string(elementary_[i]) + " on top of physical tag " +
+        in_.text.fail("elementary tag " + std::to_string(t.elementary) + " on top of physical tag " +
                       std::to_string(largest) + " is too large");
-      polygons_.patch[i] = static_cast<int>(tag);
+      label.push_back(static_cast<int>(tag));
     }
+    return label;
+  }
+
+  void finish() {
+    polygons_.patch = std::get<std::vector<int>>(gather({"", 1, labels(surfaces_)}, element_).data);
+    for (Column& c : elements_table_.columns)
+      std::visit(
+          [&](auto& v) {
+            polygons_.columns.set(
+                c.name, std::get<std::decay_t<decltype(v)>>(gather({"", 1, std::move(v)}, element_).data));
+          },
+          c.data);
+    set_faces(stream_, polygons_);
+    const std::vector<int> tag = labels(lines_);
+    for (std::size_t i = 0; i < tag.size(); ++i) line_edges_[i].tag = tag[i];
+    set_model_lines(stream_, line_edges_);
   }
 
   Source in_;
@@ -480,12 +507,41 @@ class MshReader {
   Stream stream_;
   Polygons polygons_;
   Numbers node_numbers_, element_numbers_;
-  std::vector<int> physical_, elementary_;     ///< tags by surface element
-  std::vector<std::pair<int, int>> surfaces_;  ///< tag of a surface of version 4, its physical tag
+  std::vector<Tags> surfaces_, lines_;   ///< tags by surface element, and by edge of a line
+  std::vector<int> element_;             ///< surface element of each polygon
+  Table elements_table_{"face", 0, {}};  ///< data of the surface elements
+  std::vector<LineEdge> line_edges_;
+  std::vector<std::pair<int, int>>
+      entities_[3];         ///< by dimension: tag of an entity of version 4, its physical tag
+  std::vector<int> nodes_;  ///< rows of the current element's nodes
   bool has_nodes_ = false, has_elements_ = false;
 };
 
 }  // namespace
+
+std::string quotable(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const std::string_view next = name.substr(i + 1, 2);
+    if (name[i] == '"')
+      out += "%22";
+    else if (name[i] == '%' && (next == "22" || next == "25"))
+      out += "%25";
+    else
+      out += name[i];
+  }
+  return out;
+}
+
+std::string unescaped(std::string_view name) {
+  std::string out;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const std::string_view code = name.substr(i, 3);
+    out += code == "%22" ? '"' : name[i];
+    if (code == "%22" || code == "%25") i += 2;
+  }
+  return out;
+}
 
 bool is_msh(std::string_view bytes) {
   const std::string_view start = trim(bytes.substr(0, 64));

@@ -4,6 +4,7 @@
 
 #include "formats/bytes.h"
 #include "formats/columns.h"
+#include "formats/model_lines.h"
 #include "formats/msh.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
@@ -60,27 +61,50 @@ long long checked_shift(const ByPatch& by) {
   return shift;
 }
 
-void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift) {
+/// The model edges that have a label, by label.
+struct Curves {
+  std::vector<LineEdge> edges;
+  std::vector<int> tags;
+  std::vector<std::size_t> first;  ///< edges first[k] .. first[k+1] have tags[k]
+};
+
+Curves curves_of(const Stream& stream) {
+  Curves c;
+  c.edges = model_lines(stream);
+  std::erase_if(c.edges, [](const LineEdge& e) { return e.tag <= 0; });
+  std::stable_sort(c.edges.begin(), c.edges.end(),
+                   [](const LineEdge& x, const LineEdge& y) { return x.tag < y.tag; });
+  for (std::size_t i = 0; i < c.edges.size(); ++i)
+    if (i == 0 || c.edges[i].tag != c.tags.back()) {
+      c.tags.push_back(c.edges[i].tag);
+      c.first.push_back(i);
+    }
+  c.first.push_back(c.edges.size());
+  return c;
+}
+
+void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
   std::string named;
   int n_named = 0;
-  for (int tag : by.tags)
-    if (std::string name = one_line(stream.name_of(2, tag)); !name.empty()) {
-      std::replace(name.begin(), name.end(), '"', '\'');
-      named += "2 " + std::to_string(tag + shift) + " \"" + name + "\"\n";
-      ++n_named;
-    }
+  auto add = [&](int dim, int tag, long long shown) {
+    const std::string name = one_line(stream.name_of(dim, tag));
+    if (name.empty()) return;
+    named += std::to_string(dim) + ' ' + std::to_string(shown) + " \"" + quotable(name) + "\"\n";
+    ++n_named;
+  };
+  for (int tag : curves.tags) add(1, tag, tag);
+  for (int tag : by.tags) add(2, tag, tag + shift);
   if (n_named)
     sink.out += "$PhysicalNames\n" + (std::to_string(n_named) + '\n') + named + "$EndPhysicalNames\n";
 }
 
-void data(Sink& sink, const char* section, const Table& table) {
+/// `more` elements that are no triangles have zeros, since readers want data for all elements or none.
+void data(Sink& sink, const char* section, const Table& table, std::size_t more) {
   for (const Group& g : groups_of(table)) {
     if (g.name == "patch") continue;
     const std::size_t n = g.columns[0]->size(), m = g.columns.size();
-    std::string name = one_line(g.name);
-    std::replace(name.begin(), name.end(), '"', '\'');
-    sink.out += std::string("$") + section + "\n1\n\"" + name + "\"\n1\n0\n3\n0\n" + std::to_string(m) +
-                '\n' + std::to_string(n) + '\n';
+    sink.out += std::string("$") + section + "\n1\n\"" + quotable(one_line(g.name)) + "\"\n1\n0\n3\n0\n" +
+                std::to_string(m) + '\n' + std::to_string(n + more) + '\n';
     const Array array = array_of(g);
     std::visit(
         [&](const auto& v) {
@@ -91,6 +115,11 @@ void data(Sink& sink, const char* section, const Table& table) {
           }
         },
         array.data);
+    for (std::size_t i = n; i < n + more; ++i) {
+      sink.integer(static_cast<long long>(i) + 1);
+      for (std::size_t k = 0; k < m; ++k) sink.real(0);
+      sink.end_row();
+    }
     sink.end(section);
   }
 }
@@ -102,10 +131,11 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   const std::vector<int> patch = patches_of(stream);
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
+  const Curves curves = curves_of(stream);
   Sink sink(ascii);
   head(sink, "2.2", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
-  names(sink, stream, by, shift);
+  names(sink, stream, by, shift, curves);
   sink.out += "$Nodes\n";
   sink.line(s.points.size());
   for (std::size_t i = 0; i < s.points.size(); ++i) {
@@ -115,7 +145,7 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   }
   sink.end("Nodes");
   sink.out += "$Elements\n";
-  sink.line(s.tris.size());
+  sink.line(s.tris.size() + curves.edges.size());
   if (!ascii && !s.tris.empty())
     for (long long v : {2LL, static_cast<long long>(s.tris.size()), 2LL}) sink.integer(v);
   for (std::size_t t = 0; t < s.tris.size(); ++t) {
@@ -126,9 +156,18 @@ std::string write_msh2(const Stream& stream, bool ascii) {
       sink.integer(v);
     sink.end_row();
   }
+  if (!ascii && !curves.edges.empty())
+    for (long long v : {1LL, static_cast<long long>(curves.edges.size()), 2LL}) sink.integer(v);
+  for (std::size_t i = 0; i < curves.edges.size(); ++i) {
+    const LineEdge& e = curves.edges[i];
+    sink.integer(static_cast<long long>(s.tris.size() + i) + 1);
+    if (ascii) sink.out += "1 2 ";
+    for (int v : {e.tag, e.tag, e.a + 1, e.b + 1}) sink.integer(v);
+    sink.end_row();
+  }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex);
-  data(sink, "ElementData", s.face);
+  data(sink, "NodeData", s.vertex, 0);
+  data(sink, "ElementData", s.face, curves.edges.size());
   return std::move(sink.out);
 }
 
@@ -136,34 +175,50 @@ std::string write_msh4(const Stream& stream, bool ascii) {
   const Surface& s = stream.surface;
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
+  const Curves curves = curves_of(stream);
   Sink sink(ascii);
   head(sink, "4.1", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
-  names(sink, stream, by, shift);
+  names(sink, stream, by, shift, curves);
 
   // one surface a patch; nodes must be on one, and a mesh without triangles still has its nodes
   std::vector<long long> surface;
   for (int tag : by.tags) surface.push_back(tag + shift);
   if (surface.empty()) surface.push_back(1);
   sink.out += "$Entities\n";
-  for (long long n : {0LL, 0LL, static_cast<long long>(surface.size()), 0LL}) sink.wide(n);
+  for (std::size_t n : {std::size_t{0}, curves.tags.size(), surface.size(), std::size_t{0}})
+    sink.wide(static_cast<long long>(n));
   sink.end_row();
-  for (std::size_t k = 0; k < surface.size(); ++k) {
-    Vec3 low, high;
-    const std::size_t end = by.tags.empty() ? 0 : by.first[k + 1];
-    for (std::size_t i = by.tags.empty() ? 0 : by.first[k]; i < end; ++i)
-      for (int v : s.tris[by.order[i]]) {
-        const Vec3 p = s.points[v];
-        if (i == by.first[k] && v == s.tris[by.order[i]][0]) low = high = p;
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
-    sink.integer(surface[k]);
+  Vec3 low, high;
+  bool is_first = true;
+  auto cover = [&](int v) {
+    const Vec3 p = s.points[v];
+    if (is_first) low = high = p;
+    is_first = false;
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  };
+  // its box, its physical tag, nothing that bounds it
+  auto entity = [&](long long tag) {
+    sink.integer(tag);
     for (double x : {low.x, low.y, low.z, high.x, high.y, high.z}) sink.real(x);
     sink.wide(1);
-    sink.integer(surface[k]);
+    sink.integer(tag);
     sink.wide(0);
     sink.end_row();
+    is_first = true;
+    low = high = {};
+  };
+  for (std::size_t k = 0; k < curves.tags.size(); ++k) {
+    for (std::size_t i = curves.first[k]; i < curves.first[k + 1]; ++i)
+      for (int v : {curves.edges[i].a, curves.edges[i].b}) cover(v);
+    entity(curves.tags[k]);
+  }
+  for (std::size_t k = 0; k < surface.size(); ++k) {
+    const std::size_t end = by.tags.empty() ? 0 : by.first[k + 1];
+    for (std::size_t i = by.tags.empty() ? 0 : by.first[k]; i < end; ++i)
+      for (int v : s.tris[by.order[i]]) cover(v);
+    entity(surface[k]);
   }
   sink.end("Entities");
 
@@ -186,7 +241,9 @@ std::string write_msh4(const Stream& stream, bool ascii) {
   sink.end("Nodes");
 
   sink.out += "$Elements\n";
-  for (long long v : {static_cast<long long>(by.tags.size()), n_tris, std::min(1LL, n_tris), n_tris})
+  const auto n_elements = n_tris + static_cast<long long>(curves.edges.size());
+  for (long long v : {static_cast<long long>(by.tags.size() + curves.tags.size()), n_elements,
+                      std::min(1LL, n_elements), n_elements})
     sink.wide(v);
   sink.end_row();
   for (std::size_t k = 0; k < by.tags.size(); ++k) {
@@ -200,9 +257,19 @@ std::string write_msh4(const Stream& stream, bool ascii) {
       sink.end_row();
     }
   }
+  for (std::size_t k = 0; k < curves.tags.size(); ++k) {
+    for (int v : {1, curves.tags[k], 1}) sink.integer(v);
+    sink.wide(static_cast<long long>(curves.first[k + 1] - curves.first[k]));
+    sink.end_row();
+    for (std::size_t i = curves.first[k]; i < curves.first[k + 1]; ++i) {
+      sink.wide(n_tris + static_cast<long long>(i) + 1);
+      for (int v : {curves.edges[i].a, curves.edges[i].b}) sink.wide(v + 1LL);
+      sink.end_row();
+    }
+  }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex);
-  data(sink, "ElementData", s.face);
+  data(sink, "NodeData", s.vertex, 0);
+  data(sink, "ElementData", s.face, curves.edges.size());
   return std::move(sink.out);
 }
 

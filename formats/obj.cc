@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "formats/colors.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
 
@@ -63,12 +64,20 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
   std::vector<Vec3>& points = stream.surface.points;
   Polygons polygons;
   Sorting groups, objects, materials;
+  Colors colors;  // an extension: r g b after x y z
+  std::vector<double> after_point;
   int largest = -1;  // a face may use vertices that come after it
   std::size_t largest_line = 0;
   while (text.next_line()) {
     std::string_view w = text.word();
     if (w == "v") {
       points.push_back(text.point());
+      if (!text.line_ends()) {
+        std::vector<double>& c = after_point;
+        for (c.clear(); !text.line_ends();) c.push_back(text.number("a colour"));
+        colors.add(c.data(), c.size(),
+                   c.size() == 3 && std::any_of(c.begin(), c.end(), [](double x) { return x > 1; }));
+      }
     } else if (w == "f") {
       const std::size_t first = polygons.corners.size();
       while (!(w = text.word()).empty()) {
@@ -121,6 +130,7 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
     k = tag[k];
   }
   polygons.patch = std::move((*chosen)->of_face);
+  colors.give(stream, stream.surface.vertex, points.size());
   set_faces(stream, polygons);
   return stream;
 }
@@ -130,7 +140,14 @@ std::string write_obj(const Stream& stream, bool) {
   const ByPatch by = by_patch(stream);
   std::string out;
   out.reserve(s.points.size() * 60 + s.tris.size() * 24);
-  for (const Vec3& p : s.points) append_point(out, "v ", p);
+  const Rgb colors(s.vertex);
+  for (std::size_t v = 0; v < s.points.size(); ++v) {
+    append_point(out, "v ", s.points[v]);
+    if (!colors) continue;
+    out.pop_back();
+    colors.append_to(out, v, false);
+    out += '\n';
+  }
   for (std::size_t k = 0; k < by.tags.size(); ++k) {
     std::string name = one_line(stream.name_of(2, by.tags[k]));
     if (!name.empty())

@@ -115,6 +115,26 @@ class Triangulation {
 
 }  // namespace
 
+int add_element(Polygons& polygons, const int* nodes, int n_corners, int n_nodes) {
+  using Faces = std::vector<std::vector<int>>;
+  static const Faces triangle = {{0, 1, 2}}, quad = {{0, 1, 2, 3}},
+                     triangle_6 = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}},
+                     quad_8 = {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {7, 6, 3}, {4, 5, 6, 7}},
+                     quad_9 = {{0, 4, 8, 7}, {4, 1, 5, 8}, {8, 5, 2, 6}, {7, 8, 6, 3}};
+  const bool of_triangle = n_corners == 3;
+  const Faces& faces = of_triangle    ? (n_nodes == 6 || n_nodes == 7 ? triangle_6 : triangle)
+                       : n_nodes == 8 ? quad_8
+                       : n_nodes == 9 ? quad_9
+                                      : quad;
+  for (const std::vector<int>& face : faces) {
+    for (int k : face) polygons.corners.push_back(nodes[k]);
+    polygons.ends.push_back(polygons.corners.size());
+  }
+  polygons.second_order += faces.size() > 1;
+  polygons.higher_order += faces.size() == 1 && n_nodes > n_corners;
+  return static_cast<int>(faces.size());
+}
+
 void set_faces(Stream& stream, const Polygons& polygons) {
   Surface& s = stream.surface;
   Triangulation triangulation(s);
@@ -127,6 +147,12 @@ void set_faces(Stream& stream, const Polygons& polygons) {
     first = polygons.ends[f];
   }
   s.vertex.rows = s.points.size();
+  if (polygons.second_order)
+    stream.remarks.push_back("read flat between their nodes: " + std::to_string(polygons.second_order) +
+                             " curved elements of second order");
+  if (polygons.higher_order)
+    stream.remarks.push_back("read by their corners alone: " + std::to_string(polygons.higher_order) +
+                             " curved elements of higher order");
   auto of_triangles = [&](const auto& of_faces) {
     std::decay_t<decltype(of_faces)> v(from.size());
     for (std::size_t t = 0; t < v.size(); ++t) v[t] = of_faces[from[t]];

@@ -15,10 +15,17 @@ struct Polygons {
   std::vector<std::size_t> ends;
   std::vector<int> patch;
   Table columns{"face", 0, {}};
+  int second_order = 0, higher_order = 0;  ///< finite elements that add_element made flat
 };
 
 /// More corners than this in one face are a mistake of the file, and would take quadratic time.
 constexpr int max_corners = 10000;
+
+/// Adds a finite element of `n_corners` (3 or 4) corners by all its nodes: the corners, then those within its
+/// sides from corner 0 on, then inner ones. One of second order (6 or 7 nodes; 8 or 9) becomes flat faces
+/// between its nodes, four or five; one of higher order a face of its corners alone. Returns how many faces
+/// it became. set_faces tells of both.
+int add_element(Polygons& polygons, const int* nodes, int n_corners, int n_nodes);
 
 /// Triangles of the faces, in order, with their labels as face column `patch`, and the other columns. A
 /// quadrilateral is cut along the diagonal that gives the better triangles and does not fold; larger faces

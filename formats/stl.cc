@@ -32,8 +32,7 @@ void add_facet(Mesh& mesh, const Vec3 (&p)[3]) {
   mesh.tris.push_back({v, v + 1, v + 2});
 }
 
-Stream read_binary(std::string_view bytes, const std::string& where) {
-  const std::size_t n = declared_facets(bytes);
+Stream read_binary(std::string_view bytes, std::size_t n, const std::string& where) {
   if (n > max_facets)
     throw BadInput(where + ":80: the file has " + std::to_string(n) + " triangles, the limit is " +
                    std::to_string(max_facets));
@@ -137,10 +136,28 @@ std::string write_binary(const Surface& s) {
   return out;
 }
 
+/// How many triangles a binary file has whose size is not that of the count it declares, and a remark on it:
+/// as many as it has bytes for if the writer did not know their number, which leaves 0 or -1; the declared
+/// count if bytes follow that. The count is 0 if the file is cut off, or no binary STL.
+std::pair<std::size_t, std::string> facets_by_size(std::string_view bytes) {
+  if (bytes.size() < head_bytes + facet_bytes) return {};
+  const std::size_t declared = declared_facets(bytes), room = (bytes.size() - head_bytes) / facet_bytes;
+  const std::string counts = "the binary stl declares " + std::to_string(declared) +
+                             " triangles and has room for " + std::to_string(room);
+  if (declared == 0 || declared == 0xFFFFFFFF)
+    return {(bytes.size() - head_bytes) % facet_bytes == 0 ? room : 0, counts + ": all are read"};
+  // more bytes after the triangles than they have themselves are another kind of file
+  return {declared <= room && room < 2 * declared ? declared : 0, counts + ": what follows is left out"};
+}
+
 }  // namespace
 
 bool is_binary_stl(std::string_view bytes) {
   return bytes.size() >= head_bytes && bytes.size() == head_bytes + facet_bytes * declared_facets(bytes);
+}
+
+bool is_odd_stl(std::string_view bytes) {
+  return !binary_stl_mismatch(bytes).empty() && facets_by_size(bytes).first > 0;
 }
 
 bool is_stl(std::string_view bytes) { return is_binary_stl(bytes) || begins_with_solid(bytes); }
@@ -155,9 +172,14 @@ std::string binary_stl_mismatch(std::string_view bytes) {
 }
 
 Stream read_stl(std::string_view bytes, const std::string& where) {
-  if (is_binary_stl(bytes)) return read_binary(bytes, where);
-  if (std::string size = binary_stl_mismatch(bytes); !size.empty()) throw BadInput(where + ":80: " + size);
-  return read_text(bytes, where);
+  if (is_binary_stl(bytes)) return read_binary(bytes, declared_facets(bytes), where);
+  const std::string why = binary_stl_mismatch(bytes);
+  if (why.empty()) return read_text(bytes, where);
+  const auto [n, remark] = facets_by_size(bytes);
+  if (n == 0) throw BadInput(where + ":80: " + why);
+  Stream stream = read_binary(bytes, n, where);
+  stream.remarks.push_back(remark);
+  return stream;
 }
 
 std::string write_stl(const Stream& stream, bool ascii) {

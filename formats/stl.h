@@ -8,6 +8,9 @@ namespace meshpipe {
 /// A binary file is told by its size, 84 + 50 n bytes with n the count it declares, whatever its first word.
 bool is_binary_stl(std::string_view bytes);
 bool is_stl(std::string_view bytes);
+/// A binary file whose size is not the one it declares, but may be read: with bytes after its triangles, or
+/// with the count 0 or -1 of writers that did not know it. To be asked last, after all other formats.
+bool is_odd_stl(std::string_view bytes);
 /// Why bytes that look binary are no binary STL, with both sizes; empty if they are text.
 std::string binary_stl_mismatch(std::string_view bytes);
 /// Three vertices a triangle (STL does not share them); each solid is a patch, numbered from 1, with its

@@ -116,14 +116,19 @@ int Text::integer(const char* what) {
     left_.remove_prefix(stop - left_.data());
     return small;
   }
-  std::string_view w = word();
-  long long value;
-  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
-  if (!parse_integer(w, value)) fail(quoted(w) + " where " + what + " is due");
+  const long long value = wide(what);
   if (value < INT_MIN || value > INT_MAX)
     fail(std::string(what) + " is " + std::to_string(value) + ", beyond the largest, " +
          std::to_string(INT_MAX));
   return static_cast<int>(value);
+}
+
+long long Text::wide(const char* what) {
+  const std::string_view w = word();
+  long long value;
+  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
+  if (!parse_integer(w, value)) fail(quoted(w) + " where " + what + " is due");
+  return value;
 }
 
 int Text::count(const char* what, std::size_t least) {

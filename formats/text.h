@@ -32,6 +32,8 @@ class Text {
   /// The next word, on whatever line it is, as a number or an int.
   double next_number(const char* what);
   int next_integer(const char* what);
+  /// The next word of the line as a whole number, which may be beyond int.
+  long long wide(const char* what);
   /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
   void skip(std::size_t n);
   /// The next word again.

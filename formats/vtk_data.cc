@@ -32,6 +32,10 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       fail("of type " + std::to_string(type) + " has " + std::to_string(n) + " points, " +
            std::to_string(n < least ? least : most) + " are due");
   };
+  auto element = [&](int n_corners) {
+    const int added = add_element(polygons, corners, n_corners, static_cast<int>(n));
+    cell.insert(cell.end(), added, cells);
+  };
   switch (type) {
     case vtk_triangle:
       due(3, 3);
@@ -54,10 +58,34 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       due(4, 4);
       add({corners[0], corners[1], corners[2], corners[3]});
       break;
+    case 22:  // quadratic triangles and quadrilaterals, with or without a node in the middle
+      due(6, 6);
+      element(3);
+      break;
+    case 23:
+      due(8, 8);
+      element(4);
+      break;
+    case 28:
+      due(9, 9);
+      element(4);
+      break;
+    case 34:
+      due(7, 7);
+      element(3);
+      break;
+    case 69:  // Lagrange's triangles and quadrilaterals of any order
+      due(3, max_corners);
+      element(3);
+      break;
+    case 70:
+      due(4, max_corners);
+      element(4);
+      break;
     default:  // vertices, lines and volumes
-      for (int curved : {22, 23, 28, 30, 34, 36, 63, 64, 69, 70, 76, 77})
+      for (int curved : {30, 36, 61, 62, 63, 76, 77})
         if (type == curved)
-          fail("is of type " + std::to_string(type) + ", which is curved, but only flat ones are read");
+          fail("is of type " + std::to_string(type) + ", a kind of curved cells that is not read");
       break;
   }
   ++cells;

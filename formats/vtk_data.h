@@ -19,9 +19,9 @@ struct VtkData {
   int cells = 0;
   std::vector<Array> point_data, cell_data, field_data;
 
-  /// Counts a cell and keeps it if it is a piece of surface: a polygon, its triangles for a strip.
-  /// Throws BadInput for a corner that is no point, and for curved cells, whose corners alone would be
-  /// another surface.
+  /// Counts a cell and keeps it if it is a piece of surface: a polygon, its triangles for a strip, what
+  /// add_element makes of a curved one. Throws BadInput for a corner that is no point, and for the kinds of
+  /// curved cells whose middle nodes do not lie on the surface.
   void add_cell(int type, const int* corners, std::size_t n, const std::string& place);
 };
 

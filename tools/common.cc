@@ -151,7 +151,12 @@ Stream Io::read() {
 std::string Io::read_bytes(const std::string& path) { return std::string(std::string_view(read_all(path))); }
 
 Stream Io::read(const std::string& path) const {
-  return read_any(read_all(path), path == "-" ? "stdin" : path);
+  Stream stream = read_any(read_all(path), path == "-" ? "stdin" : path);
+  // what the reader of a foreign file had to leave out; a stream brings the remarks of programs that have
+  // told
+  if (stream.history.empty())
+    for (const std::string& remark : stream.remarks) say(remark);
+  return stream;
 }
 
 void Io::write(Stream& stream) {

@@ -175,7 +175,7 @@ int main(int argc, char** argv) {
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
           stream.tables.clear();
           for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
-          for (const char* column : {"size", "ref_face", "b1", "b2", "kind", "line"})
+          for (const char* column : {"ref_face", "b1", "b2", "kind", "line"})
             stream.surface.vertex.erase(column);
         }
         stream.input_triangles = (int)stream.surface.tris.size();

@@ -37,7 +37,6 @@ Body make(const Options& o) {
     mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed);
   }
   body.patch.assign(mesh.tris.size(), 0);
-  body.names = {o.kind};
   return body;
 }
 

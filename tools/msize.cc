@@ -1,59 +1,163 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // msize: the size field, the target edge length at every vertex.
 #include <cmath>
+#include <filesystem>
 
+#include "formats/inria.h"
+#include "formats/size_field.h"
+#include "lib/bvh.h"
+#include "lib/expression.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
 
-/// Half-edges are numbered by int.
-constexpr int most_triangles = 715827882;
+namespace {
+
+/// A .sol file has values only: the mesh they are for has its name.
+Stream read_with_mesh(const Io& io, const std::string& path) {
+  for (const char* extension : {".mesh", ".meshb"})
+    if (const auto mesh = std::filesystem::path(path).replace_extension(extension);
+        std::filesystem::exists(mesh)) {
+      Stream stream = io.read(mesh.string());
+      stream.surface.vertex = Table{"vertex", stream.surface.points.size(), {}};
+      read_sol(stream, Io::read_bytes(path), path);
+      return stream;
+    }
+  throw BadInput(path + ": the mesh it is for is not there: a .mesh or .meshb of the same name");
+}
+
+/// FILE or FILE:COLUMN, the first if that is there.
+SizeField read_field(const Io& io, const std::string& text) {
+  std::string path = text, column;
+  if (const std::size_t colon = text.rfind(':');
+      colon != std::string::npos && !std::filesystem::exists(text)) {
+    path = text.substr(0, colon);
+    column = text.substr(colon + 1);
+  }
+  if (path.ends_with(".sol") || path.ends_with(".solb"))
+    return size_field_of(read_with_mesh(io, path), column, path);
+  const std::string bytes = Io::read_bytes(path);
+  return is_size_table(bytes) ? read_size_table(bytes, path)
+                              : size_field_of(read_any(bytes, path), column, path);
+}
+
+/// The data as doubles: read as the size later.
+void prepare_data(Surface& s, const std::string& name) {
+  const Column* c = s.vertex.find(name);
+  if (!c) {
+    std::string known;
+    for (const Column& other : s.vertex.columns) known += (known.empty() ? "" : ", ") + other.name;
+    throw NotAdmissible("no vertex data '" + name + "'; there is " + (known.empty() ? "none" : known));
+  }
+  std::visit([&](const auto& v) { s.vertex.set(name, std::vector<double>(v.begin(), v.end())); },
+             decltype(Column::data)(c->data));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  double size = 0;
-  int triangles = 0;
+  SizeOptions o;
+  std::string field, formula;
   auto add_options = [&](CLI::App& app) {
-    const CLI::Validator positive(
-        [](std::string& text) {
-          double h = 0;
-          const bool good = CLI::detail::lexical_cast(text, h) && std::isfinite(h) && h > 0;
-          return good ? std::string() : "'" + text + "' is not a positive length";
-        },
-        "");
-    auto* fixed = app.add_option("--size", size, "target edge length")->check(positive)->type_name("H");
-    app.add_option("--triangles", triangles,
-                   "the length that gives this many triangles (default: as many as the input had)")
-        ->check(CLI::Range(1, most_triangles))
+    auto length = [&](const char* name, double& value, const char* what, const char* type) {
+      return app.add_option(name, value, what)
+          ->check(CLI::Validator(
+              [](std::string& text) {
+                double h = 0;
+                const bool good = CLI::detail::lexical_cast(text, h) && std::isfinite(h) && h > 0;
+                return good ? std::string() : "'" + text + "' is not a positive number";
+              },
+              ""))
+          ->type_name(type);
+    };
+    auto* fixed = length("--size", o.size, "target edge length", "H");
+    app.add_option(
+           "--triangles", o.triangles,
+           "as many triangles as this, spread as the other options ask (default: as many as the input had)")
+        ->check(CLI::Range(1, 715827882))
         ->type_name("N")
         ->excludes(fixed);
+    length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
+    length("--chord", o.chord, "largest distance of an edge from its arc", "EPS");
+    app.add_option("--data", o.data, "the input's vertex data of this name")->type_name("NAME");
+    app.add_option("--field", field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h")
+        ->type_name("FILE[:NAME]");
+    app.add_option("--expression", formula, "size as a formula of x, y, z and curvature")->type_name("EXPR");
+    length("--min", o.min, "no size below this", "H");
+    length("--max", o.max, "no size above this", "H");
+    length("--gradation", o.gradation, "growth of the size per unit of length, where it varies (default 0.3)",
+           "G");
   };
   auto body = [&](Io& io) {
+    if (o.min > 0 && o.max > 0 && o.min > o.max)
+      throw BadUsage("--min " + std::to_string(o.min) + " is larger than --max " + std::to_string(o.max));
+    SizeField sizes;
+    std::unique_ptr<Bvh> tree;
+    std::unique_ptr<Expression> expression;
+    if (!formula.empty())
+      expression =
+          std::make_unique<Expression>(formula, std::vector<std::string>{"x", "y", "z", "curvature"});
     Stream stream = io.read();
     Surface& s = stream.surface;
-    if (s.tris.empty()) throw NotAdmissible("the surface has no triangles");
-    if (size == 0) {
-      const int own = stream.input_triangles > 0 ? stream.input_triangles : static_cast<int>(s.tris.size());
-      size = size_for_count(total_area(s), triangles > 0 ? triangles : own);
-      if (!(size > 0)) throw NotAdmissible("the surface has no area");
+    if (!field.empty()) {
+      sizes = read_field(io, field);
+      tree = std::make_unique<Bvh>(sizes);
     }
-    const double wanted = total_area(s) / (std::sqrt(3.0) / 4 * size * size);
-    if (!(wanted < most_triangles)) {
-      char why[120];
-      std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, the limit is %d", size, wanted,
-                    most_triangles);
-      throw NotAdmissible(why);
+    if (!o.data.empty()) prepare_data(s, o.data);
+    if (tree || expression)
+      o.at = [&](Vec3 p, double curvature) {
+        double h = std::numeric_limits<double>::infinity();
+        if (tree) {
+          const Place q = tree->nearest(p).place;
+          const Tri& t = sizes.tris[q.face];
+          h = q.b0 * sizes.size[t[0]] + q.b1 * sizes.size[t[1]] + q.b2 * sizes.size[t[2]];
+        }
+        if (!expression) return h;
+        const double e = (*expression)({p.x, p.y, p.z, curvature});
+        return e < h || std::isnan(e) ? e : h;
+      };
+    const bool other = o.per_turn > 0 || o.chord > 0 || !o.data.empty() || o.at;
+    if (!(o.size > 0) && !(o.triangles > 0) && !other)
+      o.triangles = stream.input_triangles > 0 ? stream.input_triangles : static_cast<double>(s.tris.size());
+
+    Table* chart = nullptr;
+    for (Table& t : stream.tables)
+      if (t.name == "chart_vertex") chart = &t;
+    const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
+    if (r.added > 0) {  // what points to faces is not true any more
+      for (const char* table : {"line", "line_use", "line_vertex", "chart_point", "chart_face"})
+        stream.erase(table);
+      for (Table& t : stream.tables)
+        if (t.name == "part" && t.has("faces")) {
+          auto& faces = t.get<int>("faces");
+          std::fill(faces.begin(), faces.end(), 0);
+          for (int p : s.face.get<int>("part")) ++faces[p];
+        }
     }
-    s.vertex.set("size", std::vector<double>(s.points.size(), size));
-    char text[64];
-    std::snprintf(text, sizeof text, "target edge length %.6g", size);
+    char text[160];
+    if (r.smallest == r.largest)
+      std::snprintf(text, sizeof text, "target edge length %.6g", r.smallest);
+    else
+      std::snprintf(text, sizeof text,
+                    "target edge length %.6g to %.6g, about %.0f triangles; %d edges split", r.smallest,
+                    r.largest, r.triangles, r.added);
     io.say(text);
-    io.report["size"] = size;
+    if (r.scale != 1)
+      io.say("for this number of triangles the sizes asked for are multiplied by " + std::to_string(r.scale));
+    io.report["size"] = r.smallest;
+    io.report["largest_size"] = r.largest;
+    io.report["expected_triangles"] = r.triangles;
+    io.report["factor"] = r.scale;
+    io.report["split_edges"] = r.added;
     io.write(stream);
   };
-  return run_tool(argc, argv, "msize",
-                  "Set the size field, the target edge length at every vertex of the surface.\n\n"
-                  "examples:\n  msize --size 0.8 tree.stl -o sized.ply\n"
-                  "  msize --triangles 20000 tree.stl -o sized.ply",
-                  add_options, body);
+  return run_tool(
+      argc, argv, "msize",
+      "Set the size field, the target edge length at every vertex of the surface: the smallest of "
+      "what the options ask for.\n\n"
+      "examples:\n  msize --size 0.8 tree.stl -o sized.ply\n"
+      "  msize --triangles 20000 --curvature 24 tree.stl -o sized.ply\n"
+      "  msize --expression '0.02 + 0.1 * sqrt(x^2 + y^2)' tree.stl -o sized.ply",
+      add_options, body);
 }

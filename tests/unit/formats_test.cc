@@ -125,7 +125,7 @@ static Stream two_patches() {
   s.surface.vertex.set<double>("size", std::vector<double>(8, 0.5));
   s.surface.face.set<int>("patch", {3, 3, 8, 8});
   s.surface.face.set<int>("part", {0, 1, 1, 1});
-  s.names = {{2, 3, "left side"}, {2, 8, "100%"}};
+  s.names = {{2, 3, "left side"}, {2, 8, "100% of \"it\", 25%22"}};
   return s;
 }
 
@@ -356,7 +356,11 @@ TEST(Msh, PhysicalTagsAreThePatchesAndElsewhereElementaryOnes) {
   EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{7, 9 + 5, 9, 9}));
   EXPECT_EQ(s.surface.tris[1], (Tri{0, 2, 3}));
   EXPECT_EQ(s.name_of(2, 7), "outer wall");
-  EXPECT_EQ(s.names.size(), 2u);
+  EXPECT_EQ(s.name_of(1, 7), "edge");
+  EXPECT_EQ(s.names.size(), 3u);
+  // the line element is an edge of the first triangle
+  EXPECT_EQ(s.surface.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{1, 0, 1, 0}));
+  EXPECT_EQ(s.find("line")->get<int>("tag"), std::vector<int>{7});
 }
 
 TEST(Msh, OtherVersionsAndBadNodesAreRefused) {
@@ -372,7 +376,7 @@ TEST(Msh, OtherVersionsAndBadNodesAreRefused) {
   EXPECT_PRED1(names_a_place, failure(with("$Nodes\n4", "$Nodes\n5")));
   EXPECT_PRED1(names_a_place, failure(with("$Nodes\n4", "$Nodes\n3")));
   EXPECT_PRED1(names_a_place, failure(with("$Elements\n5", "$Elements\n2147483647")));
-  EXPECT_PRED1(names_a_place, failure(with("5 3 2 9", "5 9 2 9")));
+  EXPECT_PRED1(names_a_place, failure(with("5 3 2 9", "5 9 2 9")));  // too few nodes for a curved one
 }
 
 TEST(Msh, TagsBelowOneAreCountedUpWithTheirNames) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sizes that come in a file of their own: another mesh with data, or a table of points.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/stream.h"
+
+namespace meshpipe {
+
+/// Points with a size each, and triangles between them on which it is linear; a point that is in no triangle
+/// of the file is one by itself (three equal corners).
+struct SizeField : Mesh {
+  std::vector<double> size;
+};
+
+/// The vertex column `column` of a mesh; if that is empty, `size`, `h` or the only one. Throws BadInput
+/// naming the columns there are, or a value that is not positive.
+SizeField size_field_of(const Stream& mesh, const std::string& column, const std::string& where);
+
+/// True for a text whose first row that is no comment, or its second after a line of names, begins with
+/// numbers.
+bool is_size_table(std::string_view bytes);
+/// Rows of x y z h, parted by blanks, commas or semicolons; lines that begin with # and a first line of names
+/// are skipped. Throws BadInput with the line.
+SizeField read_size_table(std::string_view bytes, const std::string& where);
+
+}  // namespace meshpipe
