@@ -92,7 +92,11 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
   const std::vector<Tri>& tris = disk.tris;
   std::vector<int> corner(n, -1), from(n, -1), seen, path;
   std::vector<double> distance(n, HUGE_VAL);
-  for (int h = 0; h < 3 * disk.part_tris; ++h) corner[origin(tris, h)] = h;
+  std::vector<char> on_border(n, 0);
+  for (int h = 0; h < 3 * disk.part_tris; ++h) {
+    corner[origin(tris, h)] = h;
+    if (opposite[h] < 0) on_border[origin(tris, h)] = on_border[target(tris, h)] = 1;
+  }
   using Item = std::pair<double, int>;
   for (std::size_t f = 0; f + 1 < disk.fan_begin.size(); ++f) {
     const int begin = disk.fan_begin[f], end = disk.fan_begin[f + 1];
@@ -111,13 +115,17 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
       queue.push({d, v});
     };
     for (int t = begin; t < end; ++t) reach(tris[t][0], 0, -1);
-    int reached = -1;
-    while (!queue.empty() && reached < 0) {
+    int last = -1;  // of the path: the first vertex with a neighbour on the other side
+    while (!queue.empty() && last < 0) {
       const auto [d, v] = queue.top();
       queue.pop();
       if (d > distance[v]) continue;
-      if ((field[v] > 0) != side) reached = v;
-      auto visit = [&](int w) { reach(w, d + norm(disk.points[w] - disk.points[v]), v); };
+      auto visit = [&](int w) {
+        if ((field[w] > 0) != side)
+          last = v;
+        else if (!on_border[w])
+          reach(w, d + norm(disk.points[w] - disk.points[v]), v);
+      };
       int h = corner[v];
       do {
         visit(target(tris, h));
@@ -130,13 +138,12 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
           visit(target(tris, h));
         }
     }
-    if (reached < 0) continue;
+    if (last < 0) continue;
     path.clear();
     bool cuts_open = true;
-    for (int v = from[reached]; v >= 0 && cuts_open; v = from[v]) {
-      bool on_border;
-      const int changes = changes_around(tris, opposite, field, corner[v], on_border);
-      cuts_open = changes == 2 && on_border == (from[v] < 0);
+    for (int v = last; v >= 0 && cuts_open; v = from[v]) {
+      bool border;
+      cuts_open = changes_around(tris, opposite, field, corner[v], border) == 2;
       if (cuts_open) {
         field[v] = -field[v];
         path.push_back(v);
@@ -283,42 +290,49 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
 
   std::vector<double> level(n);
   std::vector<int> changes, rest;
-  auto settle = [&](int most_rounds) {
-    for (int round = 0, flipped = n; round < most_rounds && flipped > n / 10000; ++round) {
-      for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+  // gives the vertices the sides of `level`, as far as the topology lets it; returns how many changed
+  auto adopt_level = [&] {
+    changes.clear();
+    for (int v = 0; v < n; ++v)
+      if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
+    int flipped = 0;
+    for (std::size_t before = 0; changes.size() != before;) {  // from the level inwards
+      before = changes.size();
+      rest.clear();
+      for (int v : changes)
+        if (is_simple(tris, opposite, field, corner[v])) {
+          field[v] = -field[v];
+          ++flipped;
+        } else {
+          rest.push_back(v);
+        }
+      changes.swap(rest);
+    }
+    // a vertex that has to stay on its side is passed closely
+    constexpr double close = 1e-2, least = 1e-12;
+    for (int v = 0; v < n; ++v) {
+      const double size = std::abs(level[v]);
+      field[v] = std::copysign(
+          (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
+    }
+    return flipped;
+  };
+  auto take_sides = [&] {
+    for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+  };
+  auto settle = [&] {
+    for (int round = 0, flipped = n; round < rounds && flipped > n / 1000; ++round) {
+      take_sides();
       subtract_section(level);
       smooth(level);
       smooth(level);
-      changes.clear();
-      for (int v = 0; v < n; ++v)
-        if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
-      // from the level inwards, as far as the topology lets it
-      flipped = 0;
-      for (std::size_t before = 0; changes.size() != before;) {
-        before = changes.size();
-        rest.clear();
-        for (int v : changes)
-          if (is_simple(tris, opposite, field, corner[v])) {
-            field[v] = -field[v];
-            ++flipped;
-          } else {
-            rest.push_back(v);
-          }
-        changes.swap(rest);
-      }
-      // a vertex that has to stay on its side is passed closely
-      constexpr double close = 1e-2, least = 1e-12;
-      for (int v = 0; v < n; ++v) {
-        const double size = std::abs(level[v]);
-        field[v] = std::copysign(
-            (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
-      }
+      flipped = adopt_level();
     }
   };
-  settle(rounds);
-  for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+  settle();
+  take_sides();
   smooth(level);
-  if (drop_hairs(tris, disk.part_tris, level, field)) settle(rounds);
+  if (drop_hairs(tris, disk.part_tris, level, field)) settle();
 }
 
 }  // namespace meshpipe
