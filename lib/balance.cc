@@ -238,8 +238,19 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
   return branches;
 }
 
+void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field) {
+  constexpr double snapped = 0.005;  // of an edge: less than any snap but 0
+  for (std::size_t h = 0; h < crease.size(); ++h) {
+    if (!crease[h]) continue;
+    const int u = origin(disk.tris, h), v = target(disk.tris, h), apex = target(disk.tris, next(h));
+    if ((field[u] > 0) != (field[v] > 0) || (field[u] > 0) == (field[apex] > 0)) continue;
+    for (int w : {u, v})
+      field[w] = std::copysign(std::min(std::abs(field[w]), snapped * std::abs(field[apex])), field[w]);
+  }
+}
+
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
-                   std::vector<double>& field, int rounds) {
+                   const std::vector<char>& crease, std::vector<double>& field, int rounds) {
   const int n = disk.part_vertices;
   const std::vector<Tri>& tris = disk.tris;  // only those of the part are read: others are no one's opposite
   std::vector<double> mass(n, 0);
@@ -255,13 +266,17 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
   for (int v = 0; v < n; ++v) mass[v] /= branches.radius[v] * branches.radius[v];
   // M / r^2 + K: around a tube the smoother, applied twice, leaves a third of the first harmonic and a
   // fifteenth of the second
-  constexpr double conductance = 0.7;
+  constexpr double conductance = 0.7, across_crease = 0.1;
+  std::vector<char> on_crease(n, 0);
+  for (std::size_t h = 0; h < crease.size(); ++h)
+    if (crease[h]) on_crease[origin(tris, h)] = on_crease[target(tris, h)] = 1;
   std::vector<Entry<double>> matrix;
   matrix.reserve(3 * disk.part_tris + n);
   std::vector<double> diagonal = mass;
   for (int h = 0; h < 3 * disk.part_tris; ++h) {
     const int a = origin(tris, h), b = target(tris, h);
-    const double k = conductance * disk.weights[h];
+    const bool leaves_crease = on_crease[a] + on_crease[b] == 1;
+    const double k = conductance * disk.weights[h] * (leaves_crease ? across_crease : 1);
     diagonal[a] += k, diagonal[b] += k;
     matrix.push_back({std::max(a, b), std::min(a, b), -k});
   }

@@ -32,8 +32,13 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
 /// S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the ring. On a tube that
 /// leaves mostly the first harmonic around it: two halves on opposite sides. Vertices change sides one after
 /// another and only where that keeps the topology of both sides; so a strip that is too thin grows, and the
-/// ends of the cut slide along the borders.
+/// ends of the cut slide along the borders. Half-edges with crease[h] != 0 (empty: none) conduct little from
+/// one of their sides to the other, so that the cut stays where it meets them.
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
-                   std::vector<double>& field, int rounds);
+                   const std::vector<char>& crease, std::vector<double>& field, int rounds);
+
+/// Where the zero level passes beside a crease, within a triangle, moves it onto the crease as closely as
+/// cut_by_scalar_field snaps: no region that thin is left between the two. Signs stay.
+void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field);
 
 }  // namespace meshpipe

@@ -38,8 +38,21 @@ struct Assessment {
 struct Part {
   SubMesh mesh;
   std::vector<int> opposite;
+  std::vector<char> crease;  ///< of half-edges: model edges inside the part; empty if there are none
   FilledDisk disk;
 };
+
+std::vector<char> creases(const Surface& surface, const Part& part) {
+  std::vector<char> crease;
+  if (!surface.face.has("model")) return crease;
+  const auto& model = surface.face.get<std::uint8_t>("model");
+  for (std::size_t h = 0; h < part.opposite.size(); h++) {
+    if (part.opposite[h] < 0 || !(model[part.mesh.face[h / 3]] >> h % 3 & 1)) continue;
+    crease.resize(part.opposite.size(), 0);
+    crease[h] = 1;
+  }
+  return crease;
+}
 
 int root_of(std::vector<int>& parent, int v) {
   while (parent[v] != v) v = parent[v] = parent[parent[v]];
@@ -177,8 +190,10 @@ CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
   }
   constexpr int rounds = 8;
   reach_holes(part.disk, part.opposite, cut.field);
-  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), cut.field, rounds);
+  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, cut.field,
+                rounds);
   drop_fragments(part, cut.field);
+  follow_creases(part.disk, part.crease, cut.field);
   return cut;
 }
 
@@ -351,6 +366,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     Part part;
     part.mesh = std::move(split_by_label(surface, mine, 1)[0]);
     part.opposite = opposite_halfedges(part.mesh.tris, part.mesh.points.size());
+    part.crease = creases(surface, part);
     part.disk = fill_holes(part.mesh);
     MultiscaleCut cut;
     cut.part = task.part;
