@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A histogram as an SVG picture.
+// Histograms as an SVG picture.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace meshpipe {
 
-/// Shares of the triangles by kappa, before (outlined) and after (filled), over equal bins of [0, 1].
-std::string kappa_histogram_svg(const std::vector<int>& before, const std::vector<int>& after);
+/// Counts over equal parts of [low, high], and of how many in all (0: of their sum).
+struct Panel {
+  std::string title;
+  double low, high;
+  std::vector<int> before, after;
+  int all_before = 0, all_after = 0;
+};
+
+/// One panel beside the other: shares before (outlined) and after (filled), in percent.
+std::string histogram_svg(const std::vector<Panel>& panels);
 
 }  // namespace meshpipe

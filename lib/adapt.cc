@@ -10,7 +10,6 @@ namespace {
 // Lengths are over the size, so that the wanted edge has length one. Halves of the longest edge allowed are
 // as long as the shortest allowed.
 constexpr double longest = 1.44, shortest = 0.72;
-constexpr Spacing no_closer{0.5, 0.3};  // of a vertex that a split makes
 constexpr int most_rounds = 40, polishing_rounds = 4;
 
 class Adapter {
@@ -19,7 +18,7 @@ class Adapter {
 
   void run() {
     // splitting alone halves edges until none is long; then all operations in turn
-    for (int round = 0; round < most_rounds && split_long() > 0; ++round) {
+    for (int round = 0; round < most_rounds && (split_long() > 0 || insert_missed() > 0); ++round) {
     }
     for (int round = 0; round < polishing_rounds; ++round) {
       flip_to_delaunay(m_);
@@ -70,17 +69,16 @@ class Adapter {
   int split_long() {
     gather([&](int h, double l) { return l > longest || bent_length(h) > longest; }, std::greater<>());
     int done = 0;
-    for (const Edge& e : edges_) {
-      if (!is_there(e)) continue;
-      const int v = cdt_.origin(e.half_edge), w = cdt_.target(e.half_edge);
-      const Vec2 p = lerp(cdt_.points[v], cdt_.points[w], 0.5);
-      const Site middle = field_.at(p, m_.site[v].place.face);
-      if (norm(middle.space - m_.site[v].space) + norm(middle.space - m_.site[w].space) <=
-          longest * middle.size)
-        continue;
-      // by rounding the middle lies in either triangle of the edge
-      const int t = cdt_.walk(p, e.half_edge / 3);
-      done += t >= 0 && insert_site(m_, p, middle, t, no_closer);
+    for (const Edge& e : edges_)
+      if (is_there(e)) done += split_long_edge(m_, field_, e.half_edge, longest);
+    return done;
+  }
+
+  int insert_missed() {
+    int done = 0;
+    for (const Missed& m : missed_vertices(m_, field_)) {
+      const int t = cdt_.walk(m.p, m.triangle);
+      done += t >= 0 && insert_site(m_, m.p, field_.at(m.p, m.face), t, {0.5, 0.3});
     }
     return done;
   }

@@ -8,40 +8,25 @@
 namespace meshpipe {
 namespace {
 
-constexpr int leaf_size = 4;
 constexpr int task_size = 4096;  // smaller subtrees are not worth a task
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-inline double outside(double p, double lo, double hi) { return std::max(std::max(lo - p, p - hi), 0.0); }
-
-inline double squared_distance(const Vec3& p, const Box& box) {
-  const double x = outside(p.x, box.lo.x, box.hi.x);
-  const double y = outside(p.y, box.lo.y, box.hi.y);
-  const double z = outside(p.z, box.lo.z, box.hi.z);
-  return x * x + y * y + z * z;
+/// The four parts that `count` items are split into: halves of halves.
+std::array<int, 4> parts(int count) {
+  const int left = count / 2, right = count - left;
+  return {left / 2, left - left / 2, right / 2, right - right / 2};
 }
 
-/// Nodes of a tree over `count` items: every split halves, so the shape is known beforehand.
-int tree_size(int count) {
-  // all nodes of a level hold n or n + 1 items
-  long long n = count, few = 1, many = 0, total = 0;
-  for (;;) {
-    // `few` nodes of n items and `many` of n + 1
-    total += few + many;
-    const bool split_few = n > leaf_size, split_many = n + 1 > leaf_size;
-    if (!split_few && !(split_many && many)) return (int)total;
-    const long long f = split_few ? few : 0, m = many;
-    // n = 2h + r: a node of n gives halves h and h + r; one of n + 1 gives h + r and h + 1
-    const long long h = n / 2;
-    if (n % 2 == 0) {
-      few = 2 * f + m;
-      many = m;
-    } else {
-      few = f;
-      many = f + 2 * m;
-    }
-    n = h;
-  }
+/// Nodes of trees over n and over n + 1 items, n >= 1; one item needs none. The parts of both hold n / 4 or
+/// n / 4 + 1 items.
+std::array<int, 2> tree_sizes(int n) {
+  if (n < 4) return {n > 1, 1};
+  const std::array<int, 2> below = tree_sizes(n / 4);
+  std::array<int, 2> sizes{1, 1};
+  for (int i = 0; i < 2; ++i)
+    if (n + i > 4)
+      for (int p : parts(n + i)) sizes[i] += below[p - n / 4];
+  return sizes;
 }
 
 Vec3 segment_weights(Vec3 p, Vec3 a, Vec3 b) {
@@ -108,34 +93,50 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   const int n = (int)mesh.tris.size();
   if (n == 0) throw std::logic_error("a bvh needs a triangle");
   std::vector<Item> items(n);
+  Box all = box_of(mesh, 0);
   for (int t = 0; t < n; ++t) {
     const Tri& v = mesh.tris[t];
-    const Vec3 s = mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]];
+    const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], s = a + b + c;
     items[t] = {{s.x, s.y, s.z}, t};
+    all = join(all, {lower(lower(a, b), c), upper(upper(a, b), c)});
   }
-  nodes_.resize(tree_size(n));
-  parent_.assign(nodes_.size(), 0);
+  centre_ = 0.5 * (all.lo + all.hi);
+  const Vec3 half = all.hi - centre_;
+  const double extent = std::max({half.x, half.y, half.z});
+  if (extent > 0) scale_ = 1 / extent;
+  nodes_.resize(std::max(1, tree_sizes(n)[0]));
 #pragma omp parallel if (n > 2 * task_size)
 #pragma omp single
-  build(items.data(), 0, n, 0, 1);
+  build(items.data(), 0, n, 0);
 }
 
-void Bvh::build(Item* items, int first, int count, int node, int children) {
+std::array<float, 3> Bvh::own_units(Vec3 p) const {
+  const Vec3 q = scale_ * (p - centre_);
+  auto within = [](double x) { return (float)std::clamp(x, -1e16, 1e16); };
+  return {within(q.x), within(q.y), within(q.z)};
+}
+
+void Bvh::set_child(int node, int k, int child, const Box& box) {
   Node& b = nodes_[node];
-  if (count <= leaf_size) {
-    b.first = first;
-    b.count = count;
-    b.box = box_of(mesh_, items[first].tri);
-    for (int i = first; i < first + count; ++i) {
-      order_[i] = items[i].tri;
-      b.box = join(b.box, box_of(mesh_, items[i].tri));
-    }
+  b.child[k] = child;
+  if (box.lo.x > box.hi.x) {  // no child: farther away than any point
+    for (int i = 0; i < 3; ++i) b.lo[i][k] = 1e18f, b.hi[i][k] = -1e18f;
     return;
   }
+  const auto lo = own_units(box.lo), hi = own_units(box.hi);
+  for (int i = 0; i < 3; ++i) {
+    b.lo[i][k] = lo[i] - slack;
+    b.hi[i][k] = hi[i] + slack;
+  }
+}
+
+/// Splits items at place `half` along the longest side of their centres' box.
+template <class Item>
+static void halve(Item* items, int count, int half) {
   std::array<double, 3> lo, hi;
   lo.fill(infinity);
   hi.fill(-infinity);
-  for (int i = first; i < first + count; ++i)
+  for (int i = 0; i < count; ++i)
     for (int k = 0; k < 3; ++k) {
       lo[k] = std::min(lo[k], items[i].centre[k]);
       hi[k] = std::max(hi[k], items[i].centre[k]);
@@ -143,80 +144,104 @@ void Bvh::build(Item* items, int first, int count, int node, int children) {
   int axis = 0;
   for (int k = 1; k < 3; ++k)
     if (hi[k] - lo[k] > hi[axis] - lo[axis]) axis = k;
-  const int half = count / 2;
-  std::nth_element(items + first, items + first + half, items + first + count,
+  std::nth_element(items, items + half, items + count,
                    [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
-  b.first = children;
-  b.count = 0;
-  parent_[children] = parent_[children + 1] = node;
-  // the two children stand side by side, then come the left one's descendants, then the right one's
-  const int left = children + 2, right = left + tree_size(half) - 1;
-  if (count > task_size) {
-#pragma omp task
-    build(items, first, half, children, left);
-    build(items, first + half, count - half, children + 1, right);
-#pragma omp taskwait
-  } else {
-    build(items, first, half, children, left);
-    build(items, first + half, count - half, children + 1, right);
-  }
-  b.box = join(nodes_[children].box, nodes_[children + 1].box);
 }
 
-void Bvh::search(int start, const Vec3& p, double& best, Hit& hit) const {
+Box Bvh::build(Item* items, int first, int count, int node) {
+  constexpr Box none{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  std::array<int, 4> part{};
+  if (count > 4) {
+    part = parts(count);
+    const int left = part[0] + part[1];
+    halve(items + first, count, left);
+    halve(items + first, left, part[0]);
+    halve(items + first + left, count - left, part[2]);
+  } else {
+    for (int k = 0; k < count; ++k) part[k] = 1;
+  }
+  std::array<Box, 4> box;
+  box.fill(none);
+  std::array<int, 4> child{}, start{};
+  // a node is followed by the trees of its children
+  const std::array<int, 2> below = count > 4 ? tree_sizes(count / 4) : std::array<int, 2>{};
+  for (int k = 0, at = first, free = node + 1; k < 4; ++k) {
+    start[k] = at;
+    child[k] = free;
+    at += part[k];
+    if (part[k] > 1) free += below[part[k] - count / 4];
+  }
+  const bool tasks = count > task_size;
+  for (int k = 0; k < 4; ++k) {
+    if (part[k] > 1) {
+#pragma omp task shared(box) if (tasks)
+      box[k] = build(items, start[k], part[k], child[k]);
+    } else if (part[k] == 1) {
+      const int t = items[start[k]].tri;
+      order_[start[k]] = t;
+      box[k] = box_of(mesh_, t);
+      child[k] = -1 - t;
+    }
+  }
+#pragma omp taskwait
+  Box all = none;
+  for (int k = 0; k < 4; ++k) {
+    set_child(node, k, child[k], box[k]);
+    all = join(all, box[k]);
+  }
+  return all;
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+  // the boxes are in single precision: what they say is taken with some slack
+  constexpr double trust = 1 + 1e-5;
+  const auto q = own_units(p);
+  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
+  auto limit = [&] { return (float)std::min(best * scale_ * scale_ * trust, 1e35); };
+  float most = limit();
+  Hit hit;
   struct Entry {
-    double distance;
-    int node;
-  } stack[64];
+    float distance;
+    int child;
+  } stack[96];
   int n = 0;
-  stack[n++] = {squared_distance(p, nodes_[start].box), start};
+  stack[n++] = {0, 0};
   while (n) {
     const Entry e = stack[--n];
-    if (e.distance > best) continue;
-    const Node& b = nodes_[e.node];
-    if (b.count == 0) {
-      const double dl = squared_distance(p, nodes_[b.first].box),
-                   dr = squared_distance(p, nodes_[b.first + 1].box);
-      const bool left_first = dl <= dr;
-      const Entry far{left_first ? dr : dl, b.first + left_first};
-      const Entry near{left_first ? dl : dr, b.first + !left_first};
-      if (far.distance <= best) stack[n++] = far;
-      if (near.distance <= best) stack[n++] = near;
-      continue;
-    }
-    for (int i = b.first; i < b.first + b.count; ++i) {
-      const Tri& v = mesh_.tris[order_[i]];
+    if (e.distance > most) continue;
+    if (e.child < 0) {
+      const int t = -1 - e.child;
+      const Tri& v = mesh_.tris[t];
       const Vec3 &x = mesh_.points[v[0]], &y = mesh_.points[v[1]], &z = mesh_.points[v[2]];
       const auto w = closest_on_triangle(p, x, y, z);
       const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
       const double dd = dot(d, d);
       if (dd < best || (hit.place.face < 0 && dd <= best)) {
         best = dd;
-        hit.place = {order_[i], w[0], w[1], w[2]};
-        hit.leaf = e.node;
+        most = limit();
+        hit.place = {t, w[0], w[1], w[2]};
       }
+      continue;
+    }
+    const Node& b = nodes_[e.child];
+    Four sum{};
+    for (int k = 0; k < 3; ++k) {
+      const Four below = b.lo[k] - q[k], above = q[k] - b.hi[k];
+      Four out = below > above ? below : above;
+      out = out > 0 ? out : Four{};
+      sum += out * out;
+    }
+    // the nearest child on top
+    const int bottom = n;
+    for (int k = 0; k < 4; ++k) {
+      const float d = sum[k];
+      if (!(d <= most)) continue;
+      int at = n++;
+      for (; at > bottom && stack[at - 1].distance < d; --at) stack[at] = stack[at - 1];
+      stack[at] = {d, b.child[k]};
     }
   }
-}
-
-Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
-  // a bound that is the very distance must not be cut off by rounding
-  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
-  Hit hit;
-  search(0, p, best, hit);
   if (hit.place.face < 0) return nearest(p);  // the bound was too small after all
-  hit.distance = std::sqrt(best);
-  return hit;
-}
-
-Bvh::Hit Bvh::nearest(Vec3 p, const Hit& close_by) const {
-  double best = std::numeric_limits<double>::max();
-  Hit hit;
-  search(close_by.leaf, p, best, hit);
-  for (int node = hit.leaf; node > 0; node = parent_[node]) {
-    const int sibling = node % 2 ? node + 1 : node - 1;
-    if (squared_distance(p, nodes_[sibling].box) < best) search(sibling, p, best, hit);
-  }
   hit.distance = std::sqrt(best);
   return hit;
 }

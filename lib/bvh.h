@@ -30,8 +30,8 @@ inline bool overlap(const Box& a, const Box& b) {
          (a.lo.z <= b.hi.z) & (a.hi.z >= b.lo.z);
 }
 
-/// Built by median splits in O(n log n), in parallel, the same tree at any number of threads. Queries do not
-/// allocate.
+/// A tree of nodes with four children each, whose boxes are tested together. Built by median splits in
+/// O(n log n), in parallel, the same tree at any number of threads. Queries do not allocate.
 class Bvh {
  public:
   /// Keeps a reference to the mesh. Precondition: it has a triangle.
@@ -39,44 +39,52 @@ class Bvh {
   struct Hit {
     double distance = 0;
     Place place;
-    int leaf = 0;  ///< where in the tree
   };
   /// Nearest point of the mesh; `bound` is an upper bound on the distance that is already known.
   Hit nearest(Vec3 p, double bound = 1e300) const;
-  /// The same for a point close to one that was asked before: climbs from that one's leaf.
-  Hit nearest(Vec3 p, const Hit& close_by) const;
-  /// Calls visit(t) for every triangle that may overlap the box: those of every leaf that does.
+  /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;
   /// The triangles, neighbours in space close together.
   const std::vector<int>& order() const { return order_; }
 
  private:
+  using Four = float __attribute__((vector_size(16)));
+  using Mask = int __attribute__((vector_size(16)));
+  /// Boxes in units of the mesh's half extent from its centre, rounded outwards by `slack`; a child that is
+  /// missing has an empty box.
   struct Node {
-    Box box;
-    int first, count;  ///< count > 0: leaf with triangles order_[first..]; else children first, first + 1
+    Four lo[3], hi[3];
+    int child[4];  ///< a node, or -1 - t for triangle t
   };
   struct Item;
-  void build(Item* items, int first, int count, int node, int children);
-  void search(int node, const Vec3& p, double& best, Hit& hit) const;
+  Box build(Item* items, int first, int count, int node);
+  void set_child(int node, int k, int child, const Box& box);
+  std::array<float, 3> own_units(Vec3 p) const;
+  static constexpr float slack = 1e-6f;
+
   const Mesh& mesh_;
-  std::vector<Node> nodes_;  ///< the root is 0; siblings are an odd number and the next one
-  std::vector<int> parent_;
+  Vec3 centre_;
+  double scale_ = 1;  ///< own units of a length
+  std::vector<Node> nodes_;
   std::vector<int> order_;
 };
 
 template <class Visit>
 void Bvh::overlapping(const Box& box, Visit&& visit) const {
+  const auto lo = own_units(box.lo), hi = own_units(box.hi);
   int stack[64], n = 0;
   stack[n++] = 0;
   while (n) {
     const Node& b = nodes_[stack[--n]];
-    if (!overlap(b.box, box)) continue;
-    if (b.count) {
-      for (int i = b.first; i < b.first + b.count; ++i) visit(order_[i]);
-    } else {
-      stack[n++] = b.first;
-      stack[n++] = b.first + 1;
+    Mask meets = (b.lo[0] <= hi[0]) & (b.hi[0] >= lo[0]);
+    for (int k = 1; k < 3; ++k) meets &= (b.lo[k] <= hi[k]) & (b.hi[k] >= lo[k]);
+    for (int k = 0; k < 4; ++k) {
+      if (!meets[k]) continue;
+      if (b.child[k] < 0)
+        visit(-1 - b.child[k]);
+      else
+        stack[n++] = b.child[k];
     }
   }
 }

@@ -69,16 +69,18 @@ void Cdt::link(int h, int outer, std::uint8_t kind) {
   if (outer >= 0) opposite[outer] = h;
 }
 
-int Cdt::walk(Vec2 p, int t) const {
+int Cdt::walk(Vec2 p, int t, std::uint8_t wall) const {
   int from = -1;
-  // a visibility walk may go round in circles in a triangulation that is not Delaunay, so its steps are
-  // counted
+  // a visibility walk may go round in circles in a triangulation that is not Delaunay, unless it does not
+  // always try the same edge first (Devillers, Pion, Teillaud 2002); its steps are counted nevertheless
+  unsigned random = 12345;
   for (std::size_t step = 0; step < tris.size() + 3; ++step) {
+    random = 1664525 * random + 1013904223;
     int out = -1;
-    for (int h = 3 * t; h < 3 * t + 3 && out < 0; ++h)
+    for (int k = 0, h = 3 * t + (int)((random >> 16) % 3); k < 3 && out < 0; ++k, h = next(h))
       if (h != from && orient2d(points[origin(h)], points[target(h)], p) < 0) out = h;
     if (out < 0) return t;
-    if (fixed[out] || opposite[out] < 0) return -1;
+    if (fixed[out] >= wall || opposite[out] < 0) return -1;
     from = opposite[out];
     t = from / 3;
   }

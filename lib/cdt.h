@@ -38,8 +38,9 @@ class Cdt {
   int target(int h) const { return tris[h / 3][(h + 1) % 3]; }
   int apex(int h) const { return tris[h / 3][(h + 2) % 3]; }
 
-  /// Triangle that holds p, walking from t without crossing a fixed edge; -1 if one is in the way.
-  int walk(Vec2 p, int t) const;
+  /// Triangle that holds p, walking from t without crossing a fixed edge (or with `wall` = border_segment,
+  /// only a border); -1 if one is in the way.
+  int walk(Vec2 p, int t, std::uint8_t wall = inner_segment) const;
 
   /// Collects the triangles around p (which lies in t) that `conflict(triangle)` wants replaced, as far as p
   /// sees them and without crossing fixed edges. False if p lies on a vertex or on a fixed edge.

@@ -2,7 +2,6 @@
 #include "lib/check.h"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -12,18 +11,18 @@
 namespace meshpipe {
 namespace {
 
-void note(int& count, int& first, int triangle) {
-  if (count++ == 0) first = triangle;
-}
+constexpr double degree = 180 / std::numbers::pi;
+constexpr int chunk = 4096;  // sums are taken by chunks, so that they are the same at any number of threads
 
 /// Vertices where two corners of the mesh are not joined by a chain of triangles round the vertex.
-void find_pinched(const Mesh& mesh, const std::vector<int>& opposite, Connectivity& c) {
+void find_pinched(const Mesh& mesh, Connectivity& c) {
+  const auto& opposite = c.opposite;
   const int n = 3 * (int)mesh.tris.size();
   std::vector<char> corner_seen(n, 0), vertex_seen(mesh.points.size(), 0);
   for (int h = 0; h < n; ++h) {
     if (corner_seen[h]) continue;
     char& vertex = vertex_seen[origin(mesh.tris, h)];
-    if (vertex) note(c.pinched, c.first_pinched, h / 3);
+    if (vertex) c.pinched.push_back(h / 3);
     vertex = 1;
     int g = h;
     do {
@@ -33,6 +32,28 @@ void find_pinched(const Mesh& mesh, const std::vector<int>& opposite, Connectivi
     if (g >= 0) continue;
     // the fan ends at the border; its other half lies on the other side
     for (g = opposite[h]; g >= 0; g = opposite[g]) corner_seen[g = next(g)] = 1;
+  }
+}
+
+void find_components(Connectivity& c) {
+  std::vector<int> component;
+  c.components = components(c.opposite, component);
+  std::vector<int> faces(c.components, 0);
+  for (int x : component) ++faces[x];
+  const int smallest = (int)(std::min_element(faces.begin(), faces.end()) - faces.begin());
+  if (c.components)
+    c.small_component = (int)(std::find(component.begin(), component.end(), smallest) - component.begin());
+}
+
+void find_loops(const Mesh& mesh, Connectivity& c) {
+  double shortest = 0;
+  for (const std::vector<int>& loop : boundary_loops(c.opposite)) {
+    double length = 0;
+    for (int h : loop) length += norm(mesh.points[origin(mesh.tris, h)] - mesh.points[target(mesh.tris, h)]);
+    if (c.loops++ == 0 || length < shortest) {
+      shortest = length;
+      c.loop = loop[0];
+    }
   }
 }
 
@@ -46,242 +67,225 @@ Connectivity connectivity_of(const Mesh& mesh) {
   for (int t = 0; t < c.faces; ++t) {
     const Tri& v = mesh.tris[t];
     for (int x : v) used[x] = 1;
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) note(c.degenerate, c.first_degenerate, t);
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) c.degenerate.push_back(t);
   }
   c.vertices = (int)std::count(used.begin(), used.end(), 1);
-  std::vector<int> opposite(3 * mesh.tris.size(), -1);
+  c.opposite.assign(3 * mesh.tris.size(), -1);
   for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
     ++c.edges;
     const int h = half_edge(uses[0]);
-    if (uses.size() > 2) return note(c.nonmanifold, c.first_nonmanifold, half_edge(uses.back()) / 3);
+    if (uses.size() > 2) return c.nonmanifold.push_back(half_edge(uses.back()) / 3);
     if (uses.size() < 2) return;
     const int g = half_edge(uses[1]);
-    if (origin(mesh.tris, h) == origin(mesh.tris, g)) return note(c.turned, c.first_turned, h / 3);
-    opposite[h] = g;
-    opposite[g] = h;
+    if (origin(mesh.tris, h) == origin(mesh.tris, g)) return c.turned.push_back(h / 3);
+    c.opposite[h] = g;
+    c.opposite[g] = h;
   });
+  if (c.sound()) find_pinched(mesh, c);
   if (!c.sound()) return c;
-  find_pinched(mesh, opposite, c);
-  if (!c.sound()) return c;
-  std::vector<int> component;
-  c.components = components(opposite, component);
-  c.loops = (int)boundary_loops(opposite).size();
+  find_components(c);
+  find_loops(mesh, c);
   c.genus = (2 * c.components - (c.vertices - c.edges + c.faces) - c.loops) / 2;  // the paper's eq. (2)
   return c;
 }
 
-Quality quality_of(const Mesh& mesh, const std::vector<double>& size) {
-  constexpr double degree = 180 / std::numbers::pi;
-  Quality q;
-  q.kappa_histogram.assign(50, 0);
-  const int n = (int)mesh.tris.size();
-  if (n == 0) return q;
-  std::vector<double> kappas(n), smallest(n), largest(n);
-#pragma omp parallel for schedule(static)
-  for (int t = 0; t < n; ++t) {
+namespace {
+
+/// Shapes of the triangles of one chunk.
+struct Shapes {
+  double kappa_sum = 0, angle_sum = 0, min_angle = 180, max_angle = 0;
+  std::array<int, 60> angles{};
+};
+
+/// kappa as 8 A^2 / (s a b c), the same number as the paper's eq. (6) without trigonometry; of the angles
+/// only those at the ends of the shortest and the longest side are asked for.
+Shapes shapes(const Mesh& mesh, int first, int last, std::vector<float>& kappas) {
+  Shapes s;
+  double cotangent = 1e300;  // of the largest angle; it falls as the angle grows
+  for (int t = first; t < last; ++t) {
     const Vec3 &a = mesh.points[mesh.tris[t][0]], &b = mesh.points[mesh.tris[t][1]],
                &c = mesh.points[mesh.tris[t][2]];
-    kappas[t] = kappa(a, b, c);
-    const double x = angle(b - a, c - a), y = angle(c - b, a - b), z = angle(a - c, b - c);
-    smallest[t] = std::min({x, y, z}) * degree;
-    largest[t] = std::max({x, y, z}) * degree;
+    const Vec3 x = c - b, y = a - c, z = b - a;
+    const double xx = dot(x, x), yy = dot(y, y), zz = dot(z, z), n = norm(cross(y, z));
+    const double p = std::sqrt(xx), q = std::sqrt(yy), r = std::sqrt(zz), d = p * q * r * (p + q + r);
+    const double k = d > 0 ? 4 * n * n / d : 0;
+    kappas[t] = (float)k;
+    s.kappa_sum += k;
+    const double shortest = std::min({xx, yy, zz}), longest = std::max({xx, yy, zz}), all = xx + yy + zz;
+    const double least = std::atan2(2 * n, all - 2 * shortest) * degree;  // dot = (all - 2 l^2) / 2
+    s.angle_sum += least;
+    s.min_angle = std::min(s.min_angle, least);
+    ++s.angles[std::clamp((int)least, 0, 59)];
+    if (n > 0)
+      cotangent = std::min(cotangent, (all - 2 * longest) / (2 * n));
+    else
+      s.max_angle = 180;
   }
-  q.worst = (int)(std::min_element(kappas.begin(), kappas.end()) - kappas.begin());
-  q.kappa_min = kappas[q.worst];
-  q.kappa_mean = std::accumulate(kappas.begin(), kappas.end(), 0.0) / n;
-  q.min_angle = *std::min_element(smallest.begin(), smallest.end());
-  q.mean_min_angle = std::accumulate(smallest.begin(), smallest.end(), 0.0) / n;
-  q.max_angle = *std::max_element(largest.begin(), largest.end());
-  for (double k : kappas) ++q.kappa_histogram[std::clamp((int)(50 * k), 0, 49)];
-  const auto rank = kappas.begin() + n / 100;
-  std::nth_element(kappas.begin(), rank, kappas.end());
-  q.kappa_p01 = *rank;
+  s.max_angle = std::max(s.max_angle, std::atan2(1, cotangent) * degree);
+  return s;
+}
 
-  std::vector<double> length;
-  length.reserve(3 * mesh.tris.size() / 2 + 16);
-  std::vector<int> valence(mesh.points.size(), 0);
-  std::vector<char> border(mesh.points.size(), 0);
-  for (const Tri& t : mesh.tris)
-    for (int v : t) ++valence[v];
-  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
-    const int a = origin(mesh.tris, half_edge(uses[0])), b = target(mesh.tris, half_edge(uses[0]));
-    const double l = norm(mesh.points[a] - mesh.points[b]);
-    length.push_back(size.empty() ? l : 2 * l / (size[a] + size[b]));
-    if (uses.size() != 2) border[a] = border[b] = 1;
-  });
-  const double count = (double)length.size();
-  double mean = std::accumulate(length.begin(), length.end(), 0.0) / count, square = 0;
-  const double unit = size.empty() && mean > 0 ? mean : 1;
-  for (double l : length) square += (l - mean) * (l - mean);
-  q.edge_min = *std::min_element(length.begin(), length.end()) / unit;
-  q.edge_max = *std::max_element(length.begin(), length.end()) / unit;
+struct Lengths {
+  double sum = 0, squares = 0, least = 1e300, largest = 0;
+  int count = 0;
+};
+
+}  // namespace
+
+Quality quality_of(const Mesh& mesh, std::span<const int> opposite, const std::vector<double>& size) {
+  Quality q;
+  q.angle_histogram.assign(60, 0);
+  const int n = (int)mesh.tris.size(), chunks = (n + chunk - 1) / chunk;
+  if (n == 0) return q;
+  q.kappas.resize(n);
+  std::vector<Shapes> shape(chunks);
+  std::vector<Lengths> length(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+  for (int k = 0; k < chunks; ++k) {
+    const int first = k * chunk, last = std::min(n, first + chunk);
+    shape[k] = shapes(mesh, first, last, q.kappas);
+    Lengths& l = length[k];
+    for (int h = 3 * first; h < 3 * last; ++h) {
+      if (opposite[h] > h) continue;
+      const int a = origin(mesh.tris, h), b = target(mesh.tris, h);
+      double x = norm(mesh.points[a] - mesh.points[b]);
+      if (!size.empty()) x *= 2 / (size[a] + size[b]);
+      l.sum += x;
+      l.squares += x * x;
+      l.least = std::min(l.least, x);
+      l.largest = std::max(l.largest, x);
+      ++l.count;
+    }
+  }
+  q.min_angle = 180;
+  for (const Shapes& s : shape) {
+    q.kappa_mean += s.kappa_sum / n;
+    q.mean_min_angle += s.angle_sum / n;
+    q.min_angle = std::min(q.min_angle, s.min_angle);
+    q.max_angle = std::max(q.max_angle, s.max_angle);
+    for (int i = 0; i < 60; ++i) q.angle_histogram[i] += s.angles[i];
+  }
+  q.worst = (int)(std::min_element(q.kappas.begin(), q.kappas.end()) - q.kappas.begin());
+  const Tri& w = mesh.tris[q.worst];
+  q.kappa_min = kappa(mesh.points[w[0]], mesh.points[w[1]], mesh.points[w[2]]);
+  std::vector<float> sorted = q.kappas;
+  std::nth_element(sorted.begin(), sorted.begin() + n / 100, sorted.end());
+  q.kappa_p01 = sorted[n / 100];
+
+  Lengths all;
+  for (const Lengths& l : length) {
+    all.sum += l.sum;
+    all.squares += l.squares;
+    all.least = std::min(all.least, l.least);
+    all.largest = std::max(all.largest, l.largest);
+    all.count += l.count;
+  }
+  const double mean = all.sum / all.count, unit = size.empty() && mean > 0 ? mean : 1;
+  q.edge_min = all.least / unit;
+  q.edge_max = all.largest / unit;
   q.edge_mean = mean / unit;
-  q.edge_deviation = std::sqrt(square / count) / unit;
+  q.edge_deviation = std::sqrt(std::max(0.0, all.squares / all.count - mean * mean)) / unit;
 
+  std::vector<int> valence(mesh.points.size(), 0);
+  constexpr int border = 1 << 28;
+  for (int h = 0; h < 3 * n; ++h) {
+    ++valence[origin(mesh.tris, h)];
+    if (opposite[h] < 0) valence[origin(mesh.tris, h)] |= border, valence[target(mesh.tris, h)] |= border;
+  }
   int inner = 0, good = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (valence[v] && !border[v]) {
+  for (int v : valence)
+    if (v > 0 && v < border) {
       ++inner;
-      good += valence[v] >= 5 && valence[v] <= 7;
+      good += v >= 5 && v <= 7;
     }
   q.valence567 = inner ? (double)good / inner : 1;
   return q;
 }
 
+std::vector<int> bins(std::span<const float> values, double low, double high, int n) {
+  std::vector<int> counts(n, 0);
+  for (float x : values)
+    if (x >= low && x <= high) ++counts[std::min(n - 1, (int)(n * (x - low) / (high - low)))];
+  return counts;
+}
+
+double kappa_off_wedges(const Mesh& mesh, std::span<const int> opposite,
+                        const std::vector<std::uint8_t>& model, const Quality& quality, int& worst) {
+  constexpr double limit = 40 / degree;
+  const int n = 3 * (int)mesh.tris.size();
+  auto marked = [&](int h) { return opposite[h] < 0 || (model[h / 3] >> h % 3 & 1); };
+  std::vector<char> tip(mesh.points.size(), 0);
+  for (int h = 0; h < n; ++h) {
+    if (!marked(h)) continue;
+    double sum = 0;
+    for (int g = h;; g = opposite[prev(g)]) {
+      const Vec3& p = mesh.points[origin(mesh.tris, g)];
+      sum += angle(mesh.points[target(mesh.tris, g)] - p, mesh.points[origin(mesh.tris, prev(g))] - p);
+      if (sum >= limit || marked(prev(g))) break;
+    }
+    if (sum < limit) tip[origin(mesh.tris, h)] = 1;
+  }
+  std::vector<char> close = tip;
+  for (const Tri& t : mesh.tris)
+    if (tip[t[0]] || tip[t[1]] || tip[t[2]]) close[t[0]] = close[t[1]] = close[t[2]] = 1;
+  worst = -1;
+  for (int t = 0; t < n / 3; ++t) {
+    const Tri& v = mesh.tris[t];
+    if (!close[v[0]] && !close[v[1]] && !close[v[2]] &&
+        (worst < 0 || quality.kappas[t] < quality.kappas[worst]))
+      worst = t;
+  }
+  return worst < 0 ? 1 : quality.kappas[worst];
+}
+
 namespace {
 
-constexpr int chunk = 512;  // triangles or vertices that one thread takes on
-
-struct OneSided {
-  double largest = 0, bounded = 0;  ///< the latter with what lies between the samples
-  double weight = 0, sum = 0, squares = 0;
-  Vec3 place;
-
-  void add(double distance, double reach, double w, Vec3 p) {
-    if (distance > largest) {
-      largest = distance;
-      place = p;
-    }
-    bounded = std::max(bounded, distance + reach);
-    weight += w;
-    sum += w * distance;
-    squares += w * distance * distance;
+/// The corners of the largest triangle of some points, if it covers all the pieces.
+bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners) {
+  std::vector<int> v;
+  Vec3 whole{};
+  for (int t : pieces) {
+    v.insert(v.end(), mesh.tris[t].begin(), mesh.tris[t].end());
+    const Tri& p = mesh.tris[t];
+    whole = whole + area_vector(mesh.points[p[0]], mesh.points[p[1]], mesh.points[p[2]]);
   }
-  void add(const OneSided& o) {
-    if (o.largest > largest) {
-      largest = o.largest;
-      place = o.place;
-    }
-    bounded = std::max(bounded, o.bounded);
-    weight += o.weight;
-    sum += o.sum;
-    squares += o.squares;
-  }
-};
-
-/// Nearest distances of points that come close to each other one by one: each search starts where the last
-/// ended.
-class Seeker {
- public:
-  explicit Seeker(const Bvh& tree) : tree_(tree) {}
-  double operator()(Vec3 p) {
-    last_ = last_.place.face < 0 ? tree_.nearest(p) : tree_.nearest(p, last_);
-    return last_.distance;
-  }
-
- private:
-  const Bvh& tree_;
-  Bvh::Hit last_;
-};
-
-/// Distances of all vertices, taken in the order of the triangles that use them first.
-std::vector<double> vertex_distances(const Mesh& from, const Bvh& from_tree, const Bvh& to_tree) {
-  std::vector<int> vertices;
-  std::vector<char> seen(from.points.size(), 0);
-  for (int t : from_tree.order())
-    for (int v : from.tris[t])
-      if (!seen[v]) {
-        seen[v] = 1;
-        vertices.push_back(v);
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+  if (v.size() > 64) return false;
+  double best = 0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    for (std::size_t j = i + 1; j < v.size(); ++j)
+      for (std::size_t k = j + 1; k < v.size(); ++k) {
+        const double a = dot(area_vector(mesh.points[v[i]], mesh.points[v[j]], mesh.points[v[k]]), whole);
+        if (std::abs(a) <= best) continue;
+        best = std::abs(a);
+        corners = a > 0 ? Tri{v[i], v[j], v[k]} : Tri{v[i], v[k], v[j]};
       }
-  std::vector<double> distances(from.points.size(), 0);
-  const int n = (int)vertices.size();
-#pragma omp parallel for schedule(dynamic)
-  for (int first = 0; first < n; first += chunk) {
-    Seeker distance(to_tree);
-    for (int i = first; i < std::min(n, first + chunk); ++i)
-      distances[vertices[i]] = distance(from.points[vertices[i]]);
-  }
-  return distances;
-}
-
-OneSided distance_from(const Mesh& from, const Bvh& from_tree, const Bvh& to_tree, int samples) {
-  const int n = (int)from.tris.size(), chunks = (n + chunk - 1) / chunk;
-  const double total = total_area(from);
-  const std::vector<double> at_vertex = vertex_distances(from, from_tree, to_tree);
-  std::vector<OneSided> part(chunks);
-#pragma omp parallel for schedule(dynamic)
-  for (int k = 0; k < chunks; ++k) {
-    Seeker distance(to_tree);
-    for (int i = k * chunk; i < std::min(n, (k + 1) * chunk); ++i) {
-      const Tri& t = from.tris[from_tree.order()[i]];
-      const Vec3 &a = from.points[t[0]], &b = from.points[t[1]], &c = from.points[t[2]];
-      const double area = 0.5 * norm(area_vector(a, b, c));
-      // m^2 equal triangles, some of them upside down; all reach as far from their centres
-      const int m = total > 0 ? std::max(1, (int)std::lround(std::sqrt(samples * (area / total)))) : 1;
-      const Vec3 centre = 1.0 / 3 * (a + b + c);
-      const double reach = std::max({norm(a - centre), norm(b - centre), norm(c - centre)}) / m;
-      // a triangle that is not cut takes the rule that is exact for quadratic functions: 3/4 centre, 1/12 a
-      // corner
-      const double corner_weight = m == 1 ? area / 12 : 0,
-                   weight = (area - 3 * corner_weight) / ((double)m * m);
-      for (int v : t) part[k].add(at_vertex[v], 0, corner_weight, from.points[v]);
-      auto sample = [&](double u, double v) {
-        const Vec3 p = a + u / m * (b - a) + v / m * (c - a);
-        part[k].add(distance(p), reach, weight, p);
-      };
-      for (int v = 0; v < m; ++v)
-        for (int u = 0; u + v < m; ++u) {
-          sample(u + 1.0 / 3, v + 1.0 / 3);
-          if (u + v + 1 < m) sample(u + 2.0 / 3, v + 2.0 / 3);
-        }
-    }
-  }
-  OneSided all;
-  for (const OneSided& p : part) all.add(p);
-  return all;
-}
-
-/// The border as triangles without area, which are edges to the tree.
-Mesh border_of(const Mesh& mesh) {
-  Mesh border;
-  border.points = mesh.points;
-  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
-    if (uses.size() != 1) return;
-    const int h = half_edge(uses[0]), a = origin(mesh.tris, h), b = target(mesh.tris, h);
-    border.tris.push_back({a, b, b});
-  });
-  return border;
-}
-
-double border_distance(const Mesh& reference, const Mesh& mesh) {
-  const Mesh a = border_of(reference), b = border_of(mesh);
-  if (a.tris.empty() && b.tris.empty()) return 0;
-  if (a.tris.empty() || b.tris.empty()) return std::numeric_limits<double>::infinity();
-  double worst = 0;
-  for (auto [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    const Bvh tree(*to);
-    Seeker distance(tree);
-    for (const Tri& t : from->tris)
-      for (int i = 0; i < 8; ++i)
-        worst = std::max(worst, distance(lerp(from->points[t[0]], from->points[t[1]], i / 8.0)));
-  }
-  return worst;
+  return std::abs(best - dot(whole, whole)) <= 1e-6 * dot(whole, whole);
 }
 
 }  // namespace
 
-Distance distance_between(const Mesh& reference, const Mesh& mesh, int samples) {
-  return distance_between(reference, Bvh(reference), mesh, Bvh(mesh), samples);
-}
-
-Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples) {
-  const OneSided there = distance_from(mesh, mesh_tree, reference_tree, samples);
-  const OneSided back = distance_from(reference, reference_tree, mesh_tree, samples);
-  const double d = diagonal(reference), unit = d > 0 ? d : 1;
-  auto mean = [](const OneSided& o) { return o.weight > 0 ? o.sum / o.weight : o.largest; };
-  auto rms = [](const OneSided& o) { return o.weight > 0 ? std::sqrt(o.squares / o.weight) : o.largest; };
-  Distance r;
-  r.to_reference = there.largest / unit;
-  r.to_mesh = back.largest / unit;
-  r.hausdorff = std::max(r.to_reference, r.to_mesh);
-  r.place = there.largest >= back.largest ? there.place : back.place;
-  r.mean = std::max(mean(there), mean(back)) / unit;
-  r.rms = std::max(rms(there), rms(back)) / unit;
-  r.bound = std::max(there.bounded, back.bounded) / unit - r.hausdorff;
-  r.boundary = border_distance(reference, mesh) / unit;
-  return r;
+Mesh uncut(const Mesh& mesh, const std::vector<int>& origin) {
+  const int n = (int)mesh.tris.size();
+  Mesh whole;
+  whole.points = mesh.points;
+  whole.tris.reserve(n);
+  // the triangles in the order of their origins, by counting
+  std::vector<int> start(n == 0 ? 1 : *std::max_element(origin.begin(), origin.end()) + 2, 0), order(n);
+  for (int o : origin) ++start[o + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (int t = 0; t < n; ++t) order[start[origin[t]]++] = t;
+  for (int first = 0, last; first < n; first = last) {
+    for (last = first + 1; last < n && origin[order[last]] == origin[order[first]];) ++last;
+    Tri corners;
+    if (last - first > 1 && hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners)) {
+      whole.tris.push_back(corners);
+      continue;
+    }
+    for (int i = first; i < last; ++i) whole.tris.push_back(mesh.tris[order[i]]);
+  }
+  return whole;
 }
 
 }  // namespace meshpipe

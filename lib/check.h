@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a result is judged by: connectivity, quality, distance to the reference.
+// A mesh judged by itself: connectivity, orientation, quality.
 #pragma once
-#include "lib/bvh.h"
+#include <span>
+
 #include "lib/mesh.h"
 
 namespace meshpipe {
 
-/// Counts that never throw, whatever the triangles are; the first culprit of each kind is a triangle, or -1.
+/// What is known of any triangles, sound or not; never throws. Of each kind of fault, a triangle for every
+/// case, in no more order than that the same mesh gives the same list.
 struct Connectivity {
-  int vertices = 0, edges = 0, faces = 0;       ///< vertices that are used
-  int degenerate = 0, first_degenerate = -1;    ///< triangles with a repeated vertex
-  int nonmanifold = 0, first_nonmanifold = -1;  ///< edges of more than two triangles
-  int turned = 0, first_turned = -1;            ///< edges whose two triangles disagree on orientation
-  int pinched = 0, first_pinched = -1;          ///< vertices whose triangles form more than one fan
-  bool sound() const { return !(degenerate || nonmanifold || turned || pinched); }
+  int vertices = 0, edges = 0, faces = 0;  ///< vertices that are used
+  std::vector<int> degenerate;             ///< triangles with a repeated vertex
+  std::vector<int> nonmanifold;            ///< edges of more than two triangles
+  std::vector<int> turned;                 ///< edges whose two triangles disagree on orientation
+  std::vector<int> pinched;                ///< vertices whose triangles form more than one fan
+  bool sound() const {
+    return degenerate.empty() && nonmanifold.empty() && turned.empty() && pinched.empty();
+  }
+  /// Half-edges as in lib/mesh.h; -1 also along edges that are not manifold and oriented.
+  std::vector<int> opposite;
   int components = 0, genus = 0, loops = 0;  ///< of a sound mesh
+  int loop = -1;                             ///< a half-edge of the shortest loop, of a sound mesh
+  int small_component = -1;                  ///< a triangle of the smallest component, of a sound mesh
 };
 Connectivity connectivity_of(const Mesh& mesh);
 
@@ -25,25 +33,24 @@ struct Quality {
   /// Edge lengths in units of the size field (its mean over the edge), or of the mean edge.
   double edge_min = 0, edge_mean = 0, edge_max = 0, edge_deviation = 0;
   double valence567 = 0;             ///< share of the inner vertices with 5, 6 or 7 neighbours
-  std::vector<int> kappa_histogram;  ///< 50 bins over [0, 1]
+  std::vector<int> angle_histogram;  ///< smallest angles, 60 bins over [0, 60] degrees
+  std::vector<float> kappas;         ///< of every triangle
 };
-/// `size` per vertex, or empty.
-Quality quality_of(const Mesh& mesh, const std::vector<double>& size);
+/// `opposite` as Connectivity has it. `size` per vertex, or empty.
+Quality quality_of(const Mesh& mesh, std::span<const int> opposite, const std::vector<double>& size);
 
-/// Distances over the reference's diagonal. Each triangle is cut into equal ones whose centres are the
-/// samples, its corners are samples too; the true Hausdorff distance lies between hausdorff and hausdorff +
-/// bound, since distance grows by no more than the way gone.
-struct Distance {
-  double hausdorff = 0, mean = 0, rms = 0, bound = 0;
-  double to_reference = 0, to_mesh = 0;  ///< one-sided: of the mesh's points, of the reference's points
-  Vec3 place;                            ///< the sample with the largest distance
-  double boundary = 0;  ///< Hausdorff distance of the border curves; infinite if only one has any
-};
-/// Two-sided: the worse of both directions. Deterministic at any thread count. samples: about this many
-/// points a side.
-Distance distance_between(const Mesh& reference, const Mesh& mesh, int samples = 200000);
-/// The same with the trees at hand.
-Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples);
+/// How many values fall into each of n equal parts of [low, high]; the others are left out.
+std::vector<int> bins(std::span<const float> values, double low, double high, int n);
+
+/// The smallest kappa of the triangles that do not touch, nor have a neighbour at a vertex that touches, a
+/// vertex where two marked edges (bit i of `model`: edge i; borders always) meet at less than 40 degrees over
+/// the surface: such a wedge leaves no room for good triangles. `worst` becomes the triangle, or -1.
+double kappa_off_wedges(const Mesh& mesh, std::span<const int> opposite,
+                        const std::vector<std::uint8_t>& model, const Quality& quality, int& worst);
+
+/// The mesh that `mesh` was cut from: triangles of equal `origin` that are pieces of one become that one.
+/// Points stay, some unused. Where pieces make no triangle (their area is not that of its corners), they
+/// stay. Linear time. Precondition: origin.size() == mesh.tris.size(), no origin is negative.
+Mesh uncut(const Mesh& mesh, const std::vector<int>& origin);
 
 }  // namespace meshpipe

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/contract.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <limits>
 
 #include "lib/error.h"
 
 namespace meshpipe {
 namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* flags[] = {"topology", "intersections", "folds", "patches"};
+constexpr const char* limits[] = {
+    "kappa", "kappa_off_wedges", "kappa_mean", "angle",    "hausdorff", "mean",
+    "rms",   "boundary",         "features",   "vertices", "size",      "trace"};
+
+template <class Names>
+bool among(const Names& names, const std::string& name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
 
 std::string text(double x) {
   char s[32];
@@ -23,101 +36,213 @@ std::string triangle(const Mesh& mesh, int t) {
          place(1.0 / 3 * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]]));
 }
 
-std::optional<double>* limit(Contract& c, const std::string& name) {
-  if (name == "kappa") return &c.kappa;
-  if (name == "kappa_mean") return &c.kappa_mean;
-  if (name == "angle") return &c.angle;
-  if (name == "hausdorff") return &c.hausdorff;
-  if (name == "boundary") return &c.boundary;
-  return nullptr;
+std::string edge(const Mesh& mesh, int h) {
+  return "triangle " + std::to_string(h / 3) + " " +
+         place(lerp(mesh.points[origin(mesh.tris, h)], mesh.points[target(mesh.tris, h)], 0.5));
 }
 
-bool* flag(Contract& c, const std::string& name) {
-  if (name == "topology") return &c.topology;
-  if (name == "intersections") return &c.intersections;
-  if (name == "patches") return &c.patches;
-  return nullptr;
-}
+using Facts = std::vector<std::string>;
 
-void judge_topology(const Findings& f, const Mesh& mesh, std::vector<Failure>& failures) {
+void judge_topology(const Findings& f, const Mesh& mesh, Facts& facts) {
   const Connectivity &m = f.mesh, &r = f.reference;
-  auto culprits = [&](int count, int first, const char* one, const char* many) {
-    if (count)
-      failures.push_back({"topology", std::to_string(count) + " " + (count == 1 ? one : many) +
-                                          ", the first in " + triangle(mesh, first)});
+  auto culprits = [&](const std::vector<int>& t, const char* one, const char* many) {
+    if (!t.empty())
+      facts.push_back(std::to_string(t.size()) + " " + (t.size() == 1 ? one : many) + ", the first in " +
+                      triangle(mesh, t[0]));
   };
-  culprits(m.degenerate, m.first_degenerate, "triangle with a repeated vertex",
-           "triangles with a repeated vertex");
-  culprits(m.nonmanifold, m.first_nonmanifold, "edge with more than two triangles",
-           "edges with more than two triangles");
-  culprits(m.turned, m.first_turned, "edge whose triangles disagree on orientation",
+  culprits(m.degenerate, "triangle with a repeated vertex", "triangles with a repeated vertex");
+  culprits(m.nonmanifold, "edge with more than two triangles", "edges with more than two triangles");
+  culprits(m.turned, "edge whose triangles disagree on orientation",
            "edges whose triangles disagree on orientation");
-  culprits(m.pinched, m.first_pinched, "pinched vertex", "pinched vertices");
-  if (!m.sound() || !r.sound()) return;
-  auto same = [&](const char* what, int has, int needs) {
+  culprits(m.pinched, "pinched vertex", "pinched vertices");
+  if (!m.sound()) return;
+  if (!r.sound()) return facts.push_back("the reference is not sound: nothing to compare with");
+  auto same = [&](const char* what, int has, int needs, const std::string& where) {
     if (has != needs)
-      failures.push_back({"topology", std::string(what) + " " + std::to_string(has) + ", the reference has " +
-                                          std::to_string(needs)});
+      facts.push_back(std::string(what) + " " + std::to_string(has) + ", the reference has " +
+                      std::to_string(needs) + where);
   };
-  same("components", m.components, r.components);
-  same("genus", m.genus, r.genus);
-  same("boundary loops", m.loops, r.loops);
+  same("components", m.components, r.components, "; the smallest holds " + triangle(mesh, m.small_component));
+  same("genus", m.genus, r.genus, "");
+  same("boundary loops", m.loops, r.loops, m.loop < 0 ? "" : "; the shortest passes " + edge(mesh, m.loop));
+}
+
+void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Facts& facts) {
+  if (name == "topology") {
+    judge_topology(f, mesh, facts);
+  } else if (name == "intersections") {
+    if ((int)f.intersections.size() > std::max(0, f.reference_intersections))
+      facts.push_back(
+          std::to_string(f.intersections.size()) + " pairs of triangles intersect, the reference has " +
+          std::to_string(f.reference_intersections) + "; the first is triangle " +
+          std::to_string(f.intersections[0].second) + " with " + triangle(mesh, f.intersections[0].first));
+  } else if (name == "folds") {
+    if (!f.folds.empty())
+      facts.push_back(std::to_string(f.folds.size()) + (f.folds.size() == 1 ? " edge is" : " edges are") +
+                      " folded, the first in " + edge(mesh, f.folds[0]));
+  } else {
+    for (const std::string& patch : f.lost_patches) facts.push_back("patch " + patch + " is lost");
+  }
+}
+
+void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Facts& facts) {
+  const Quality& q = f.quality;
+  const Distance& d = f.distance;
+  auto above = [&](double value, int worst) {
+    if (value > r.limit) return;
+    const std::string what =
+        worst < 0 ? text(value) : "smallest is " + text(value) + " in " + triangle(mesh, worst);
+    facts.push_back(what + ", not above " + text(r.limit));
+  };
+  auto within = [&](double value, const std::string& where = "") {
+    if (!(value > r.limit)) return;  // a figure that there is not is no failure
+    facts.push_back(text(value) + where + ", above " + text(r.limit));
+  };
+  if (r.name == "kappa") return above(q.kappa_min, q.worst);
+  if (r.name == "kappa_off_wedges") return above(f.kappa_off_wedges, f.worst_off_wedges);
+  if (r.name == "kappa_mean") return above(q.kappa_mean, -1);
+  if (r.name == "angle") return above(q.min_angle, -1);
+  if (r.name == "hausdorff")
+    return within(d.hausdorff + d.bound,
+                  " is the bound, " + text(d.hausdorff) + " the distance found " + place(d.place));
+  if (r.name == "mean") return within(d.mean);
+  if (r.name == "rms") return within(d.rms);
+  if (r.name == "boundary") return within(f.boundary);
+  if (r.name == "features") return within(f.features);
+  if (r.name == "size") return within(q.edge_deviation);
+  if (r.name == "trace") return within(f.kappa_elsewhere - f.kappa_by_cuts);
+  if (f.farthest >= 0)
+    within(f.off[f.farthest], " of its edges is how far vertex " + std::to_string(f.farthest) +
+                                  " lies off the reference, " + place(mesh.points[f.farthest]));
+}
+
+/// Of every triangle, its faults.
+std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f, const Mesh& mesh) {
+  std::vector<std::uint8_t> faults(mesh.tris.size(), 0);
+  for (const Requirement& r : contract) {
+    if (r.name == "topology")
+      for (const auto* kind : {&f.mesh.degenerate, &f.mesh.nonmanifold, &f.mesh.turned, &f.mesh.pinched})
+        for (int t : *kind) faults[t] |= fault_topology;
+    if (r.name == "intersections")
+      for (auto [s, t] : f.intersections) faults[s] |= fault_intersects, faults[t] |= fault_intersects;
+    if (r.name == "folds")
+      for (int h : f.folds) faults[h / 3] |= fault_folded, faults[f.mesh.opposite[h] / 3] |= fault_folded;
+    for (std::size_t t = 0; t < faults.size(); ++t) {
+      const Tri& v = mesh.tris[t];
+      if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit)) faults[t] |= fault_kappa;
+      if (r.name == "vertices" && std::max({f.off[v[0]], f.off[v[1]], f.off[v[2]]}) > r.limit)
+        faults[t] |= fault_vertex;
+    }
+  }
+  return faults;
 }
 
 }  // namespace
 
+const char* const default_contract = "topology,intersections,folds,patches,vertices=0.1,kappa=0.1";
+
 Contract parse_contract(const std::string& list) {
-  Contract c;
+  Contract contract;
   for (std::size_t at = 0; at <= list.size();) {
     const std::size_t end = std::min(list.find(',', at), list.size());
     const std::string item = list.substr(at, end - at), name = item.substr(0, item.find('='));
     at = end + 1;
-    if (bool* b = flag(c, item)) {
-      *b = true;
+    if (among(flags, item)) {
+      contract.push_back({item});
       continue;
     }
-    std::optional<double>* x = limit(c, name);
-    if (!x)
-      throw BadUsage("no requirement '" + item +
-                     "'; there are topology, intersections, patches, kappa=X, kappa_mean=X, angle=DEGREES, "
-                     "hausdorff=X and boundary=X");
+    if (!among(limits, name)) {
+      std::string all;
+      for (const char* n : flags) all += std::string(all.empty() ? "" : ", ") + n;
+      for (const char* n : limits) all += std::string(", ") + n + "=X";
+      throw BadUsage("no requirement '" + item + "'; there are " + all);
+    }
     const std::string number = item.substr(std::min(name.size() + 1, item.size()));
     double value = 0;
     const auto r = std::from_chars(number.data(), number.data() + number.size(), value);
     if (r.ec != std::errc() || r.ptr != number.data() + number.size() || !(value >= 0))
       throw BadUsage("requirement '" + item + "' needs a number, as in " + name + "=0.1");
-    *x = value;
+    contract.push_back({name, value});
   }
-  return c;
+  return contract;
 }
 
-std::vector<Failure> judge(const Contract& c, const Findings& f, const Mesh& mesh) {
+std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh) {
   std::vector<Failure> failures;
-  if (c.topology) judge_topology(f, mesh, failures);
-  if (c.intersections && (int)f.intersections.size() > std::max(0, f.reference_intersections))
-    failures.push_back({"intersections", std::to_string(f.intersections.size()) +
-                                             " pairs of triangles intersect, the reference has " +
-                                             std::to_string(f.reference_intersections) +
-                                             "; the first is triangle " +
-                                             std::to_string(f.intersections[0].second) + " with " +
-                                             triangle(mesh, f.intersections[0].first)});
-  if (c.patches)
-    for (const std::string& name : f.lost_patches)
-      failures.push_back({"patches", "patch " + name + " is lost"});
-  if (c.kappa && !(f.quality.kappa_min > *c.kappa) && f.quality.worst >= 0)
-    failures.push_back({"kappa", "smallest is " + text(f.quality.kappa_min) + " in " +
-                                     triangle(mesh, f.quality.worst) + ", not above " + text(*c.kappa)});
-  auto above = [&](const char* name, double value, const std::optional<double>& bound) {
-    if (bound && !(value > *bound)) failures.push_back({name, text(value) + ", not above " + text(*bound)});
-  };
-  above("kappa_mean", f.quality.kappa_mean, c.kappa_mean);
-  above("angle", f.quality.min_angle, c.angle);
-  if (c.hausdorff && !(f.distance.hausdorff <= *c.hausdorff))
-    failures.push_back({"hausdorff", text(f.distance.hausdorff) + " " + place(f.distance.place) + ", above " +
-                                         text(*c.hausdorff)});
-  if (c.boundary && !(f.distance.boundary <= *c.boundary))
-    failures.push_back({"boundary", text(f.distance.boundary) + ", above " + text(*c.boundary)});
+  for (const Requirement& r : contract) {
+    Facts facts;
+    if (among(flags, r.name))
+      judge_flag(r.name, findings, mesh, facts);
+    else
+      judge_limit(r, findings, mesh, facts);
+    for (std::string& fact : facts) failures.push_back({r.name, std::move(fact)});
+  }
   return failures;
+}
+
+Surface culprits(const Contract& contract, const Findings& findings, const Mesh& mesh) {
+  const std::vector<std::uint8_t> faults = faults_of(contract, findings, mesh);
+  Surface s;
+  s.points = mesh.points;
+  std::vector<int> number;
+  std::vector<std::uint8_t> fault;
+  for (std::size_t t = 0; t < faults.size(); ++t) {
+    if (!faults[t]) continue;
+    s.tris.push_back(mesh.tris[t]);
+    number.push_back((int)t);
+    fault.push_back(faults[t]);
+  }
+  s.vertex.rows = s.points.size();
+  s.face.rows = number.size();
+  s.face.set("triangle", std::move(number));
+  s.face.set("fault", std::move(fault));
+  return s;
+}
+
+std::vector<Figure> figures(const Findings& f) {
+  const Connectivity &m = f.mesh, &r = f.reference;
+  const Quality &q = f.quality, &p = f.reference_quality;
+  const Distance& d = f.distance;
+  constexpr int count = count_figure, digits = short_figure;
+  auto known = [](const Connectivity& c, int value) { return c.sound() ? value : nan; };
+  return {
+      {"vertices", "vertices", count, (double)r.vertices, (double)m.vertices},
+      {"triangles", "triangles", count, (double)r.faces, (double)m.faces},
+      {"components", "components", count, known(r, r.components), known(m, m.components)},
+      {"genus", "genus", count, known(r, r.genus), known(m, m.genus)},
+      {"loops", "boundary loops", count, known(r, r.loops), known(m, m.loops)},
+      {"degenerate", "repeated vertices", count, (double)r.degenerate.size(), (double)m.degenerate.size()},
+      {"nonmanifold_edges", "non-manifold edges", count, (double)r.nonmanifold.size(),
+       (double)m.nonmanifold.size()},
+      {"turned_edges", "turned edges", count, (double)r.turned.size(), (double)m.turned.size()},
+      {"pinched_vertices", "pinched vertices", count, (double)r.pinched.size(), (double)m.pinched.size()},
+      {"self_intersections", "self-intersections", count,
+       f.reference_intersections < 0 ? nan : f.reference_intersections, (double)f.intersections.size()},
+      {"folds", "folded edges", count, nan, (double)f.folds.size()},
+      {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},
+      {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},
+      {"kappa_mean", "kappa mean", 4, p.kappa_mean, q.kappa_mean},
+      {"kappa_off_wedges", "kappa min off wedges", 4, nan, f.kappa_off_wedges},
+      {"kappa_by_cuts", "kappa mean by the cuts", 4, nan, f.kappa_by_cuts},
+      {"kappa_elsewhere", "kappa mean elsewhere", 4, nan, f.kappa_elsewhere},
+      {"min_angle", "angle min", 2, p.min_angle, q.min_angle},
+      {"mean_min_angle", "angle min, mean", 2, p.mean_min_angle, q.mean_min_angle},
+      {"max_angle", "angle max", 2, p.max_angle, q.max_angle},
+      {"valence567", "valence 5 to 7", 4, p.valence567, q.valence567},
+      {"edge_min", "edge min", 3, p.edge_min, q.edge_min},
+      {"edge_mean", "edge mean", 3, p.edge_mean, q.edge_mean},
+      {"edge_max", "edge max", 3, p.edge_max, q.edge_max},
+      {"edge_deviation", "edge deviation", 3, p.edge_deviation, q.edge_deviation},
+      {"hausdorff_to_reference", "distance of the result", digits, nan, d.to_reference},
+      {"hausdorff_to_result", "distance of the reference", digits, nan, d.to_mesh},
+      {"hausdorff", "Hausdorff, at least", digits, nan, d.hausdorff},
+      {"hausdorff_bound", "Hausdorff, at most", digits, nan, d.hausdorff + d.bound},
+      {"mean_distance", "distance mean", digits, nan, d.mean},
+      {"rms_distance", "distance rms", digits, nan, d.rms},
+      {"boundary_distance", "distance of borders", digits, nan, f.boundary},
+      {"feature_distance", "distance of features", digits, nan, f.features},
+      {"vertex_distance", "vertices off, in edges", digits, nan, f.farthest < 0 ? 0 : f.off[f.farthest]},
+  };
 }
 
 }  // namespace meshpipe

@@ -1,41 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a result must meet, and where it does not.
 #pragma once
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "lib/check.h"
+#include "lib/examine.h"
 
 namespace meshpipe {
 
-struct Contract {
-  bool topology = false;       ///< sound, and components, genus and loops as the reference
-  bool intersections = false;  ///< no more pairs of triangles than the reference has
-  bool patches = false;        ///< every patch of the reference is there
-  std::optional<double> kappa, kappa_mean, angle;  ///< more than
-  std::optional<double> hausdorff, boundary;       ///< no more than, over the diagonal
+/// One figure of the report; NaN where a mesh has none.
+struct Figure {
+  std::string key, label;
+  int decimals;  ///< or one of the two below
+  double reference, result;
 };
+/// Instead of decimals: a whole number; three significant digits.
+constexpr int count_figure = -1, short_figure = -2;
+/// All figures, in the order of the table; distances over the reference's diagonal.
+std::vector<Figure> figures(const Findings& findings);
 
-/// From a list as "topology,intersections,patches,kappa=0.1". Throws BadUsage naming what is wrong in it.
+/// A kind of requirement, and its limit where it has one.
+struct Requirement {
+  std::string name;
+  double limit = 0;
+};
+using Contract = std::vector<Requirement>;
+/// What mcheck asks for by default.
+extern const char* const default_contract;
+
+/// From a list as "topology,intersections,kappa=0.1". Throws BadUsage naming what is wrong in it.
+/// topology: sound, and components, genus and loops as the reference; intersections, folds: no more pairs
+/// than the reference has, no folds (find_folds); patches: every patch of the reference is there. More than
+/// the limit: kappa, kappa_off_wedges, kappa_mean, angle (degrees). No more than the limit: hausdorff (of the
+/// upper bound), boundary, features, mean and rms (over the diagonal), vertices (the largest Findings::off),
+/// size (edge deviation), trace (kappa_elsewhere - kappa_by_cuts).
 Contract parse_contract(const std::string& list);
-
-/// All that is known of a result and its reference.
-struct Findings {
-  Connectivity mesh, reference;
-  Quality quality, reference_quality;
-  Distance distance;
-  std::vector<std::pair<int, int>> intersections;  ///< pairs of the mesh's triangles
-  int reference_intersections = -1;                ///< counted only when the mesh has some
-  std::vector<std::string> lost_patches;
-};
 
 struct Failure {
   std::string requirement, fact;  ///< "kappa", "smallest is 0.03 in triangle 12 at (0 1 2), not above 0.1"
 };
-
-/// What fails, in the order of the contract's fields.
+/// What fails, in the order of the contract.
 std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh);
+
+/// Why a triangle is at fault: bits.
+enum CulpritFault { fault_topology = 1, fault_intersects = 2, fault_folded = 4, fault_kappa = 8, fault_vertex = 16 };
+/// The triangles in which the contract finds a fault, with face columns int `triangle`, their number in the
+/// mesh, and uchar `fault`. Vertices stay, some unused.
+Surface culprits(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
 }  // namespace meshpipe

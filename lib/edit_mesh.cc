@@ -13,11 +13,14 @@ EditMesh::EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector
       opp(opposite_halfedges(tris, n_vertices)),
       hard(opp.size()),
       out(n_vertices, -1),
+      degree(n_vertices),
       live((int)tris.size()) {
   for (int h = 0; h < (int)opp.size(); ++h) {
     hard[h] = opp[h] < 0 || (!model.empty() && (model[h / 3] >> (h % 3) & 1));
     int v = from(h);
     if (out[v] < 0 || opp[h] < 0) out[v] = h;
+    ++degree[v];
+    if (opp[h] < 0) ++degree[to(h)];
   }
   for (int h = 0; h < (int)opp.size(); ++h)
     if (hard[h] && opp[h] >= 0) hard[opp[h]] = 1;
@@ -50,27 +53,37 @@ void EditMesh::flip(int h) {
   hard[h] = hard_below, hard[g] = hard_above, hard[h1] = hard[g1] = 0;
   if (out[a] == g1) out[a] = h;
   if (out[b] == h1) out[b] = g;
+  --degree[a], --degree[b], ++degree[c], ++degree[d];
 }
 
 int EditMesh::split(int h) {
-  const int m = (int)out.size(), h1 = next(h), g = opp[h], g2 = prev(g);
-  const int b = to(h), c = apex(h), d = apex(g);
-  const int e = 3 * (int)tris.size(), f = e + 3;  // triangles m b c and b m d
-  const int right = opp[h1], low = opp[g2];
+  const int m = (int)out.size(), h1 = next(h), g = opp[h];
+  const int b = to(h), c = apex(h), e = 3 * (int)tris.size(), right = opp[h1];
   tris.push_back({m, b, c});
-  tris.push_back({b, m, d});
   tris[h / 3][(h + 1) % 3] = m;
-  tris[g / 3][g % 3] = m;
-  opp.insert(opp.end(), {f, right, h1, e, g2, low});
-  hard.insert(hard.end(), {0, hard[h1], 0, 0, 0, hard[g2]});
+  opp.insert(opp.end(), {-1, right, h1});
+  hard.insert(hard.end(), {hard[h], hard[h1], 0});
   if (right >= 0) opp[right] = e + 1;
-  if (low >= 0) opp[low] = f + 2;
-  opp[h1] = e + 2, opp[g2] = f + 1;
-  hard[h1] = hard[g2] = 0;
+  opp[h1] = e + 2;
+  hard[h1] = 0;
   out.push_back(e);
-  if (out[b] == h1 || out[b] == g) out[b] = out[b] == h1 ? e + 1 : f;
+  if (out[b] == h1) out[b] = e + 1;
+  degree.push_back(3), ++degree[c];
+  ++live;
+  if (g < 0) return m;
+  const int f = e + 3, g2 = prev(g), d = apex(g), low = opp[g2];
+  tris.push_back({b, m, d});
+  tris[g / 3][g % 3] = m;
+  opp.insert(opp.end(), {e, g2, low});
+  opp[e] = f;
+  hard.insert(hard.end(), {hard[h], 0, hard[g2]});
+  if (low >= 0) opp[low] = f + 2;
+  opp[g2] = f + 1;
+  hard[g2] = 0;
+  if (out[b] == g) out[b] = f;
   if (out[d] == g2) out[d] = f + 2;
-  live += 2;
+  ++degree[m], ++degree[d];
+  ++live;
   return m;
 }
 
@@ -124,6 +137,11 @@ void EditMesh::collapse(int h, int gone) {
     if (int v = apexes[side]; v >= 0)
       lead(v, {out[v], sides[2 * side], sides[2 * side + 1], after(sides[2 * side]),
                after(sides[2 * side + 1])});
+  // the edges of `gone` become edges of `kept`, but for the one between them and those to the apexes
+  degree[kept] += degree[gone] - 2;
+  for (int v : apexes)
+    if (v >= 0) --degree[v], --degree[kept];
+  degree[gone] = 0;
   out[gone] = -1;
   tris[h / 3] = {-1, -1, -1};
   if (g >= 0) tris[g / 3] = {-1, -1, -1};

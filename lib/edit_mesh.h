@@ -13,9 +13,10 @@ struct EditMesh {
   std::vector<Tri> tris;
   std::vector<int> opp;  ///< opposite half-edge, -1 on the border
   std::vector<std::uint8_t>
-      hard;              ///< per half-edge: must stay an edge (border or model edge); equal on both sides
-  std::vector<int> out;  ///< a half-edge leaving each vertex; on the border the one with opp == -1
-  int live = 0;          ///< triangles that are not gaps
+      hard;                 ///< per half-edge: must stay an edge (border or model edge); equal on both sides
+  std::vector<int> out;     ///< a half-edge leaving each vertex; on the border the one with opp == -1
+  std::vector<int> degree;  ///< number of edges at each vertex
+  int live = 0;             ///< triangles that are not gaps
 
   /// Throws like opposite_halfedges.
   EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector<std::uint8_t>& model);
@@ -43,19 +44,15 @@ struct EditMesh {
     if (opp[prev(last)] < 0) f(apex(last));
   }
   /// Number of edges at v.
-  int valence(int v) const {
-    int n = 0;
-    neighbours(v, [&](int) { ++n; });
-    return n;
-  }
+  int valence(int v) const { return degree[v]; }
   /// Is there an edge between a and b?
   bool joined(int a, int b) const;
 
   /// Turns the edge of h within its two triangles: from a-b to c-d. Precondition: not hard, c and d not
   /// joined.
   void flip(int h);
-  /// Puts a new vertex (the next number) on the edge of h, splitting its two triangles. Precondition: not
-  /// hard. Triangles 3*2 new half-edges are appended: n is split off triangle h/3, n+1 off triangle opp[h]/3.
+  /// Puts a new vertex (the next number) on the edge of h, splitting its one or two triangles; the halves of
+  /// a hard edge are hard. Triangle n, the next number, is split off triangle h/3, n+1 off triangle opp[h]/3.
   /// Returns the vertex.
   int split(int h);
   /// Contracts the edge of h: one of its vertices (`gone`) becomes the other, and the edge's one or two

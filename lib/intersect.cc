@@ -140,10 +140,10 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh) {
   const int n = (int)mesh.tris.size();
   // a few triangles that are neighbours in the tree look for partners together
-  constexpr int group = 4, chunk = 1024;
+  constexpr int group = 4, chunk = 512;
   const int chunks = (n + group * chunk - 1) / (group * chunk);
   std::vector<std::vector<std::pair<int, int>>> found(chunks);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (int c = 0; c < chunks; ++c)
     for (int first = c * group * chunk; first < std::min(n, (c + 1) * group * chunk); first += group) {
       const int size = std::min(group, n - first);

@@ -146,6 +146,8 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines&
 
   PlaneMesh result;
   result.tris = std::move(m.cdt.tris);
+  result.opposite = std::move(m.cdt.opposite);
+  for (std::uint8_t kind : m.cdt.fixed) result.on_line.push_back(kind != Cdt::free_edge);
   result.points.resize(m.cdt.points.size());
   for (int v = 0; v < (int)result.points.size(); ++v)
     result.points[v] = {m.cdt.points[v], v < n ? drawing.row[v] : -1, m.site[v].place};

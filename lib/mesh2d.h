@@ -16,8 +16,10 @@ struct ChartPoint {
 };
 
 struct PlaneMesh {
-  std::vector<ChartPoint> points;  ///< line points first
-  std::vector<Tri> tris;           ///< positively oriented in the plane
+  std::vector<ChartPoint> points;     ///< line points first
+  std::vector<Tri> tris;              ///< positively oriented in the plane
+  std::vector<int> opposite;          ///< half-edges, -1 on the border
+  std::vector<std::uint8_t> on_line;  ///< per half-edge: it is a segment of a line
 };
 
 /// frontal: frontal-Delaunay (Rebay 1993). delaunay: refinement at circumcentres. meshadapt: edges split,

@@ -40,6 +40,7 @@ struct Site {
 class SizeMetric {
  public:
   SizeMetric(const Chart& chart, const std::vector<double>& size);  ///< keeps references
+  const Chart& chart() const { return chart_; }
   Site at(const Place& place) const;
   Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
   /// The plane's vector of a vector in space, as far as it is tangent to the chart's triangle.

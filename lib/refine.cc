@@ -17,12 +17,15 @@ struct Rule {
 };
 // Measured together on flat, curved and sheared charts: the count is within 2 % of what the size asks for,
 // and shapes are best.
+constexpr double much_too_long = 1.8;  // an edge that is split although neither rule found a point
 constexpr Rule frontal_rule{true, 0.64, {0.8, 0.45}};
 constexpr Rule delaunay_rule{false, 0.755, {0.6, 0.3}};
 
-// A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first.
+// A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first;
+// last those that have no room for their circumcentre either.
+enum Rank { at_front, at_centre, at_middle };
 struct Entry {
-  int rank;    // 0: has a front edge, 1: second try
+  Rank rank;
   double key;  // smaller first
   std::int64_t order;
   int triangle, version;
@@ -43,16 +46,31 @@ class Refiner {
     radius_.resize(cdt_.tris.size());
     for (std::size_t t = 0; t < radius_.size(); ++t) radius_[t] = radius(t);
     for (std::size_t t = 0; t < radius_.size(); ++t) offer(t);
+    do {
+      drain_queue();
+    } while (insert_missed());
+  }
+
+ private:
+  void drain_queue() {
     while (!queue_.empty()) {
       Entry e = queue_.top();
       queue_.pop();
       if (cdt_.version[e.triangle] != e.version) continue;
-      if (e.rank == 0 ? from_front(e.triangle) : at_centre(e.triangle)) continue;
-      if (e.rank == 0) queue_.push({1, -radius_[e.triangle], order_++, e.triangle, e.version});
+      const bool done = e.rank == at_front    ? insert_from_front(e.triangle)
+                        : e.rank == at_centre ? insert_at_centre(e.triangle)
+                                              : insert_at_middle(e.triangle);
+      if (!done && e.rank != at_middle)
+        queue_.push({Rank(e.rank + 1), -radius_[e.triangle], order_++, e.triangle, e.version});
     }
   }
 
- private:
+  bool insert_missed() {
+    bool any = false;
+    for (const Missed& m : missed_vertices(m_, field_)) any |= insert(m.p, m.triangle, m.face, 0);
+    return any;
+  }
+
   Vec2 point(int v) const { return cdt_.points[v]; }
   const Site& site(int t, int i) const { return m_.site[cdt_.tris[t][i]]; }
 
@@ -80,9 +98,9 @@ class Refiner {
     if (!waits(t)) return;
     int h = rule_.fronts ? front_edge(t) : -1;
     if (h >= 0)
-      queue_.push({0, (double)row(h), order_++, t, cdt_.version[t]});
+      queue_.push({at_front, (double)row(h), order_++, t, cdt_.version[t]});
     else
-      queue_.push({1, -radius_[t], order_++, t, cdt_.version[t]});
+      queue_.push({at_centre, -radius_[t], order_++, t, cdt_.version[t]});
   }
 
   // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther
@@ -101,7 +119,7 @@ class Refiner {
     return true;
   }
 
-  bool from_front(int t) {
+  bool insert_from_front(int t) {
     int h = front_edge(t);
     if (h < 0) return false;
     const Site &a = m_.site[cdt_.origin(h)], &b = m_.site[cdt_.target(h)];
@@ -113,7 +131,7 @@ class Refiner {
     return insert(p, t, there.place.face, row(h) + 1);
   }
 
-  bool at_centre(int t) {
+  bool insert_at_centre(int t) {
     const Tri& v = cdt_.tris[t];
     Frame f = frame_of((1.0 / 3) * (site(t, 0).metric + site(t, 1).metric + site(t, 2).metric));
     Vec2 b = f.to(point(v[1]) - point(v[0])), c = f.to(point(v[2]) - point(v[0]));
@@ -130,6 +148,27 @@ class Refiner {
     if (s < 0) return false;
     Site there = field_.at(p, hint);
     if (!insert_site(m_, p, there, s, rule_.spacing)) return false;
+    adopt(row);
+    return true;
+  }
+
+  // The longest edge that may be split.
+  bool insert_at_middle(int t) {
+    int longest = -1;
+    double length = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double l = norm(m_.site[cdt_.origin(h)].space - m_.site[cdt_.target(h)].space);
+      if (!cdt_.fixed[h] && l > length) longest = h, length = l;
+    }
+    if (longest < 0) return false;
+    const int rows = row(longest);
+    if (!split_long_edge(m_, field_, longest, much_too_long)) return false;
+    adopt(rows + 1);
+    return true;
+  }
+
+  // The new vertex and its triangles take part.
+  void adopt(int row) {
     row_.push_back(row);
     radius_.resize(cdt_.tris.size());
     for (int u : cdt_.fan()) radius_[u] = radius(u);
@@ -139,7 +178,6 @@ class Refiner {
       int o = cdt_.opposite[3 * u];
       if (!waits(u) && o >= 0) offer(o / 3);
     }
-    return true;
   }
 
   SiteMesh& m_;

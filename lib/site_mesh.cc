@@ -42,6 +42,89 @@ bool insert_site(SiteMesh& m, Vec2 p, const Site& there, int t, Spacing spacing)
   return true;
 }
 
+bool split_long_edge(SiteMesh& m, const SizeMetric& field, int h, double longest) {
+  const Cdt& cdt = m.cdt;
+  const Site &a = m.site[cdt.origin(h)], &b = m.site[cdt.target(h)];
+  // the middle in space may be far from the middle in the plane: halve where it lies until it is roughly
+  // there
+  double low = 0, high = 1;
+  Vec2 p;
+  Site middle{a};
+  for (int step = 0; step < 30; ++step) {
+    const double t = 0.5 * (low + high);
+    p = lerp(cdt.points[cdt.origin(h)], cdt.points[cdt.target(h)], t);
+    middle = field.at(p, middle.place.face);
+    const double to_a = norm(middle.space - a.space), to_b = norm(middle.space - b.space);
+    if (!(to_a + to_b > longest * middle.size)) return false;
+    if (std::max(to_a, to_b) < 1.5 * std::min(to_a, to_b)) break;
+    (to_a < to_b ? low : high) = t;
+  }
+  const int t = cdt.walk(p, h / 3);  // by rounding the point lies in either triangle of the edge
+  return t >= 0 && insert_site(m, p, middle, t, {0.5, 0.3});
+}
+
+std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) {
+  constexpr double far = 0.5, many = 2;  // over the size, and over the area of a triangle of the size
+  const Chart& chart = field.chart();
+  const Cdt& cdt = m.cdt;
+  struct Cover {
+    double area = 0, distance = 0;  // over the size
+    Missed farthest{};
+  };
+  std::vector<Cover> cover(cdt.tris.size());
+  std::vector<char> seen(chart.uv.size(), 0);
+  auto look_at = [&](int face, int corner, int t) {
+    const int vertex = chart.mesh.tris[face][corner];
+    const Vec2 p = chart.uv[vertex];
+    const Tri& v = cdt.tris[t];
+    const Vec2 a = cdt.points[v[0]] - p, b = cdt.points[v[1]] - p, c = cdt.points[v[2]] - p;
+    const double bc = cross(b, c), ca = cross(c, a), sum = bc + ca + cross(a, b), b0 = bc / sum,
+                 b1 = ca / sum;
+    if (!(sum > 0)) return;
+    const Site &s0 = m.site[v[0]], &s1 = m.site[v[1]], &s2 = m.site[v[2]];
+    const Vec3 flat = b0 * s0.space + b1 * s1.space + (1 - b0 - b1) * s2.space;
+    const double size = b0 * s0.size + b1 * s1.size + (1 - b0 - b1) * s2.size;
+    const double d = norm(chart.mesh.points[vertex] - flat) / size;
+    if (d > cover[t].distance) cover[t].distance = d, cover[t].farthest = {p, face, t};
+  };
+  // over the chart from neighbour to neighbour, so that each walk starts close by
+  struct Step {
+    int face, triangle;
+  };
+  std::vector<char> done(chart.mesh.tris.size(), 0);
+  std::vector<Step> stack;
+  for (int first = 0; first < (int)done.size(); ++first) {
+    if (done[first]) continue;
+    stack.push_back({first, 0});
+    done[first] = 1;
+    while (!stack.empty()) {
+      auto [face, t] = stack.back();
+      stack.pop_back();
+      const Tri& v = chart.mesh.tris[face];
+      for (int i = 0; i < 3; ++i) {
+        const int s = cdt.walk(chart.uv[v[i]], t, Cdt::border_segment);
+        if (s < 0) continue;  // between a border and its chord
+        t = s;
+        const Vec3 n = area_vector(chart.mesh.points[v[0]], chart.mesh.points[v[1]], chart.mesh.points[v[2]]);
+        const Site& near = m.site[cdt.tris[t][0]];
+        cover[t].area += norm(n) / 6 / (near.size * near.size);
+        if (!seen[v[i]]) look_at(face, i, t);
+        seen[v[i]] = 1;
+      }
+      for (int h = 3 * face; h < 3 * face + 3; ++h) {
+        const int o = chart.opposite[h] / 3;
+        if (chart.opposite[h] < 0 || done[o]) continue;
+        done[o] = 1;
+        stack.push_back({o, t});
+      }
+    }
+  }
+  std::vector<Missed> missed;
+  for (const Cover& c : cover)
+    if (c.distance > far && c.area > many * 0.25 * std::sqrt(3)) missed.push_back(c.farthest);
+  return missed;
+}
+
 void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
   Cdt& cdt = m.cdt;
   // on a curved surface flips might go round in circles: bounded

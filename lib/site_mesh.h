@@ -25,6 +25,23 @@ struct Spacing {
 /// there; else the new triangles are cdt.fan().
 bool insert_site(SiteMesh& mesh, Vec2 p, const Site& there, int t, Spacing spacing);
 
+/// Inserts a vertex in the middle of a free half-edge, as measured in space, if the way over it is longer
+/// than `longest` sizes (an edge that spans a bend of the surface is longer than its chord). False if nothing
+/// was changed.
+bool split_long_edge(SiteMesh& mesh, const SizeMetric& field, int h, double longest);
+
+/// A vertex of the chart, in its triangle `face`, that triangle `triangle` of a mesh covers.
+struct Missed {
+  Vec2 p;
+  int face, triangle;
+};
+
+/// Vertices of the chart that the mesh misses: the triangle that covers one in the plane is half a size away
+/// in space, and covers more of the surface than two triangles of that size. Its edges do not tell: a ball
+/// behind a narrow neck may lie in one triangle with short edges. At most one vertex a triangle, the
+/// farthest.
+std::vector<Missed> missed_vertices(const SiteMesh& mesh, const SizeMetric& field);
+
 /// Flips edges, starting with the half-edges in `todo` (emptied), until the angles that look at each sum to
 /// at most pi in space. Ends always.
 void flip_to_delaunay(SiteMesh& mesh, std::vector<int>& todo);

@@ -2,8 +2,10 @@
 // mmesh2d: mesh every chart in the plane under the metric of its map.
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <map>
 
+#include "formats/chart_svg.h"
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
 #include "lib/parallel.h"
@@ -22,14 +24,30 @@ static std::vector<double> sizes_of(const Chart& chart, const std::vector<double
   return h;
 }
 
+// A picture of each chart in a directory, which is made if it is not there.
+static void draw(const std::string& directory, const std::vector<Chart>& charts,
+                 const std::vector<PlaneMesh>& meshes) {
+  std::error_code no;
+  std::filesystem::create_directories(directory, no);
+  if (no) throw CannotWrite(directory + ": " + no.message());
+  for (std::size_t part = 0; part < charts.size(); ++part) {
+    const std::string number = std::to_string(part);
+    Io::write_file(
+        directory + "/chart-" + std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number + ".svg",
+        chart_svg(charts[part], meshes[part], "part " + number));
+  }
+}
+
 static const std::map<std::string, Mesher> meshers = {
     {"frontal", Mesher::frontal}, {"delaunay", Mesher::delaunay}, {"meshadapt", Mesher::meshadapt}};
 
 int main(int argc, char** argv) {
-  std::string mesher = "frontal";
+  std::string mesher = "frontal", pictures;
   auto options = [&](CLI::App& app) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
+    app.add_option("--svg", pictures, "draw each chart in this directory, its mesh beside its map")
+        ->group("Reports");
   };
   auto body = [&](Io& io) {
     Stream stream = io.read();
@@ -59,6 +77,7 @@ int main(int argc, char** argv) {
     io.report["charts"] = n;
     io.report["points"] = points;
     io.report["triangles"] = triangles;
+    if (!pictures.empty()) draw(pictures, charts, meshes);
     write_plane_meshes(stream, charts, meshes);
     io.write(stream);
   };
@@ -66,6 +85,6 @@ int main(int argc, char** argv) {
       argc, argv, "mmesh2d",
       "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
       "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o "
-      "plane.ply",
+      "plane.ply\n  mmesh2d --mesher delaunay --svg pictures stages/08-lines.ply -o plane.ply",
       options, body);
 }

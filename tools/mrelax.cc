@@ -9,7 +9,7 @@ using namespace meshpipe;
 int main(int argc, char** argv) {
   RelaxOptions options;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--sweeps", options.sweeps, "rounds of flips, moves and count keeping (default 8)")
+    app.add_option("--sweeps", options.sweeps, "rounds of flips, moves and count keeping (default 6)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
   };
@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     LiftedMesh mesh = read_lifted(stream);
     const Surface reference = read_reference(stream);
     const auto& kinds = stream.need("line", "mlines").get<int>("kind");
-    const RelaxReport r = relax(mesh, reference, kinds, options);
+    const RelaxReport r = relax(mesh, reference, kinds, model_corners(reference), options);
     write_lifted(stream, mesh);
     char text[200];
     std::snprintf(text, sizeof text,
@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     io.report["splits"] = r.splits;
     io.report["collapses"] = r.collapses;
     io.report["flips"] = r.flips;
-    io.report["intersections"] = r.intersections;
+    io.report["intersections"] = r.intersections.size();
     io.write(stream);
   };
   return run_tool(

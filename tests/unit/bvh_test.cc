@@ -43,7 +43,6 @@ TEST(bvh, nearest_is_that_of_all_triangles) {
   for (const Mesh& m : {torus(0.4, 1500), sphere(20), branching_tree(2, 0, 0.8, 1500, 1)}) {
     const Bvh bvh(m);
     Random random(1);
-    Bvh::Hit last = bvh.nearest({9, 9, 9});
     for (int k = 0; k < 200; ++k) {
       const Vec3 p = 3.0 * random.in_ball();
       double best = 1e300;
@@ -51,12 +50,41 @@ TEST(bvh, nearest_is_that_of_all_triangles) {
       const auto hit = bvh.nearest(p);
       EXPECT_DOUBLE_EQ(hit.distance, best);
       EXPECT_DOUBLE_EQ(distance_to(m, hit.place.face, p), best);
-      last = bvh.nearest(p, last);
-      EXPECT_EQ(last.distance, hit.distance);
       // with the exact bound, a loose one, and one that is wrong
       EXPECT_DOUBLE_EQ(bvh.nearest(p, best).distance, best);
       EXPECT_DOUBLE_EQ(bvh.nearest(p, 2 * best).distance, best);
       EXPECT_DOUBLE_EQ(bvh.nearest(p, 0.5 * best).distance, best);
+    }
+  }
+}
+
+TEST(bvh, scale_and_place_of_the_model_do_not_matter) {
+  for (double scale : {1e-30, 1e-7, 1e9}) {
+    Mesh m = torus(0.4, 300);
+    for (Vec3& p : m.points) p = scale * (p + Vec3{1000, 0, -500});
+    const Bvh bvh(m);
+    Random random(3);
+    for (int k = 0; k < 100; ++k) {
+      const Vec3 p = scale * ((k % 2 ? 2.0 : 1e6) * random.in_ball() + Vec3{1000, 0, -500});
+      double best = 1e300;
+      for (int t = 0; t < (int)m.tris.size(); ++t) best = std::min(best, distance_to(m, t, p));
+      EXPECT_DOUBLE_EQ(bvh.nearest(p).distance, best);
+    }
+  }
+}
+
+TEST(bvh, meshes_of_any_count) {
+  const Mesh all = torus(0.4, 200);
+  for (int n = 1; n <= 70; ++n) {
+    Mesh m = all;
+    m.tris.resize(n);
+    const Bvh bvh(m);
+    auto order = bvh.order();
+    std::sort(order.begin(), order.end());
+    for (int t = 0; t < n; ++t) ASSERT_EQ(order[t], t);
+    for (int t = 0; t < n; ++t) {
+      const Vec3 p = 1.0 / 3 * (m.points[m.tris[t][0]] + m.points[m.tris[t][1]] + m.points[m.tris[t][2]]);
+      EXPECT_EQ(bvh.nearest(p).place.face, t);
     }
   }
 }

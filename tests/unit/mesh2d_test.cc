@@ -407,6 +407,64 @@ TEST(Mesh2d, FollowsAStronglyGradedMetric) {
   EXPECT_NEAR(mesh.tris.size() / count_of(total_area(chart.mesh), 0.1), 1, 0.1);
 }
 
+// A cylinder six diameters long, mapped to a ring conformally: areas differ by 1e6 over the chart, and it has
+// two hundred holes much smaller than the size.
+TEST(Mesh2d, MeetsSizeAtAMillionfoldAreaScaleWithSmallHoles) {
+  const double height = std::log(1e3);
+  const Map3 lift = [](Vec2 p) { return Vec3{p.x / norm(p), p.y / norm(p), std::log(norm(p))}; };
+  const int n = 120, m = 132;
+  Chart chart = grid_chart(
+      n, m,
+      [=](int i, int j) {
+        const double r = std::exp(-height * j / m), a = 2 * M_PI * i / n;
+        return Vec2{r * cos(a), r * sin(a)};
+      },
+      [](int i, int j) { return i % 8 != 3 || j % 10 != 4; }, lift, true);
+  const double h = 0.25;
+  Lines lines = border_lines(chart, h);
+  EXPECT_GT(lines.lines.size(), 190u);
+  for (Mesher mesher : all_meshers) {
+    SCOPED_TRACE((int)mesher);
+    Figures f = examine(mesh_with(chart, lines, h, mesher), lines, lift);
+    EXPECT_NEAR(f.area / total_area(chart.mesh), 1, 0.03);
+    EXPECT_LT(f.edge_max, 2 * h);
+    EXPECT_GT(f.kappa_mean, 0.65);
+  }
+}
+
+// A ball on a neck whose border is much shorter than an edge: what is near in space is far in the chart.
+TEST(Mesh2d, FillsABallBehindANarrowBorder) {
+  // the stereographic image of the unit sphere down to 0.05 round its south pole
+  const Map3 lift = [](Vec2 p) {
+    const double s = 2 / (1 + dot(p, p));
+    return Vec3{s * p.x, s * p.y, s - 1};
+  };
+  Chart chart = grid_chart(
+      40, 40,
+      [](int i, int j) {
+        // the square's rings as circles, ever farther apart
+        const double x = (i - 20) / 20.0, y = (j - 20) / 20.0, ring = std::max(std::abs(x), std::abs(y));
+        const double r = std::tan(0.5 * M_PI * ring * 0.968), l = std::hypot(x, y);
+        return ring > 0 ? Vec2{r * x / l, r * y / l} : Vec2{};
+      },
+      [](int, int) { return true; }, lift);
+  const auto loops = boundary_loops(chart.opposite);
+  ASSERT_EQ(loops.size(), 1u);
+  std::vector<int> loop;
+  for (int e : loops[0]) loop.push_back(origin(chart.mesh.tris, e));
+  for (double h : {0.3, 1.0}) {
+    Lines lines;
+    add_line(lines, chart, loop, border_line, true, h);
+    for (Mesher mesher : all_meshers) {
+      SCOPED_TRACE((int)mesher);
+      Figures f = examine(mesh_with(chart, lines, h, mesher), lines, lift);
+      EXPECT_GT(f.area, 0.5 * total_area(chart.mesh));
+      EXPECT_GT(f.area, h < 0.5 ? 0.95 * total_area(chart.mesh) : 0);
+      EXPECT_LT(f.edge_max, 2 * h);
+    }
+  }
+}
+
 TEST(Mesh2d, FollowsAGradedSize) {
   Chart chart = square(20);
   std::vector<double> size;

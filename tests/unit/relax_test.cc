@@ -62,7 +62,7 @@ TEST(Relax, ATorusBecomesRegularAndStaysATorus) {
   LiftedMesh m = lifted_of(s);
   const RelaxReport r = relax(m, s, {});
   EXPECT_NEAR((double)m.tris.size(), 3000, 0.03 * 3000);
-  EXPECT_EQ(r.intersections, 0);
+  EXPECT_TRUE(r.intersections.empty());
   EXPECT_GT(r.kappa_min, 0.7);
   EXPECT_GT(r.kappa_mean, 0.97);
   const Topology t = topology_of(m);

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/examine.h"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <tuple>
+
+#include "lib/intersect.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Both at the same time, where it is worth it.
+template <class F, class G>
+void together(bool worth_it, const F& f, const G& g) {
+  std::exception_ptr failure[2];
+  auto guarded = [](const auto& work, std::exception_ptr& e) {
+    try {
+      work();
+    } catch (...) {
+      e = std::current_exception();
+    }
+  };
+#pragma omp parallel sections if (worth_it)
+  {
+#pragma omp section
+    guarded(f, failure[0]);
+#pragma omp section
+    guarded(g, failure[1]);
+  }
+  for (const auto& e : failure)
+    if (e) std::rethrow_exception(e);
+}
+
+Vec3 normal_of(const Mesh& mesh, int t) {
+  const Tri& v = mesh.tris[t];
+  return area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+}
+
+/// The reference as it was before cuts; the cut one if that cannot be told.
+Mesh before_cuts(const Surface& reference) {
+  const Mesh& cut = reference;
+  if (!reference.face.has("origin")) return cut;
+  const std::vector<int>& origin = reference.face.get<int>("origin");
+  if (std::any_of(origin.begin(), origin.end(), [](int o) { return o < 0; })) return cut;
+  return uncut(cut, origin);
+}
+
+/// Distances over the mean edge at each vertex.
+void over_edges(const Mesh& mesh, std::vector<double>& distance) {
+  std::vector<double> length(mesh.points.size(), 0);
+  std::vector<int> count(mesh.points.size(), 0);
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const double l = norm(mesh.points[a] - mesh.points[b]);
+      for (int v : {a, b}) length[v] += l, ++count[v];
+    }
+  for (std::size_t v = 0; v < distance.size(); ++v)
+    distance[v] = length[v] > 0 ? distance[v] * count[v] / length[v] : distance[v] > 0 ? 1e300 : 0;
+}
+
+bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
+  const Vec3 d = b - a;
+  const double dd = dot(d, d), t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0;
+  return norm(lerp(a, b, t) - p) <= distance;
+}
+
+}  // namespace
+
+std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, const Mesh& reference,
+                            const Bvh& reference_tree) {
+  constexpr double sharp = -0.8660254037844386;  // cos 150 degrees
+  const int n = (int)mesh.tris.size();
+  std::vector<Vec3> normal(n);
+  for (int t = 0; t < n; ++t) normal[t] = normalized(normal_of(mesh, t));
+  std::vector<int> folds;
+  for (int h = 0; h < 3 * n; ++h) {
+    const int g = opposite[h];
+    if (g < h || !(dot(normal[h / 3], normal[g / 3]) < sharp)) continue;
+    const Vec3 &a = mesh.points[origin(mesh.tris, h)], &b = mesh.points[target(mesh.tris, h)];
+    const Vec3 middle = lerp(a, b, 0.5);
+    const double r = norm(b - a);
+    bool faces[2] = {false, false};
+    reference_tree.overlapping({middle - Vec3{r, r, r}, middle + Vec3{r, r, r}}, [&](int t) {
+      const Vec3 m = normal_of(reference, t);
+      const double length = norm(m);
+      faces[0] |= dot(m, normal[h / 3]) > 0.3 * length;
+      faces[1] |= dot(m, normal[g / 3]) > 0.3 * length;
+    });
+    if (!(faces[0] && faces[1])) folds.push_back(h);
+  }
+  return folds;
+}
+
+std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, const Quality& quality,
+                                         const Lines& lines, const Mesh& surface) {
+  std::vector<char> close(mesh.tris.size(), 0);
+  auto at = [&](int i) {
+    const LinePoint& p = lines.points[i];
+    return lerp(surface.points[p.a], surface.points[p.b], p.t);
+  };
+  auto mark = [&](Vec3 a, Vec3 b) {
+    Box box{lower(a, b), upper(a, b)};
+    const double r = 2 * norm(b - a);  // edges are not much longer than the line's segments
+    box.lo = box.lo - Vec3{r, r, r};
+    box.hi = box.hi + Vec3{r, r, r};
+    tree.overlapping(box, [&](int t) {
+      if (close[t]) return;
+      const Tri& v = mesh.tris[t];
+      const Vec3 &x = mesh.points[v[0]], &y = mesh.points[v[1]], &z = mesh.points[v[2]];
+      const double edge = (norm(x - y) + norm(y - z) + norm(z - x)) / 3;
+      close[t] = close_to_segment(1.0 / 3 * (x + y + z), a, b, edge);
+    });
+  };
+  for (const Line& l : lines.lines) {
+    if (l.kind != interface_line) continue;
+    for (int i = 1; i < l.count; ++i) mark(at(l.first + i - 1), at(l.first + i));
+    if (l.closed && l.count) mark(at(l.first + l.count - 1), at(l.first));
+  }
+  double sum[2] = {0, 0};
+  int count[2] = {0, 0};
+  for (std::size_t t = 0; t < close.size(); ++t) {
+    sum[(int)close[t]] += quality.kappas[t];
+    ++count[(int)close[t]];
+  }
+  return {count[1] ? sum[1] / count[1] : nan, count[0] ? sum[0] / count[0] : nan};
+}
+
+Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples) {
+  Findings f;
+  Mesh reference;
+  together(
+      result.tris.size() + given.tris.size() > 10000, [&] { f.mesh = connectivity_of(result); },
+      [&] {
+        reference = before_cuts(given);
+        f.reference = connectivity_of(reference);
+        if (f.reference.sound()) return;
+        reference = given;
+        f.reference = connectivity_of(reference);
+      });
+  const std::vector<double> size =
+      result.vertex.has("size") ? result.vertex.get<double>("size") : std::vector<double>();
+  f.quality = quality_of(result, f.mesh.opposite, size);
+  f.reference_quality = quality_of(reference, f.reference.opposite, {});
+
+  const Bvh mesh_tree(result), reference_tree(reference);
+  f.intersections = self_intersections(result, mesh_tree);
+  if (!f.intersections.empty())
+    f.reference_intersections = (int)self_intersections(reference, reference_tree).size();
+  f.folds = find_folds(result, f.mesh.opposite, reference, reference_tree);
+  f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);
+  f.off = vertex_distances(result, mesh_tree, reference_tree);
+  over_edges(result, f.off);
+  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end()) - f.off.begin());
+
+  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  Mesh curves, reference_curves;
+  add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
+  add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
+  f.boundary = curve_distance(reference_curves, curves) / unit;
+  f.features = nan;
+  f.kappa_off_wedges = f.quality.kappa_min;
+  f.worst_off_wedges = f.quality.worst;
+  if (result.face.has("model")) {
+    const auto& model = result.face.get<std::uint8_t>("model");
+    f.kappa_off_wedges = kappa_off_wedges(result, f.mesh.opposite, model, f.quality, f.worst_off_wedges);
+    if (given.face.has("model")) {
+      const auto& marks = given.face.get<std::uint8_t>("model");
+      add_segments(curves, result, [&](int h) { return model[h / 3] >> h % 3 & 1; });
+      add_segments(reference_curves, given, [&](int h) { return marks[h / 3] >> h % 3 & 1; });
+      f.features = curve_distance(reference_curves, curves) / unit;
+    }
+  }
+  f.kappa_by_cuts = f.kappa_elsewhere = nan;
+  if (lines)
+    std::tie(f.kappa_by_cuts, f.kappa_elsewhere) =
+        kappa_by_lines(result, mesh_tree, f.quality, *lines, given);
+  return f;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The few places that need more than sweeps: tips that the mesh cuts off, the worst triangles, intersections.
+#include <algorithm>
+#include <cmath>
+
+#include "lib/bvh.h"
+#include "lib/intersect.h"
+#include "lib/relaxer.h"
+
+namespace meshpipe {
+
+// --- tips ---
+
+/// Tips and ridges that the mesh cuts off are where it is farthest from the reference. For the vertices of
+/// the reference that lie farther than a tenth of the size, the farthest first, a mesh vertex goes there and
+/// stays.
+void Relaxer::reach_tips() {
+  std::vector<int> number;
+  const Mesh now = compact(number);
+  if (now.tris.empty()) return;
+  const Bvh tree(now);
+  const Surface& s = ground_->surface;
+  const int n = (int)s.points.size();
+  std::vector<Bvh::Hit> hit(n);
+#pragma omp parallel for schedule(static) if (n > 10000)
+  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(s.points[v]);
+  const double h = std::sqrt(4 / sqrt3 * total_area(now) / (double)now.tris.size());
+  double farthest = 0;
+  for (int v = 0; v < n; ++v) farthest = std::max(farthest, hit[v].distance);
+  const double far_enough = std::max(0.1 * h, 0.5 * farthest);
+  std::vector<std::pair<double, int>> far;
+  for (int v = 0; v < n; ++v)
+    if (hit[v].distance > far_enough) far.push_back({-hit[v].distance, v});
+  std::sort(far.begin(), far.end());
+  std::vector<Place> place(n);
+  for (int t = 0; t < (int)s.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      place[s.tris[t][i]] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+  int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
+  for (auto [minus_distance, v] : far) {
+    if (left == 0) break;
+    int alive = -1;
+    for (int w : now.tris[hit[v].place.face])
+      if (m_.out[w] >= 0) alive = m_.out[w] / 3;
+    if (alive >= 0 && reach(place[v], alive, far_enough)) --left;
+  }
+  smooth(3);
+  flip_to_shape();
+  smooth(2);
+}
+
+/// Puts a vertex of the triangle nearest to `tip` there, or a new one on one of its edges, whichever leaves
+/// the better mesh when all round it has settled. `t`: a triangle near by. False if the tip is not farther
+/// than `far_enough`, cannot be walked to, or would spoil the mesh.
+bool Relaxer::reach(const Place& tip, int t, double far_enough) {
+  constexpr double spoils = 2e-3;  // about one triangle with nine tenths of the quality wanted
+  const Vec3 p = ground_->walk.point(tip);
+  double least = 1e300;
+  for (int s : triangles_round(t, 2)) {
+    const Tri& v = m_.tris[s];
+    const auto b = closest_on_triangle(p, at(v[0]), at(v[1]), at(v[2]));
+    const double d = norm(b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]) - p);
+    if (d < least) least = d, t = s;
+  }
+  if (least <= far_enough) return false;
+  auto walks_there = [&](int v) {
+    return held_[v] == loose &&
+           norm(ground_->walk.point(ground_->walk.closest(lifted_.place[v], p)) - p) < 1e-6 * size_at(v);
+  };
+  const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
+  const Relaxer before = patch(triangles, vertices);
+  const Vec3 facing = facing_at(tip);
+  double best = before.badness() + spoils;
+  Relaxer chosen = before;
+  bool found = false;
+  for (int i = 0; i < 6; ++i) {
+    const int h = i % 3;
+    if (!walks_there(m_.tris[t][h])) continue;
+    Relaxer after = before;
+    int v = after.m_.from(h);
+    if (i >= 3) {
+      if (before.m_.hard[h]) continue;
+      v = (int)after.m_.out.size();
+      after.insert(h, tip, p, facing);
+    }
+    after.put(v, tip, p, facing);
+    after.held_[v] = anchored;
+    after.listed_ = false;
+    after.settle();
+    if (const double bad = after.badness(); bad < best && after.least_agreeing() > 0)
+      best = bad, chosen = after, found = true;
+  }
+  if (found) adopt(chosen, triangles, vertices);
+  return found;
+}
+
+// --- the worst triangles ---
+
+/// 1 for a triangle that is good enough: kappa 0.75 and 35 degrees.
+double Relaxer::quality(int t) const {
+  constexpr double good_kappa = 0.75, good_angle = 35 * 3.14159265358979323846 / 180;
+  const Vec3 p = at(m_.tris[t][0]), q = at(m_.tris[t][1]), r = at(m_.tris[t][2]);
+  const double least = std::min({angle(q - p, r - p), angle(r - q, p - q), angle(p - r, q - r)});
+  return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
+}
+
+/// What is to be made small: counts the worst most, and nothing that is good with a margin.
+double Relaxer::badness() const {
+  double sum = 0;
+  for (int t = 0; t < (int)m_.tris.size(); ++t) {
+    if (m_.dead(t)) continue;
+    const double lack = std::max(0.0, 1.05 - quality(t));
+    sum += lack * lack * lack;
+  }
+  return sum;
+}
+
+/// Triangle t, then those that are up to `rings` vertices away.
+std::vector<int> Relaxer::triangles_round(int t, int rings) const {
+  std::vector<int> found{t}, sorted{t};
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<int> more;
+    for (int s : found)
+      for (int v : m_.tris[s])
+        m_.star(v, [&](int h) {
+          if (!std::binary_search(sorted.begin(), sorted.end(), h / 3)) more.push_back(h / 3);
+        });
+    std::sort(more.begin(), more.end());
+    more.erase(std::unique(more.begin(), more.end()), more.end());
+    found.insert(found.end(), more.begin(), more.end());
+    sorted = found;
+    std::sort(sorted.begin(), sorted.end());
+  }
+  return found;
+}
+
+/// Their vertices, ascending.
+std::vector<int> Relaxer::vertices_of(const std::vector<int>& triangles) const {
+  std::vector<int> vertices;
+  for (int t : triangles) vertices.insert(vertices.end(), m_.tris[t].begin(), m_.tris[t].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+/// These triangles as a mesh of their own whose rim stays as it is. `vertices`: vertices_of them.
+Relaxer Relaxer::patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const {
+  LiftedMesh part;
+  auto local = [&](int v) {
+    return (int)(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  };
+  for (int v : vertices) {
+    part.points.push_back(at(v));
+    part.place.push_back(lifted_.place[v]);
+    part.size.push_back(lifted_.size[v]);
+  }
+  part.kind.assign(vertices.size(), 0);
+  part.line.assign(vertices.size(), -1);
+  for (int t : triangles) {
+    const Tri& v = m_.tris[t];
+    part.tris.push_back({local(v[0]), local(v[1]), local(v[2])});
+    part.model.push_back(m_.hard[3 * t] | m_.hard[3 * t + 1] << 1 | m_.hard[3 * t + 2] << 2);
+  }
+  part.patch.assign(triangles.size(), 0);
+  part.part.assign(triangles.size(), 0);
+  Relaxer r(std::move(part), *ground_, {}, {}, options_);
+  for (int i = 0; i < (int)vertices.size(); ++i) {
+    const int v = vertices[i];
+    r.held_[i] = held_[v];
+    r.facing_[i] = facing_[v];
+    r.finer_[i] = finer_[v];
+  }
+  for (int i = 0; i < (int)triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (r.m_.opp[3 * i + k] < 0 && m_.opp[3 * triangles[i] + k] >= 0)
+        r.held_[r.m_.from(3 * i + k)] = r.held_[r.m_.to(3 * i + k)] = frozen;
+  r.recording_ = true;
+  return r;
+}
+
+/// Makes a change where it may be made, and settles what is round it.
+void Relaxer::try_edit(const Edit& edit) {
+  if (edit.kind == Edit::flip && may_flip(edit.h)) flip(edit.h);
+  if (edit.kind == Edit::collapse && m_.opp[edit.h] >= 0 && !m_.hard[edit.h])
+    collapse(edit.h, edit.gone, 1e9, 2);
+  if (edit.kind == Edit::split) split(edit.h);
+  settle();
+}
+
+void Relaxer::settle() {
+  for (int i = 0; i < 2; ++i) {
+    flip_to_shape();
+    smooth(3);
+  }
+}
+
+double Relaxer::least_agreeing() const {
+  double least = 1;
+  for (int t = 0; t < (int)m_.tris.size(); ++t)
+    if (!m_.dead(t)) least = std::min(least, agrees(m_.tris[t][0], m_.tris[t][1], m_.tris[t][2]));
+  return least;
+}
+
+/// Does here what was done to a patch.
+void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices) {
+  for (const Edit& e : mended.edits_) {
+    const int h = 3 * triangles[e.h / 3] + e.h % 3;
+    if (e.kind == Edit::flip) {
+      flip(h);
+    } else if (e.kind == Edit::split) {
+      const int v = (int)vertices.size();
+      for (int i = 0; i < (m_.opp[h] < 0 ? 1 : 2); ++i) triangles.push_back((int)m_.tris.size() + i);
+      vertices.push_back((int)m_.out.size());
+      insert(h, mended.lifted_.place[v], mended.at(v), mended.facing_[v]);
+    } else {
+      const int gone = vertices[e.gone], kept = m_.from(h) == gone ? m_.to(h) : m_.from(h);
+      m_.collapse(h, gone);
+      edited(kept);
+      m_.neighbours(kept, [&](int v) { edited(v); });
+      ++report_.collapses;
+    }
+  }
+  for (int i = 0; i < (int)vertices.size(); ++i)
+    if (mended.m_.out[i] >= 0 && (mended.held_[i] < fixed || mended.held_[i] == anchored)) {
+      held_[vertices[i]] = mended.held_[i];
+      put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
+      touch(vertices[i]);
+    }
+  listed_ = false;
+}
+
+/// The flips, splits and collapses of the edges of t and of the triangles beside it; `wide`: of all that
+/// share a vertex with it.
+std::vector<Relaxer::Edit> Relaxer::edits_round(int t, bool wide) const {
+  std::vector<int> halfedges;
+  for (int s : wide ? triangles_round(t, 1) : std::vector<int>{t})
+    for (int h = 3 * s; h < 3 * s + 3; ++h) {
+      const int g = m_.opp[h];
+      if (wide) {
+        if (g < h) halfedges.push_back(h);
+      } else {
+        halfedges.push_back(h);
+        if (g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
+      }
+    }
+  std::vector<Edit> edits;
+  for (int h : halfedges) {
+    edits.push_back({Edit::collapse, h, m_.from(h)});
+    edits.push_back({Edit::collapse, h, m_.to(h)});
+    edits.push_back({Edit::split, h, -1});
+    if (!m_.hard[h]) edits.push_back({Edit::flip, h, -1});
+  }
+  return edits;
+}
+
+/// Tries the edits round t, each on a copy of the neighbourhood and settled there, and adopts the best if it
+/// is better than what is. `thorough`: also pairs of edits, the second where the best of the first leave
+/// their worst.
+bool Relaxer::mend(int t, bool thorough) {
+  const std::vector<int> triangles = triangles_round(t, thorough ? 3 : 2), vertices = vertices_of(triangles);
+  struct Trial {
+    double badness;
+    Relaxer state;
+  };
+  auto try_all = [](const Relaxer& from, const std::vector<Edit>& edits) {
+    std::vector<Trial> trials(edits.size(), {0, from});
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < (int)edits.size(); ++i) {
+      trials[i].state.try_edit(edits[i]);
+      trials[i].badness = trials[i].state.badness();
+    }
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.badness < b.badness; });
+    return trials;
+  };
+  const Relaxer before = patch(triangles, vertices);
+  const double good_enough = 0.9 * before.badness();
+  std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
+  Trial best = trials.front();
+  for (int i = 0; i < 5 && thorough && best.badness > good_enough; ++i) {
+    const Relaxer& from = trials[i].state;
+    const Trial second = try_all(from, from.edits_round(from.worst(), false)).front();
+    if (second.badness < best.badness) best = second;
+  }
+  if (best.badness > good_enough) return false;
+  adopt(best.state, triangles, vertices);
+  return true;
+}
+
+int Relaxer::worst() const {
+  std::pair<double, int> least{1e300, -1};
+  for (int t = 0; t < (int)m_.tris.size(); ++t)
+    if (!m_.dead(t)) least = std::min(least, {quality(t), t});
+  return least.second;
+}
+
+/// Mends the triangles that are not good enough, the worst first.
+void Relaxer::mend_worst() {
+  for (int round = 0; round < 4; ++round) {
+    std::vector<std::pair<double, int>> bad;
+    for (int t = 0; t < (int)m_.tris.size(); ++t)
+      if (!m_.dead(t))
+        if (const double q = quality(t); q < 1) bad.push_back({q, t});
+    std::sort(bad.begin(), bad.end());
+    int mended = 0;
+    for (auto [q, t] : bad)
+      if (!m_.dead(t) && quality(t) < 1) mended += mend(t, round > 0);
+    if (bad.empty() || (round > 0 && mended == 0)) return;
+  }
+}
+
+/// Where triangles of the result intersect, the surface is too thin or bends too much for their size: refine
+/// there, and ask for smaller triangles from then on. Gives up when that does not help.
+void Relaxer::separate() {
+  const int most = m_.live + m_.live / 4 + 1000;
+  for (int round = 0;; ++round) {
+    std::vector<int> number;
+    const Mesh now = compact(number);
+    report_.intersections = self_intersections(now);
+    std::vector<int> culprits;
+    for (auto& [s, t] : report_.intersections) {
+      s = number[s], t = number[t];
+      culprits.insert(culprits.end(), {s, t});
+    }
+    if (culprits.empty() || round == 12 || m_.live > most) return;
+    auto unique = [](std::vector<int>& list) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    };
+    unique(culprits);
+    std::vector<int> around;
+    for (int t : culprits)
+      for (int v : m_.tris[t]) {
+        around.push_back(v);
+        m_.neighbours(v, [&](int w) { around.push_back(w); });
+      }
+    unique(around);
+    for (int v : around) {
+      finer_[v] *= 0.8;
+      touch(v);
+    }
+    for (int t : culprits) {
+      int longest = -1;
+      double length = 0;
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        const double l = norm(at(m_.to(h)) - at(m_.from(h)));
+        if (!m_.hard[h] && l > length) length = l, longest = h;
+      }
+      if (longest >= 0 && split(longest)) around.push_back((int)m_.out.size() - 1);
+    }
+    flip_to_shape();
+    for (int repeat = 0; repeat < 3; ++repeat)
+      for (int v : around) improve(v);
+  }
+}
+
+}  // namespace meshpipe
