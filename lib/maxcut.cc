@@ -39,7 +39,7 @@ MaxCut max_cut(const FilledDisk& disk) {
     level.uv[disk.rim[i]] = {std::cos(2 * pi * at / total), std::sin(2 * pi * at / total)};
     at += step(i);
   }
-  solve_dirichlet(disk.tris, disk.weights, fixed, {}, level.uv);
+  solve_dirichlet(disk.tris, disk.weights, fixed, level.uv);
   for (int t = 0; t < disk.part_tris; t++) {
     const Tri& c = disk.tris[t];
     const double area = cross(level.uv[c[1]] - level.uv[c[0]], level.uv[c[2]] - level.uv[c[0]]) / 2;
