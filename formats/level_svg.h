@@ -13,7 +13,7 @@ std::vector<std::string> level_names(const std::vector<Level>& levels);
 
 /// One level in its frame: its triangles, darker the more the map shrinks them (the area distortion of Fig.
 /// 3), the withdrawn sets with the names of their levels, the holes, the line (red) and the cut that was made
-/// of it (black).
+/// of it (black). Sets that lie close together are shown enlarged in the corner, as in Fig. 4.
 std::string level_svg(const CutMaps& maps, int level);
 
 /// All levels beside each other, a row a depth, as in Fig. 5. `files[l]` is the picture of level l, relative
