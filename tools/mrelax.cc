@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mrelax: optimise a lifted mesh on its reference surface, across interfaces that are not model edges.
 #include "formats/lift_tables.h"
+#include "formats/line_tables.h"
 #include "lib/clean.h"
 #include "lib/intersect.h"
 #include "lib/place.h"
@@ -60,17 +61,24 @@ int main(int argc, char** argv) {
     LiftedMesh mesh;
     Surface reference;
     std::vector<int> kinds;
+    std::vector<char> corners;
     if (o.reference.empty()) {
       mesh = read_lifted(stream);
       reference = read_reference(stream);
-      kinds = stream.need("line", "mlines").get<int>("kind");
+      const Lines lines = read_lines(stream);
+      for (const Line& l : lines.lines) {
+        kinds.push_back(l.kind);
+        o.relax.keep_border = o.relax.keep_border || l.kept;
+      }
+      corners = line_corners(reference, lines);
     } else {
       clean(stream.surface);
       reference = reference_from(io.read(o.reference), stream.surface.tris.size());
       mesh = place_on(stream.surface, reference);
+      corners = model_corners(reference);
       write_reference(stream, reference);
     }
-    const RelaxReport r = relax(mesh, reference, kinds, model_corners(reference), o.relax);
+    const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
     write_lifted(stream, mesh);
     char text[200];
     std::snprintf(text, sizeof text,
