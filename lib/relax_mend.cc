@@ -391,7 +391,7 @@ void Relaxer::separate() {
       double length = 0;
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const double l = norm(at(m_.to(h)) - at(m_.from(h)));
-        if (!m_.hard[h] && l > length) length = l, longest = h;
+        if (l > length) length = l, longest = h;
       }
       if (longest >= 0 && split(longest)) around.push_back((int)m_.out.size() - 1);
     }

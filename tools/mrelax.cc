@@ -105,6 +105,6 @@ int main(int argc, char** argv) {
       "examples:\n"
       "  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o "
       "relaxed.ply\n"
-      "  mrelax --reference tree.stl tree-mesh.stl -o better.ply",
+      "  mclean tree.stl | mrelax --reference tree.stl -o better.ply",
       add_options, body);
 }
