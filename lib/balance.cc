@@ -132,7 +132,8 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
     for (int t = begin; t < end; ++t) reach(tris[t][0], 0, -1);
     int reached = -1;
     while (!queue.empty() && reached < 0) {
-      const auto [d, v] = queue.top();
+      const double d = queue.top().first;
+      const int v = queue.top().second;
       queue.pop();
       if (d > distance[v]) continue;
       if ((field[v] > 0) != side) reached = v;
