@@ -2,6 +2,7 @@
 // mlines: divide borders, model edges and interfaces between parts by the size
 // field.
 #include "formats/line_tables.h"
+#include "formats/model_edges.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -9,7 +10,10 @@ using namespace meshpipe;
 int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     Stream stream = io.read();
-    const Lines lines = make_lines(stream.surface, read_charts(stream));
+    const ModelSegments given = read_model_edges(stream);
+    std::vector<int> tag = segments_under(stream.surface, given);
+    for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
+    const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;
     for (const Line& l : lines.lines) {
