@@ -282,7 +282,11 @@ void Io::write(Stream& stream) {
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
-  if (output != "-") return write_beside(output, produce);
+  if (output != "-") {
+    write_beside(output, produce);
+    finished_ = output;
+    return;
+  }
   written_ = true;
   produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
 }
