@@ -9,13 +9,18 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <condition_variable>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <thread>
+
+#include "lib/progress.h"
 
 namespace meshpipe {
 namespace {
@@ -200,6 +205,51 @@ struct Help : CLI::Formatter {
   }
 };
 
+/// On a terminal, a line that tells how far the work is and how long it will take, from the moment that it
+/// has taken a second. Cleared at the end.
+class Progress {
+ public:
+  explicit Progress(const Io& io) {
+    if (!io.quiet && ::isatty(STDERR_FILENO))
+      thread_ = std::thread([this, name = io.program] { watch(name); });
+  }
+  ~Progress() {
+    if (!thread_.joinable()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+
+ private:
+  void watch(const std::string& name) {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begun{};
+    double first = 0;
+    bool shown = false;
+    std::unique_lock lock(mutex_);
+    while (!wake_.wait_for(lock, std::chrono::milliseconds(200), [this] { return over_; })) {
+      const double share = std::min(1.0, work_done.load());
+      // a program of a pipe may have waited for its input: time counts from the first share
+      if (share <= 0) continue;
+      if (begun == Clock::time_point{}) begun = Clock::now(), first = share;
+      const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+      if (seconds < 1 || share <= first) continue;
+      std::fprintf(stderr, "\r%s: %.0f %%, %.0f s left\033[K\r", name.c_str(), 100 * share,
+                   seconds * (1 - share) / (share - first));
+      shown = true;
+    }
+    if (shown) std::fputs("\r\033[K", stderr);
+  }
+
+  std::thread thread_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool over_ = false;
+};
+
 }  // namespace
 
 Stream Io::read() {
@@ -266,7 +316,9 @@ void Io::expect_writable(const std::string& path, bool mesh) {
 }
 
 void Io::say(const std::string& line) const {
-  if (!quiet) std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
+  // on a terminal over the line of progress
+  const char* clear = ::isatty(STDERR_FILENO) ? "\r\033[K" : "";
+  if (!quiet) std::fprintf(stderr, "%s%s: %s\n", clear, program.c_str(), line.c_str());
 }
 
 void Io::detail(const std::string& line) const {
@@ -347,6 +399,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     if (io.output != "-") Io::expect_writable(io.output, usage.writes_mesh);
     if (!io.json.empty()) Io::expect_writable(io.json);
     try {
+      const Progress progress(io);
       body(io);
     } catch (const NotAdmissible&) {
       if (io.report.size() > 1) write_report();  // it had been measured
