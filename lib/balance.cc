@@ -189,7 +189,7 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
           square = d;
           nearest[k] = (int)s;
         }
-      distance[k] = 0.5 * std::log(std::max(square, 1e-300));
+      distance[k] = 0.5 * std::log(std::clamp(square, 1e-300, 1e300));  // at no stop if it has no place
       const int v = level.vertex[k], ring = (int)std::floor(distance[k] / width);
       if (v >= n) continue;
       first[nearest[k]] = std::min(first[nearest[k]], ring);
@@ -212,6 +212,9 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
       branches.between[v] = at - ring;
     }
   }
+  for (int& ring : branches.ring)  // what no level has is a branch of its own
+    if (ring < 0) ring = branches.rings;
+  branches.rings += 2;
   std::vector<double> length(n, 0), sum(n);
   std::vector<int> count(n, 0);
   for (int h = 0; h < 3 * disk.part_tris; ++h) {
