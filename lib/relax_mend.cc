@@ -97,10 +97,12 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
 
 // --- the worst triangles ---
 
-/// 1 for a triangle that is good enough: kappa 0.75 and 35 degrees.
+/// 1 for a triangle that is good enough: kappa 0.75 and 35 degrees; 0 for one that is folded over.
 double Relaxer::quality(int t) const {
   constexpr double good_kappa = 0.75, good_angle = 35 * 3.14159265358979323846 / 180;
-  const Vec3 p = at(m_.tris[t][0]), q = at(m_.tris[t][1]), r = at(m_.tris[t][2]);
+  const auto [a, b, c] = m_.tris[t];
+  if (agrees(a, b, c) < 0) return 0;
+  const Vec3 p = at(a), q = at(b), r = at(c);
   const double least = std::min({angle(q - p, r - p), angle(r - q, p - q), angle(p - r, q - r)});
   return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
 }
@@ -357,19 +359,26 @@ void Relaxer::mend_worst() {
 }
 
 /// Where triangles of the result intersect, the surface is too thin or bends too much for their size: refine
-/// there, and ask for smaller triangles from then on. Gives up when that does not help.
+/// there, and ask for smaller triangles from then on. Ends with the fewest intersections it came to, when
+/// more rounds do not help.
 void Relaxer::separate() {
   const int most = m_.live + m_.live / 4 + 1000;
-  for (int round = 0;; ++round) {
+  std::optional<Relaxer> best;
+  for (int round = 0, since_best = 0;; ++round) {
     std::vector<int> number;
     const Mesh now = compact(number);
     report_.intersections = self_intersections(now);
-    std::vector<int> culprits;
-    for (auto& [s, t] : report_.intersections) {
-      s = number[s], t = number[t];
-      culprits.insert(culprits.end(), {s, t});
+    for (auto& [s, t] : report_.intersections) s = number[s], t = number[t];
+    if (report_.intersections.empty()) return;
+    const bool better = !best || report_.intersections.size() < best->report_.intersections.size();
+    since_best = better ? 0 : since_best + 1;
+    if (since_best == 4 || round == 12 || m_.live > most) {
+      if (!better) *this = *best;
+      return;
     }
-    if (culprits.empty() || round == 12 || m_.live > most) return;
+    if (better) best = *this;
+    std::vector<int> culprits;
+    for (auto [s, t] : report_.intersections) culprits.insert(culprits.end(), {s, t});
     auto unique = [](std::vector<int>& list) {
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
