@@ -194,6 +194,7 @@ bool open_pinches(const Component& c, std::vector<int>& label, const Regions& re
     auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == l; };
     std::vector<Fan> fans;
     for (int h : regions.border[l]) {
+      if (label[h / 3] != l || inside(h)) continue;  // no border any more since another region's fan changed
       int size = 1;  // of the fan of triangles around the origin of border half-edge h
       for (int g = prev(h); inside(g); g = prev(c.opposite[g])) ++size;
       fans.push_back({origin(c.mesh.tris, h), size, h});
@@ -371,7 +372,7 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   // Joining neighbours afterwards makes the number of parts asked for uncritical: about G + 2 does best. On
   // a large surface the trials end with a labelling that is good enough
   const int genus = c.whole.genus();
-  const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 40),
+  const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 12),
             enough = n > 20000 ? std::max(2, genus + 1) : 2;
   std::vector<int> ks{genus + 2};
   for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
