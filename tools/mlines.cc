@@ -2,6 +2,7 @@
 // mlines: divide borders, model edges and interfaces between parts by the size
 // field.
 #include "formats/line_tables.h"
+#include "lib/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -9,6 +10,9 @@ using namespace meshpipe;
 int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     Stream stream = io.read();
+    const Table& vertex = stream.surface.vertex;
+    if (vertex.has("size"))
+      refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());
     const Lines lines = make_lines(stream.surface, read_charts(stream));
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;

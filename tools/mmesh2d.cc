@@ -9,6 +9,7 @@
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
 #include "lib/parallel.h"
+#include "lib/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
     if (!stream.surface.vertex.has("size"))
       throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
     const auto& size = stream.surface.vertex.get<double>("size");
+    refuse_more_triangles(stream.surface, size, most_triangles());
 
     const std::clock_t start = std::clock();
     const int n = static_cast<int>(charts.size());
@@ -84,7 +86,7 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mmesh2d",
       "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
-      "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o "
-      "plane.ply\n  mmesh2d --mesher delaunay --svg pictures stages/08-lines.ply -o plane.ply",
+      "example:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d --mesher delaunay --svg pictures "
+      "stages/08-lines.ply -o plane.ply",
       options, body);
 }
