@@ -76,14 +76,18 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
+const Writer& writer_of(const std::string& path) {
   const std::string extension = extension_of(path);
   std::string known;
   for (const Writer& w : writers()) {
-    if (extension == w.extension) return w.write(stream, ascii);
+    if (extension == w.extension) return w;
     known += std::string(known.empty() ? "" : " ") + w.extension;
   }
   throw BadUsage("'" + path + "' has extension '" + extension + "'; known are " + known);
+}
+
+std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
+  return writer_of(path).write(stream, ascii);
 }
 
 }  // namespace meshpipe

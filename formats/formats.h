@@ -20,8 +20,7 @@ Stream read_any(std::string_view bytes, const std::string& where);
 std::string extension_of(const std::string& path);
 
 /// The mesh in the format of the extension of `path` (".stl", ".vtu", ...; ".mply" is the stream).
-/// `ascii` asks for text where the format has both. Throws BadUsage naming the known ones for an unknown
-/// extension.
+/// `ascii` asks for text where the format has both. Throws like writer_of.
 std::string write_as(const Stream& stream, const std::string& path, bool ascii);
 
 /// A reader knows its format by its first bytes (`matches`) and reads the whole.
@@ -38,5 +37,7 @@ struct Writer {
   std::string (*write)(const Stream& stream, bool ascii);
 };
 const std::vector<Writer>& writers();
+/// The writer of the extension of `path`; throws BadUsage naming the known ones for an unknown extension.
+const Writer& writer_of(const std::string& path);
 
 }  // namespace meshpipe

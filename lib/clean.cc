@@ -2,7 +2,6 @@
 #include "lib/clean.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 
 #include "lib/edges.h"
@@ -268,15 +267,52 @@ bool as_it_was(const Repair& r, const Surface& surface) {
   return std::find(now.begin(), now.end(), -1) == now.end();
 }
 
-}  // namespace
+/// What keep_sheets adds: the bits of face column `model` on the borders between sheets, and patches of their
+/// own. The report tells the patches; returns whether anything was changed.
+bool mark_sheets(Surface& surface, const std::vector<int>& opposite, CleanReport& report) {
+  const int n = (int)surface.tris.size();
+  std::vector<int> component;
+  const int n_sheets = components(opposite, component);
+  std::vector<std::uint8_t> model(n, 0);
+  if (surface.face.has("model")) model = surface.face.get<std::uint8_t>("model");
+  std::vector<char> meets(n_sheets, 0);
+  bool changed = false;
+  for_each_edge(surface.tris, (int)surface.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() < 2) return;
+    for (EdgeUse e : uses) {
+      const int h = half_edge(e);
+      if (opposite[h] >= 0) continue;
+      meets[component[h / 3]] = 1;
+      changed = changed || !(model[h / 3] >> h % 3 & 1);
+      model[h / 3] |= 1 << h % 3;
+    }
+  });
+  if (changed) surface.face.set("model", std::move(model));
 
-std::string describe(const Nonorientable& c) {
-  char place[96];
-  std::snprintf(place, sizeof place, " (%.6g %.6g %.6g)", c.place.x, c.place.y, c.place.z);
-  return "the component of triangle " + std::to_string(c.triangle) + " (" + std::to_string(c.triangles) +
-         " triangles) is not orientable: triangles " + std::to_string(c.a) + " and " + std::to_string(c.b) +
-         " cannot agree at" + place;
+  std::vector<int> patch(n, 1);
+  if (surface.face.has("patch")) patch = surface.face.get<int>("patch");
+  struct Label {
+    int patch, sheet, triangle;
+    auto operator<=>(const Label&) const = default;
+  };
+  std::vector<Label> labels;
+  for (int t = 0; t < n; ++t)
+    if (meets[component[t]]) labels.push_back({patch[t], component[t], t});
+  std::sort(labels.begin(), labels.end());
+  int last = n ? *std::max_element(patch.begin(), patch.end()) : 0;
+  for (std::size_t i = 1; i < labels.size(); ++i) {
+    const Label &before = labels[i - 1], &l = labels[i];
+    if (l.patch != before.patch) continue;
+    if (l.sheet != before.sheet) report.sheet_patches.push_back({++last, l.patch});
+    const bool first = report.sheet_patches.empty() || report.sheet_patches.back()[1] != l.patch;
+    if (!first) patch[l.triangle] = last;
+  }
+  if (report.sheet_patches.empty()) return changed;
+  surface.face.set("patch", std::move(patch));
+  return true;
 }
+
+}  // namespace
 
 void drop(Repair& r, const std::vector<char>& gone) {
   std::vector<int> number(r.opposite.empty() ? 0 : gone.size(), -1);
@@ -382,13 +418,17 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
                         std::to_string(report.degenerate) + " are degenerate, " +
                         std::to_string(report.duplicate) + " duplicates");
 
+  if (options.keep_sheets) {
+    unite(r);
+    report.copies = 0;
+  }
   const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
                         report.dropped_triangles || !report.nonorientable.empty();
   report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
                      report.nonmanifold_vertices || report.holes_filled);
   if (report.nothing) return;
   if (as_it_was(r, surface)) {
-    report.nothing = true;
+    report.nothing = !options.keep_sheets || !mark_sheets(surface, r.opposite, report);
     report.welded = report.welded_near = 0;
     return;
   }
@@ -400,12 +440,26 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   surface.face.erase("model");
   take_rows(surface.vertex, r.vertex);
   take_rows(surface.face, r.face);
+  if (options.keep_sheets) mark_sheets(surface, r.opposite, report);
 }
 
 CleanReport clean(Surface& surface, const CleanOptions& options) {
   CleanReport report;
   clean(surface, options, report);
   return report;
+}
+
+Mesh sheets_apart(const Mesh& mesh) {
+  Surface s;
+  static_cast<Mesh&>(s) = mesh;
+  s.face.rows = mesh.tris.size();
+  s.vertex.rows = mesh.points.size();
+  const CleanReport r = clean(s);
+  if (s.tris.size() != mesh.tris.size() || r.flipped || r.degenerate || r.duplicate)
+    throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " triangles turned round, " +
+                        std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
+                        " doubled; run mclean first");
+  return s;
 }
 
 }  // namespace meshpipe

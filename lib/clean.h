@@ -10,6 +10,7 @@ struct CleanOptions {
   bool drop_nonorientable = false;  ///< leave such components out instead of refusing the surface
   int keep_components = 0;          ///< the largest by area; 0: all
   int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
+  bool keep_sheets = false;         ///< sheets go on sharing the vertices where they meet
 };
 
 /// What may be wrong with a triangle of the input.
@@ -46,13 +47,26 @@ struct CleanReport {
   int components = 0;  ///< of the result
   int dropped_components = 0, dropped_triangles = 0;  ///< by keep_components
   int holes_filled = 0, hole_triangles = 0, holes_left = 0;
-  std::vector<Nonorientable> nonorientable;  ///< components dropped
-  std::vector<Culprit> culprits;             ///< by fault, then by triangle
+  std::vector<std::array<int, 2>> sheet_patches;  ///< by keep_sheets: the new patch, and the one it was
+  std::vector<Nonorientable> nonorientable;       ///< components dropped
+  std::vector<Culprit> culprits;                  ///< by fault, then by triangle
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
 /// One line: which component, how large, which triangles, where.
 std::string describe(const Nonorientable& component);
+
+/// A row of the table of what was done: its key in reports, how often, and in words.
+struct RepairRow {
+  const char* key;
+  int count;
+  std::string what;
+};
+std::vector<RepairRow> table_of(const CleanReport& report, const CleanOptions& options);
+
+/// The culprits as a mesh on the input's points: a triangle for each fault that one has. Face column `patch`
+/// is the fault, counted from 1 as in fault_names; `origin` is the triangle's number in the input.
+Surface surface_of_culprits(const CleanReport& report, const Mesh& input);
 
 /// Welds vertices of equal coordinates (then those within `weld`), drops degenerate and duplicate triangles,
 /// orients every component (by majority; a closed one outward), splits non-manifold edges and pinched
@@ -60,9 +74,16 @@ std::string describe(const Nonorientable& component);
 /// follow their triangles; vertex columns those of the first vertex welded. Vertices are renumbered by first
 /// use if some had to go; copies come last otherwise. A surface that needs none of it is left bit for bit as
 /// it is, copies of vertices that keep fans apart included; one that does loses the face column `model`.
-/// Throws NotAdmissible naming triangles and place if a component is not orientable, or if no triangle is
-/// left; the report then holds the culprits, and the surface is as it was.
+/// With keep_sheets the copies are undone at the end: edges of more than two triangles stay, marked in face
+/// column `model`, as borders of sheets; a patch that has triangles on several of the sheets that meet in
+/// such edges becomes one patch a sheet, numbered after the others (`sheet_patches`). Throws NotAdmissible
+/// naming triangles and place if a component is not orientable, or if no triangle is left; the report then
+/// holds the culprits, and the surface is as it was.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
+
+/// The same triangles with copies of vertices that keep sheets and fans apart: an oriented manifold. Throws
+/// NotAdmissible if more than copies are missing to that.
+Mesh sheets_apart(const Mesh& mesh);
 
 }  // namespace meshpipe

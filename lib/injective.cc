@@ -93,6 +93,13 @@ bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& oppo
   return counter_clockwise == 1 && SegmentTree(segments).crossings().empty();
 }
 
+bool polygon_is_simple(const std::vector<Vec2>& polygon) {
+  std::vector<Segment> segments;
+  int n = (int)polygon.size();
+  for (int i = 0; i < n; ++i) segments.push_back({polygon[i], polygon[(i + 1) % n], i, (i + 1) % n});
+  return turn(polygon) > 0 && SegmentTree(segments).crossings().empty();
+}
+
 std::vector<std::array<int, 2>> border_crossings(const std::vector<Tri>& tris,
                                                  const std::vector<int>& opposite,
                                                  const std::vector<Vec2>& uv) {

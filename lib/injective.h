@@ -18,6 +18,9 @@ int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv);
 bool border_is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
                       const std::vector<Vec2>& uv);
 
+/// True if the closed polygon does not meet itself and runs counter-clockwise.
+bool polygon_is_simple(const std::vector<Vec2>& polygon);
+
 /// Origins of the pairs of border edges that meet elsewhere than at a common end.
 std::vector<std::array<int, 2>> border_crossings(const std::vector<Tri>& tris,
                                                  const std::vector<int>& opposite,

@@ -218,7 +218,7 @@ class LevelSolver {
       fixed_[l] = 1;
       uv_[l] = {std::cos(set.angle[i]), std::sin(set.angle[i])};
     }
-    solve_dirichlet(corners_, weights, fixed_, {}, uv_);
+    solve_dirichlet(corners_, weights, fixed_, uv_);
   }
 
   /// Area of the image of triangle i of the domain, taken as equilateral on its longest side: a needle that

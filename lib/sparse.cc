@@ -2,7 +2,9 @@
 #include "lib/sparse.h"
 
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -52,30 +54,59 @@ Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& en
   return m;
 }
 
+/// Adds the time of its life to *seconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double* seconds) : seconds_(seconds), start_(Clock::now()) {}
+  ~Stopwatch() {
+    if (seconds_) *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double* seconds_;
+  Clock::time_point start_;
+};
+
 }  // namespace
 
 template <class Scalar>
 struct Factorisation<Scalar>::Impl {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> ldlt;
+  int n;
+  SolveTime* time;
+
+  void factorise(const Eigen::SparseMatrix<Scalar>& m) {
+    {
+      Stopwatch watch(time ? &time->factorisation : nullptr);
+      ldlt.factorize(m);
+    }
+    // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
+    // lost all its digits against the diagonal it started from is as singular, and a negative one as little
+    // definite
+    const auto& pivot = ldlt.vectorD();
+    const auto& order = ldlt.permutationP().indices();
+    constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
+    for (int i = 0; i < n; ++i) {
+      double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
+      if (ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
+        throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
+                         " has diagonal " + std::to_string(a) + " and pivot " + std::to_string(d));
+    }
+  }
 };
 
 template <class Scalar>
-Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle)
+Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle, SolveTime* time)
     : impl_(std::make_unique<Impl>()) {
+  impl_->n = n;
+  impl_->time = time;
   Eigen::SparseMatrix<Scalar> m = compress(n, lower_triangle);
-  impl_->ldlt.compute(m);
-  // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
-  // lost all its digits against the diagonal it started from is as singular, and a negative one as little
-  // definite
-  const auto& pivot = impl_->ldlt.vectorD();
-  const auto& order = impl_->ldlt.permutationP().indices();
-  constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < n; ++i) {
-    double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
-    if (impl_->ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
-      throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
-                       " has diagonal " + std::to_string(a) + " and pivot " + std::to_string(d));
+  {
+    Stopwatch watch(time ? &time->ordering : nullptr);
+    impl_->ldlt.analyzePattern(m);
   }
+  impl_->factorise(m);
 }
 
 template <class Scalar>
@@ -84,14 +115,40 @@ template <class Scalar>
 Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
 
 template <class Scalar>
+void Factorisation<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
+  impl_->factorise(compress(impl_->n, lower_triangle));
+}
+
+template <class Scalar>
 void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
-  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> x(right_hand_side.data(),
-                                                         (Eigen::Index)right_hand_side.size());
+  if (right_hand_side.empty()) return;
+  Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
+      right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
   x = impl_->ldlt.solve(x).eval();
 }
 
 template class Factorisation<double>;
 template class Factorisation<std::complex<double>>;
+
+void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::vector<double>& right_hand_side,
+                       SolveTime* time) {
+  if (n == 0) return;
+  Eigen::SparseMatrix<double> m = compress(n, entries);
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> lu;
+  {
+    Stopwatch watch(time ? &time->ordering : nullptr);
+    lu.analyzePattern(m);
+  }
+  {
+    Stopwatch watch(time ? &time->factorisation : nullptr);
+    lu.factorize(m);
+  }
+  if (lu.info() != Eigen::Success) throw GoalMissed("singular matrix of " + std::to_string(n) + " rows");
+  Stopwatch watch(time ? &time->solve : nullptr);
+  Eigen::Map<Eigen::MatrixXd> x(right_hand_side.data(), n, (Eigen::Index)right_hand_side.size() / n);
+  x = lu.solve(x).eval();
+}
 
 std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor) {
   // the edges i -> i+1 and their lengths; the angle opposite to edge i lies between the other two edges
@@ -125,9 +182,8 @@ std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor) {
 }
 
 void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
-                     const std::vector<char>& fixed, const std::vector<std::vector<int>>& fans,
-                     std::vector<Vec2>& uv) {
-  // unknowns: the free vertices that a triangle uses, in order, then the centres of the fans
+                     const std::vector<char>& fixed, std::vector<Vec2>& uv, SolveTime* time) {
+  // unknowns: the free vertices that a triangle uses, in order
   int n_points = (int)uv.size(), n = 0;
   std::vector<int> unknown(n_points, -1);
   for (const auto& t : tris)
@@ -135,44 +191,33 @@ void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vec
       if (!fixed[v]) unknown[v] = 0;
   for (int& u : unknown)
     if (u == 0) u = n++;
-  int first_centre = n;
-  n += (int)fans.size();
   if (n == 0) return;
 
   std::vector<Entry<double>> matrix;
   matrix.reserve(2 * weights.size());
-  std::vector<double> diagonal(n, 0), x(n, 0), y(n, 0);
+  std::vector<double> diagonal(n, 0), b(2 * n, 0);             // b: x of all, then y
   auto couple = [&](int i, int vi, int j, int vj, double w) {  // numbers of unknowns (-1: held), and vertices
     if (i >= 0) diagonal[i] += w;
     if (j >= 0) diagonal[j] += w;
     if (i >= 0 && j >= 0) {
       matrix.push_back({std::max(i, j), std::min(i, j), -w});
     } else if (i >= 0) {
-      x[i] += w * uv[vj].x;
-      y[i] += w * uv[vj].y;
+      b[i] += w * uv[vj].x;
+      b[n + i] += w * uv[vj].y;
     } else if (j >= 0) {
-      x[j] += w * uv[vi].x;
-      y[j] += w * uv[vi].y;
+      b[j] += w * uv[vi].x;
+      b[n + j] += w * uv[vi].y;
     }
   };
   for (std::size_t h = 0; h < weights.size(); ++h) {
     int a = tris[h / 3][h % 3], b = tris[h / 3][(h + 1) % 3];
     couple(unknown[a], a, unknown[b], b, weights[h]);
   }
-  for (std::size_t f = 0; f < fans.size(); ++f) {
-    // a regular polygon of k equal sides: angle 2 pi / k at the centre, so half the cotangent of the base
-    // angle is tan(pi / k) / 2, for the two triangles at each spoke together tan(pi / k)
-    constexpr double pi = 3.14159265358979323846;
-    double spoke = std::tan(pi / std::max<double>(3, (double)fans[f].size()));
-    for (int v : fans[f]) couple(first_centre + (int)f, -1, unknown[v], v, spoke);
-  }
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
 
-  Factorisation<double> factorisation(n, matrix);
-  factorisation.solve(x);
-  factorisation.solve(y);
+  Factorisation<double>(n, matrix, time).solve(b);
   for (int v = 0; v < n_points; ++v)
-    if (unknown[v] >= 0) uv[v] = {x[unknown[v]], y[unknown[v]]};
+    if (unknown[v] >= 0) uv[v] = {b[unknown[v]], b[n + unknown[v]]};
 }
 
 }  // namespace meshpipe

@@ -17,16 +17,24 @@ struct Entry {
   Scalar value;
 };
 
+/// Where the wall time of sparse solves goes, in seconds.
+struct SolveTime {
+  double ordering = 0;  ///< with the symbolic factorisation
+  double factorisation = 0, solve = 0;
+};
+
 /// A factorised symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
 /// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
-/// Order: approximate minimum degree.
+/// Order: approximate minimum degree. `time`, if given, is added to, and has to outlive the factorisation.
 template <class Scalar>
 class Factorisation {
  public:
-  Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle);
+  Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle, SolveTime* time = nullptr);
   ~Factorisation();
   Factorisation(Factorisation&&) noexcept;
-  /// Solves in place; call as often as needed.
+  /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
+  void refactor(const std::vector<Entry<Scalar>>& lower_triangle);
+  /// Solves in place; call as often as needed. Several right-hand sides of n numbers each follow each other.
   void solve(std::vector<Scalar>& right_hand_side) const;
 
  private:
@@ -40,14 +48,18 @@ class Factorisation {
 /// Degenerate triangles get finite weights (lengths are mollified).
 std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor = -1e30);
 
+/// Solves A x = b in place for a square matrix of n rows without symmetry (all entries given; equal places
+/// add up); right-hand sides of n numbers each follow each other. Throws GoalMissed if the matrix is
+/// singular.
+void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::vector<double>& right_hand_side,
+                       SolveTime* time = nullptr);
+
 /// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the
 /// values at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on
 /// return. weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an
-/// edge); one factorisation, both coordinates solved with it. `fans` lists loops of vertices, each joined to
-/// a virtual centre vertex by positive weights (a filled hole). Throws GoalMissed if the matrix is singular
-/// (a component without a fixed vertex).
+/// edge); one factorisation, both coordinates solved with it. Vertices of no triangle stay. Throws GoalMissed
+/// if the matrix is singular (a component without a fixed vertex).
 void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
-                     const std::vector<char>& fixed, const std::vector<std::vector<int>>& fans,
-                     std::vector<Vec2>& uv);
+                     const std::vector<char>& fixed, std::vector<Vec2>& uv, SolveTime* time = nullptr);
 
 }  // namespace meshpipe

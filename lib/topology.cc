@@ -303,4 +303,31 @@ bool admissible(const Topology& t, double max_aspect) {
   return t.components == 1 && t.genus == 0 && t.loops >= 1 && t.eta_geo < max_aspect;
 }
 
+std::string verdict(const Topology& t) {
+  std::string why;
+  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
+  if (t.components != 1) add(std::to_string(t.components) + " pieces");
+  if (t.genus != 0) add("genus " + std::to_string(t.genus));
+  if (t.loops == 0) add("closed");
+  if (why.empty() && !admissible(t)) add("too long");
+  return why.empty() ? "ok" : why;
+}
+
+int count_parts(const Surface& surface) {
+  const std::vector<int>& part = surface.face.get<int>("part");
+  const int n_tris = (int)surface.tris.size();
+  const int n = n_tris ? *std::max_element(part.begin(), part.end()) + 1 : 0;
+  std::vector<int> faces(std::min(n, n_tris), 0);
+  for (int t = 0; t < n_tris; ++t) {
+    if (part[t] < 0 || part[t] >= n_tris)
+      throw NotAdmissible("face " + std::to_string(t) + " has part " + std::to_string(part[t]) + " of " +
+                          std::to_string(n_tris) + " triangles");
+    ++faces[part[t]];
+  }
+  for (int p = 0; p < n; ++p)
+    if (!faces[p])
+      throw NotAdmissible("part " + std::to_string(p) + " of " + std::to_string(n) + " has no triangle");
+  return n;
+}
+
 }  // namespace meshpipe

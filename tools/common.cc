@@ -117,12 +117,15 @@ Bytes read_all(const std::string& path) {
   return bytes;
 }
 
-/// The bytes of a file: the stream for .ply, for no extension and on standard output, else the format of the
-/// extension.
-std::string encode(const std::string& path, const Stream& stream, bool text) {
+/// The stream is written for .ply, for no extension and on standard output, else the format of the extension.
+bool is_stream_name(const std::string& path) {
   const std::string extension = extension_of(path);
-  if (path == "-" || extension.empty() || extension == ".ply") return write_stream(stream, text);
-  return write_as(stream, path, text);
+  return path == "-" || extension.empty() || extension == ".ply";
+}
+
+/// The bytes of a file.
+std::string encode(const std::string& path, const Stream& stream, bool text) {
+  return is_stream_name(path) ? write_stream(stream, text) : write_as(stream, path, text);
 }
 
 /// The options given on the command line that change the result, as they are recorded in the stream.
@@ -141,6 +144,23 @@ std::string recorded(const CLI::App& app) {
   }
   return out;
 }
+
+/// --help without what is only of interest to a programmer: names of types, checks and exclusions.
+struct Help : CLI::Formatter {
+  std::string make_option_opts(const CLI::Option* o) const override {
+    if (o->get_type_size() == 0) return "";
+    const std::string text = o->get_type_name();  // of the type, and of the checks after a colon
+    const std::size_t colon = text.find(':');
+    const std::string type = text.substr(0, colon), check = colon == text.npos ? "" : text.substr(colon + 1);
+    if (type.empty()) return "";
+    if (type == "TEXT" && check.starts_with('{') && check.ends_with('}')) {
+      std::string words = check.substr(1, check.size() - 2);
+      std::replace(words.begin(), words.end(), ',', '|');
+      return ' ' + words;
+    }
+    return type == "INT" || type == "UINT" ? " N" : type == "FLOAT" ? " X" : ' ' + type;
+  }
+};
 
 }  // namespace
 
@@ -180,7 +200,11 @@ void Io::write_to(const std::string& path, const Stream& stream) const {
 }
 
 void Io::write_bytes(std::string_view bytes) const {
-  if (output != "-") return write_file(output, bytes);
+  if (output != "-") {
+    write_file(output, bytes);
+    finished_ = output;
+    return;
+  }
   written_ = true;
   write_all(STDOUT_FILENO, bytes, "stdout");
 }
@@ -213,6 +237,17 @@ void Io::write_file(const std::string& path, std::string_view bytes) {
   }
 }
 
+void Io::expect_writable(const std::string& path, bool mesh) {
+  if (mesh && !is_stream_name(path)) writer_of(path);
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
+  const std::size_t slash = path.rfind('/');
+  const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
+  const std::string& target = exists && !S_ISREG(info.st_mode) ? path : directory;
+  if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + reason());
+}
+
 void Io::say(const std::string& line) const {
   if (!quiet) std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
 }
@@ -233,17 +268,20 @@ double most_triangles() {
 }
 
 int run_tool(int argc, char** argv, const char* program, const char* summary,
-             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body) {
+             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,
+             Usage usage) {
   handle_signals();
   Io io;
   io.program = program;
   CLI::App app{summary, program};
+  app.formatter(std::make_shared<Help>());
   app.get_formatter()->column_width(34);
   app.option_defaults()->group("Options");
   options(app);
   app.option_defaults()->group(common_group);
-  app.add_option("FILE", io.input, "input: the stream or any mesh format; - is standard input")
-      ->type_name("");
+  if (usage.reads)
+    app.add_option("FILE", io.input, "input: the stream or any mesh format; - is standard input")
+        ->type_name("");
   app.add_option("-o,--output", io.output, "write to this file instead of standard output")
       ->type_name("FILE");
   auto* ascii = app.add_flag("--ascii", io.ascii, "write text");
@@ -262,19 +300,34 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
     // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
     const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
-    if (!pass_on || culprit == program) std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
+    const bool said =
+        culprit != program && std::getenv("MESHPIPE_DRIVER");  // by the culprit, and mremesh ran it
+    if (!said && (!pass_on || culprit == program))
+      std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
     if (pass_on) {
       std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
       (void)!::write(STDOUT_FILENO, line.data(), line.size());
     }
     return status;
   };
+  auto show = [&](const std::string& text) {
+    try {
+      write_all(STDOUT_FILENO, text, "stdout");
+      return 0;
+    } catch (const CannotWrite& e) {
+      return failed(7, e.what(), program);
+    }
+  };
   try {
     app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    return show(app.help());
+  } catch (const CLI::CallForVersion& e) {
+    return show(std::string(e.what()) + '\n');
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
     std::string why = e.what();
     std::replace(why.begin(), why.end(), '\n', ' ');
+    if ('A' <= why[0] && why[0] <= 'Z' && why[1] >= 'a') why[0] += 'a' - 'A';
     return failed(2, why + "; see " + program + " --help", program);
   }
   if (io.threads > 0) omp_set_num_threads(io.threads);
@@ -285,6 +338,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     if (!io.json.empty()) Io::write_file(io.json, io.report.dump(2) + '\n');
   };
   try {
+    if (io.output != "-") Io::expect_writable(io.output, usage.writes_mesh);
+    if (!io.json.empty()) Io::expect_writable(io.json);
     try {
       body(io);
     } catch (const NotAdmissible&) {
@@ -297,7 +352,13 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       write_report();
       throw;
     }
-    write_report();
+    try {
+      write_report();
+    } catch (const CannotWrite&) {
+      struct stat info {};
+      if (::stat(io.finished_.c_str(), &info) == 0 && S_ISREG(info.st_mode)) ::unlink(io.finished_.c_str());
+      throw;
+    }
     return 0;
   } catch (const UpstreamFailed& e) {
     return failed(e.status, e.program + " failed before this", e.program);

@@ -30,6 +30,9 @@ class Io {
   void write_bytes(std::string_view bytes) const;
   /// Writes bytes to another file of the user's, beside it and renamed.
   static void write_file(const std::string& path, std::string_view bytes);
+  /// Throws CannotWrite if write_file would fail now, and BadUsage if write_to would for the extension of a
+  /// `mesh`: before the work, not after it.
+  static void expect_writable(const std::string& path, bool mesh = false);
   /// A line on standard error, after the program's name; not with -q.
   void say(const std::string& line) const;
   /// The same, only with -v.
@@ -45,9 +48,16 @@ class Io {
 
  private:
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
-                      const std::function<void(Io&)>&);
+                      const std::function<void(Io&)>&, struct Usage);
   std::string arguments_;
   mutable bool written_ = false;  ///< something went to standard output: no failure line after it
+  mutable std::string finished_;  ///< the file of -o, once it has its name: removed by a failure after that
+};
+
+/// What is not as usual with a program.
+struct Usage {
+  bool reads = true;        ///< takes FILE
+  bool writes_mesh = true;  ///< -o is a mesh, its format by extension
 };
 
 /// How many triangles the machine's memory holds while a pipeline of these programs works on them.
@@ -56,8 +66,10 @@ double most_triangles();
 /// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and
 /// turns exceptions into one line on standard error and the documented exit status. `summary` ends with the
 /// examples --help shows ("\n  mclean ..."). Options of `options` that change the result are recorded in the
-/// stream; put those that do not in the group "Reports".
+/// stream; put those that do not in the group "Reports". That -o and --json can be written is seen before
+/// `body` runs; for further files call expect_writable first.
 int run_tool(int argc, char** argv, const char* program, const char* summary,
-             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body);
+             const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,
+             Usage usage = {});
 
 }  // namespace meshpipe

@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <new>
 
-#ifndef __SANITIZE_ADDRESS__  // which has its own
-
 namespace {
 constexpr std::size_t page = std::size_t{1} << 21;
 }  // namespace
@@ -29,5 +27,3 @@ void* operator new(std::size_t bytes) {
 
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
-#endif

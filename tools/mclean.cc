@@ -15,12 +15,6 @@ struct Options {
   bool drop_nonorientable = false;
 };
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
-
 /// A length, or a part of the bounding box's diagonal in percent.
 double tolerance(const std::string& text, const Mesh& mesh) {
   double value = 0;
@@ -42,30 +36,7 @@ int count_or_all(const std::string& text) {
   return value;
 }
 
-void tell(Io& io, const CleanReport& r, const Surface& surface, double within) {
-  const struct {
-    const char* key;
-    int count;
-    std::string what;
-  } repairs[] = {
-      {"welded", r.welded, "vertices welded with an equal one"},
-      {"welded_near", r.welded_near, "vertices merged with one within " + number(within)},
-      {"unreferenced", r.unreferenced, "unreferenced vertices dropped"},
-      {"degenerate", r.degenerate, "degenerate triangles removed"},
-      {"duplicate", r.duplicate, "duplicate triangles dropped"},
-      {"flipped", r.flipped, "triangles turned round"},
-      {"nonorientable", (int)r.nonorientable.size(), "non-orientable components dropped"},
-      {"nonmanifold_edges", r.nonmanifold_edges, "non-manifold edges split into sheets"},
-      {"nonmanifold_vertices", r.nonmanifold_vertices, "vertices of several fans split into a copy for each"},
-      {"copies", r.copies, "copies of vertices, which keep sheets and fans apart"},
-      {"flat", r.flat, "triangles of zero area left in"},
-      {"dropped_components", r.dropped_components, "smaller components dropped"},
-      {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
-      {"holes_filled", r.holes_filled, "holes filled"},
-      {"hole_triangles", r.hole_triangles, "triangles added in holes"},
-      {"holes_left", r.holes_left,
-       "holes left open, along non-manifold edges or where filling would double an edge"},
-  };
+void tell(Io& io, const CleanReport& r, const CleanOptions& options, const Surface& surface) {
   const std::string size = std::to_string(surface.points.size()) + " vertices, " +
                            std::to_string(surface.tris.size()) + " triangles, " +
                            std::to_string(r.components) + (r.components == 1 ? " component" : " components");
@@ -80,7 +51,7 @@ void tell(Io& io, const CleanReport& r, const Surface& surface, double within) {
   io.report["triangles"] = surface.tris.size();
   io.report["components"] = r.components;
   io.report["clean"] = r.nothing;
-  for (const auto& [key, count, what] : repairs) {
+  for (const auto& [key, count, what] : table_of(r, options)) {
     io.report[key] = count;
     char line[160];  // what a clean surface tells of is how it was found
     std::snprintf(line, sizeof line, "%9d %s%s", count, what.c_str(), r.nothing ? " (so in the input)" : "");
@@ -95,30 +66,26 @@ void tell(Io& io, const CleanReport& r, const Surface& surface, double within) {
   }
 }
 
-/// The culprits as a mesh on the input's points: a triangle for each fault that it has, `patch` the fault.
-Stream culprits_of(const CleanReport& report, const Surface& input) {
-  Stream stream;
-  Surface& s = stream.surface;
-  std::vector<int> number(input.points.size(), -1), patch, origin;
-  for (const Culprit& c : report.culprits) {
-    Tri t = input.tris[c.triangle];
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = (int)s.points.size();
-        s.points.push_back(input.points[v]);
+/// A patch that became several has its name on each of them.
+void name_sheets(Stream& stream, const CleanReport& report) {
+  int number = 1, of = -1;
+  for (const auto& [patch, was] : report.sheet_patches) {
+    number = was == of ? number + 1 : 2;
+    of = was;
+    for (std::size_t i = 0; i < stream.names.size(); ++i)
+      if (stream.names[i].dim == 2 && stream.names[i].tag == was) {
+        stream.names.push_back({2, patch, stream.names[i].text + "-" + std::to_string(number)});
+        break;
       }
-      v = number[v];
-    }
-    s.tris.push_back(t);
-    const int tag = (int)c.fault + 1;
-    if (patch.empty() || patch.back() != tag) stream.names.push_back({2, tag, fault_names[tag - 1]});
-    patch.push_back(tag);
-    origin.push_back(c.triangle);
   }
-  s.vertex.rows = s.points.size();
-  s.face.set("patch", std::move(patch));
-  s.face.set("origin", std::move(origin));
-  return stream;
+}
+
+void write_culprits(const Io& io, const std::string& path, const CleanReport& report, const Mesh& input) {
+  if (path.empty()) return;
+  Stream stream;
+  stream.surface = surface_of_culprits(report, input);
+  for (int i = 0; i < (int)std::size(fault_names); ++i) stream.names.push_back({2, i + 1, fault_names[i]});
+  io.write_to(path, stream);
 }
 
 }  // namespace
@@ -150,25 +117,24 @@ int main(int argc, char** argv) {
             ->group("Reports");
       },
       [&](Io& io) {
-        if (o.sheets == "keep") throw BadUsage("--sheets keep is not built yet");
         CleanOptions options{.drop_nonorientable = o.drop_nonorientable,
                              .keep_components = count_or_all(o.keep),
-                             .fill_holes = o.fill_holes};
+                             .fill_holes = o.fill_holes,
+                             .keep_sheets = o.sheets == "keep"};
+        if (!o.culprits.empty()) Io::expect_writable(o.culprits, true);
         Stream stream = io.read();
         if (!o.weld.empty()) options.weld = tolerance(o.weld, stream.surface);
-        Surface input;
-        if (!o.culprits.empty()) static_cast<Mesh&>(input) = stream.surface;
+        Mesh input;
+        if (!o.culprits.empty()) input = stream.surface;
         CleanReport report;
-        auto write_culprits = [&] {
-          if (!o.culprits.empty()) io.write_to(o.culprits, culprits_of(report, input));
-        };
         try {
           clean(stream.surface, options, report);
         } catch (const NotAdmissible&) {
-          write_culprits();
+          write_culprits(io, o.culprits, report, input);
           throw;
         }
-        write_culprits();
+        write_culprits(io, o.culprits, report, input);
+        name_sheets(stream, report);
         if (!stream.surface.face.has("patch"))
           stream.surface.face.set("patch", std::vector<int>(stream.surface.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one
@@ -179,7 +145,7 @@ int main(int argc, char** argv) {
             stream.surface.vertex.erase(column);
         }
         stream.input_triangles = (int)stream.surface.tris.size();
-        tell(io, report, stream.surface, options.weld);
+        tell(io, report, options, stream.surface);
         io.write(stream);
       });
 }

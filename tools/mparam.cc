@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lib/param.h"
+#include "lib/param_svg.h"
 #include "lib/topology.h"
 #include "tools/common.h"
 
@@ -39,7 +40,9 @@ void add_columns(Table& parts, const std::vector<ParamReport>& reports) {
     parts.set<T>(name, std::move(column));
   };
   add.template operator()<int>("map", [](auto& r) { return r.used; });
+  add.template operator()<double>("bend", [](auto& r) { return r.bend; });
   add.template operator()<int>("flips_before", [](auto& r) { return r.flips_before; });
+  add.template operator()<int>("flips_after", [](auto& r) { return r.flips_after; });
   add.template operator()<double>("anisotropy_median", [](auto& r) { return r.anisotropy_median; });
   add.template operator()<double>("anisotropy_p99", [](auto& r) { return r.anisotropy_p99; });
   add.template operator()<double>("anisotropy_max", [](auto& r) { return r.anisotropy_max; });
@@ -47,78 +50,120 @@ void add_columns(Table& parts, const std::vector<ParamReport>& reports) {
   add.template operator()<double>("smallest_area", [](auto& r) { return r.smallest_area; });
 }
 
+std::string line_of(const ParamReport& r, std::size_t triangles) {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "%zu triangles, %s map, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, area scale %.3g, "
+                "smallest area %.2e, order %.4f s, factorise %.4f s, solve %.4f s",
+                triangles, name_of(r.used), r.anisotropy_median, r.anisotropy_p99, r.anisotropy_max,
+                r.area_scale, r.smallest_area, r.time.ordering, r.time.factorisation, r.time.solve);
+  std::string line = text;
+  if (r.bend > 0) line += ", border bent " + std::to_string((int)std::lround(100 * r.bend)) + " %";
+  if (!r.border_was_simple) line += ", border crossed itself before";
+  if (r.flips_before)
+    line += ", " + std::to_string(r.flips_before) + " flips before, " + std::to_string(r.flips_after) +
+            " after repair";
+  if (r.steps) line += ", " + std::to_string(r.steps) + " steps of optimisation";
+  return line;
+}
+
+nlohmann::ordered_json record_of(const ParamReport& r, int part, std::size_t triangles) {
+  return {{"part", part},
+          {"triangles", triangles},
+          {"map", name_of(r.used)},
+          {"bend", r.bend},
+          {"flips_before", r.flips_before},
+          {"flips_after", r.flips_after},
+          {"border_was_simple", r.border_was_simple},
+          {"steps", r.steps},
+          {"anisotropy_median", r.anisotropy_median},
+          {"anisotropy_p99", r.anisotropy_p99},
+          {"anisotropy_max", r.anisotropy_max},
+          {"area_scale", r.area_scale},
+          {"smallest_area", r.smallest_area},
+          {"seconds_ordering", r.time.ordering},
+          {"seconds_factorisation", r.time.factorisation},
+          {"seconds_solve", r.time.solve}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string map = "conformal";
-  bool strict = false;
+  ParamOptions options;
+  std::string svg;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--map", map, "conformal (default), convex or harmonic (not built yet)")
-        ->check(CLI::IsMember({"conformal", "convex", "harmonic"}))
-        ->type_name("NAME");
-    app.add_flag("--strict", strict, "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
+    auto name = [&]<class T>(const char* option, T& value, std::map<std::string, T> names, const char* help) {
+      app.add_option(option, value, help)->transform(CLI::CheckedTransformer(names))->type_name("NAME");
+    };
+    name("--map", options.map,
+         {{"conformal", MapKind::conformal}, {"harmonic", MapKind::harmonic}, {"convex", MapKind::convex}},
+         "conformal (default), harmonic or convex");
+    name("--conformal", options.form,
+         {{"boundary-first", ConformalForm::boundary_first},
+          {"least-squares", ConformalForm::least_squares},
+          {"spectral", ConformalForm::spectral}},
+         "how: boundary-first (default), least-squares or spectral");
+    name("--weights", options.weights,
+         {{"cotangent", Weights::cotangent},
+          {"mean-value", Weights::mean_value},
+          {"uniform", Weights::uniform}},
+         "of the convex map: cotangent (clamped, default), mean-value or uniform");
+    name("--boundary", options.neumann, {{"filled", false}, {"neumann", true}},
+         "holes: filled (default) in the solve, or left to the natural condition (neumann)");
+    app.add_option("--optimize", options.optimize, "at most N steps that lower distortion (SLIM)")
+        ->check(CLI::Range(0, 10000))
+        ->type_name("N");
+    app.add_flag("--strict", options.strict,
+                 "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
+    app.add_option("--svg", svg, "draw the charts, coloured by area scale")
+        ->type_name("FILE")
+        ->group("Reports");
   };
   auto body = [&](Io& io) {
-    if (map == "harmonic") throw BadUsage("--map harmonic is not built yet");
-    MapKind kind = map == "convex" ? MapKind::convex : MapKind::conformal;
     Stream stream = io.read();
     Surface& surface = stream.surface;
     if (!surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     const auto& part = surface.face.get<int>("part");
     int n_before = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
+    std::size_t faces_before = surface.tris.size();
 
     std::vector<ParamReport> reports;
-    std::vector<Chart> charts = map_surface(surface, n_before, kind, strict, reports);
+    std::vector<Chart> charts = map_surface(surface, n_before, options, reports);
     int n_parts = (int)charts.size();
     const Table* known = stream.find("part");
-    Table parts = known && n_parts == n_before ? *known : part_table(surface, n_parts);
+    Table parts = known && surface.tris.size() == faces_before ? *known : part_table(surface, n_parts);
     add_columns(parts, reports);
     stream.set(std::move(parts));
     stream.set(chart_table(charts));
 
     double median = 1, p99 = 1, smallest = 1;
-    int other = 0;
+    int other = 0, repaired = 0;
     io.report["parts"] = n_parts;
     io.report["cut"] = n_parts - n_before;
     io.report["charts"] = nlohmann::ordered_json::array();
     for (int p = 0; p < n_parts; ++p) {
       const ParamReport& r = reports[p];
-      char text[300];
-      std::snprintf(text, sizeof text,
-                    "part %d: %zu triangles, %s map, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, "
-                    "area scale %.3g, smallest area %.2e%s",
-                    p, charts[p].mesh.tris.size(), name_of(r.used), r.anisotropy_median, r.anisotropy_p99,
-                    r.anisotropy_max, r.area_scale, r.smallest_area,
-                    r.border_was_simple ? "" : ", border crossed itself before");
-      io.detail(std::string(text) +
-                (r.flips_before ? ", " + std::to_string(r.flips_before) + " flips before" : ""));
-      io.report["charts"].push_back({{"part", p},
-                                     {"triangles", charts[p].mesh.tris.size()},
-                                     {"map", name_of(r.used)},
-                                     {"flips_before", r.flips_before},
-                                     {"border_was_simple", r.border_was_simple},
-                                     {"anisotropy_median", r.anisotropy_median},
-                                     {"anisotropy_p99", r.anisotropy_p99},
-                                     {"anisotropy_max", r.anisotropy_max},
-                                     {"area_scale", r.area_scale},
-                                     {"smallest_area", r.smallest_area}});
+      io.detail("part " + std::to_string(p) + ": " + line_of(r, charts[p].mesh.tris.size()));
+      io.report["charts"].push_back(record_of(r, p, charts[p].mesh.tris.size()));
       median = std::max(median, r.anisotropy_median);
       p99 = std::max(p99, r.anisotropy_p99);
       smallest = std::min(smallest, r.smallest_area);
-      other += r.used != kind;
+      other += r.used != options.map;
+      repaired += r.used == options.map && (r.flips_before > 0 || !r.border_was_simple);
     }
     char text[300];
     std::snprintf(
         text, sizeof text,
-        "%d charts, %d cut here, %d on another map than %s; worst sigma1/sigma2 median %.3f, p99 %.3f, "
-        "smallest area %.2e",
-        n_parts, n_parts - n_before, other, map.c_str(), median, p99, smallest);
+        "%d charts, %d cut here, %d repaired, %d on another map than %s; worst sigma1/sigma2 median "
+        "%.3f, p99 %.3f, smallest area %.2e",
+        n_parts, n_parts - n_before, repaired, other, name_of(options.map), median, p99, smallest);
     io.say(text);
+    if (!svg.empty()) Io::write_file(svg, charts_svg(charts, reports));
     io.write(stream);
   };
   return run_tool(
       argc, argv, "mparam",
-      "Map every part to the plane, one-to-one: conformal, or convex where that fails.\n\n"
+      "Map every part to the plane, one-to-one: conformal, or harmonic or convex where that fails.\n\n"
       "example:\n  mclean tree.stl | mtopo | mfeature | mpartition | mmultiscale | mparam -o charts.ply",
       add_options, body);
 }

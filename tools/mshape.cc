@@ -76,8 +76,6 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(30);
   };
   auto body = [&](Io& io) {
-    if (io.input != "-")
-      throw BadUsage("mshape reads no input, but '" + io.input + "' is given; see mshape --help");
     Body shape = make(o);
     Stream stream;
     static_cast<Mesh&>(stream.surface) = std::move(static_cast<Mesh&>(shape));
@@ -102,5 +100,5 @@ int main(int argc, char** argv) {
                   "or cube.\n\nexamples:\n  mshape tree -o tree.stl\n  mshape tree --outlets 147 --triangles "
                   "90000 -o airways.stl\n"
                   "  mshape tube --aspect 100 --noise 0.1 | mclean | mtopo > tube.ply",
-                  add_options, body);
+                  add_options, body, {.reads = false});
 }

@@ -2,41 +2,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "lib/clean.h"
 #include "lib/topology.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
 
 namespace {
-
-/// The number of parts that face column `part` names.
-int count_parts(const Surface& surface) {
-  const std::vector<int>& part = surface.face.get<int>("part");
-  const int n_tris = (int)surface.tris.size();
-  const int n = n_tris ? *std::max_element(part.begin(), part.end()) + 1 : 0;
-  std::vector<int> faces(std::min(n, n_tris), 0);
-  for (int t = 0; t < n_tris; ++t) {
-    if (part[t] < 0 || part[t] >= n_tris)
-      throw NotAdmissible("face " + std::to_string(t) + " has part " + std::to_string(part[t]) + " of " +
-                          std::to_string(n_tris) + " triangles");
-    ++faces[part[t]];
-  }
-  for (int p = 0; p < n; ++p)
-    if (!faces[p])
-      throw NotAdmissible("part " + std::to_string(p) + " of " + std::to_string(n) + " has no triangle");
-  return n;
-}
-
-/// Which of the paper's conditions (5) fail.
-std::string verdict(const Topology& t) {
-  std::string why;
-  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
-  if (t.components != 1) add(std::to_string(t.components) + " pieces");
-  if (t.genus != 0) add("genus " + std::to_string(t.genus));
-  if (t.loops == 0) add("closed");
-  if (why.empty() && !admissible(t)) add("too long");
-  return why.empty() ? "ok" : why;
-}
 
 std::string plural(std::size_t n, const std::string& what) {
   return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
@@ -121,9 +93,20 @@ int main(int argc, char** argv) {
             ->group("Reports");
       },
       [&](Io& io) {
+        if (!tsv_file.empty()) Io::expect_writable(tsv_file);
         Stream stream = io.read();
         Surface& s = stream.surface;
-        const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+        Mesh apart;
+        const Mesh* mesh = &s;
+        std::vector<int> opposite;
+        try {
+          opposite = opposite_halfedges(s.tris, (int)s.points.size());
+        } catch (const NotAdmissible&) {
+          if (required == "manifold" || !s.face.has("model")) throw;
+          apart = sheets_apart(s);  // as mclean --sheets keep has left it
+          mesh = &apart;
+          opposite = opposite_halfedges(apart.tris, (int)apart.points.size());
+        }
         if (required == "manifold")
           if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
             throw NotAdmissible("vertex " + std::to_string(v) +
@@ -138,11 +121,11 @@ int main(int argc, char** argv) {
             "box\teta_geo\t"
             "verdict\tloop_lengths\n";
         std::string kind = "component";
-        std::vector<Topology> pieces = topology_of_components(s, opposite, component, n);
+        std::vector<Topology> pieces = topology_of_components(*mesh, opposite, component, n);
         tell(io, kind, pieces, tsv);
         if (s.face.has("part")) {
           kind = "part";
-          pieces = topology_of_parts(s, s.face.get<int>("part"), count_parts(s));
+          pieces = topology_of_parts(*mesh, s.face.get<int>("part"), count_parts(s));
           tell(io, kind, pieces, tsv);
         } else {
           s.face.set("part", std::move(component));

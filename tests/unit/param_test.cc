@@ -37,6 +37,9 @@ static SubMesh grid(int n, int m, bool closed, Place place, Keep keep) {
 }
 static bool all(int, int) { return true; }
 
+static std::vector<Vec2> conformal_map(const SubMesh& m) { return plain_map(m, {}); }
+static std::vector<Vec2> convex_map(const SubMesh& m) { return plain_map(m, {.map = MapKind::convex}); }
+
 static bool one_to_one(const SubMesh& m, const std::vector<Vec2>& uv) {
   return count_inverted(m.tris, uv) == 0 &&
          border_is_simple(m.tris, opposite_halfedges(m.tris, (int)m.points.size()), uv);
@@ -57,11 +60,14 @@ TEST(Param, AFlatPlateWithHolesIsMappedByARigidMotion) {
       [](int i, int j) {
         return !(i > 15 && j > 9) && !(i > 2 && i < 9 && j > 3 && j < 6) && !(i == 12 && j == 4);
       });
-  auto uv = conformal_map(plate);
-  EXPECT_TRUE(one_to_one(plate, uv));
-  auto r = distortion(plate, uv);
-  EXPECT_NEAR(r.anisotropy_max, 1, 1e-9);
-  EXPECT_NEAR(r.area_scale, 1, 1e-9);
+  for (ConformalForm form :
+       {ConformalForm::boundary_first, ConformalForm::least_squares, ConformalForm::spectral}) {
+    auto uv = plain_map(plate, {.form = form});
+    EXPECT_TRUE(one_to_one(plate, uv)) << (int)form;
+    auto r = distortion(plate, uv);
+    EXPECT_NEAR(r.anisotropy_max, 1, 1e-6) << (int)form;
+    EXPECT_NEAR(r.area_scale, 1, 1e-6) << (int)form;
+  }
 }
 
 TEST(Param, ASmoothSurfaceIsMappedNearlyConformally) {
@@ -94,13 +100,28 @@ TEST(Param, TubesAreMappedToRings) {
         return Vec3{std::cos(a), std::sin(a), 3 * t + 0.2 * t * std::cos(3 * a)};
       },
       all);
-  for (MapKind kind : {MapKind::conformal, MapKind::convex}) {
+  for (MapKind kind : {MapKind::conformal, MapKind::harmonic, MapKind::convex}) {
     ParamReport r;
-    auto uv = map_part(tube, kind, true, r);
+    auto uv = map_part(tube, {.map = kind, .strict = true}, r);
     EXPECT_TRUE(one_to_one(tube, uv));
     EXPECT_EQ(r.used, kind);
     EXPECT_LT(r.anisotropy_p99, kind == MapKind::conformal ? 1.2 : 3);
   }
+  for (ConformalForm form : {ConformalForm::least_squares, ConformalForm::spectral}) {
+    auto uv = plain_map(tube, {.form = form});
+    EXPECT_TRUE(one_to_one(tube, uv));
+    EXPECT_LT(distortion(tube, uv).anisotropy_p99, 1.5);
+  }
+  EXPECT_TRUE(one_to_one(tube, plain_map(tube, {.form = ConformalForm::spectral, .neumann = true})));
+  for (Weights weights : {Weights::mean_value, Weights::uniform})
+    for (bool neumann : {false, true}) {
+      ParamReport r;
+      auto uv =
+          map_part(tube, {.map = MapKind::convex, .weights = weights, .neumann = neumann, .strict = true}, r);
+      EXPECT_TRUE(one_to_one(tube, uv));
+    }
+  ParamReport r;
+  EXPECT_THROW(map_part(tube, {.neumann = true}, r), BadUsage);
 }
 
 TEST(Param, SliversAndDegenerateTrianglesAreMappedByTheConvexMap) {
@@ -113,8 +134,8 @@ TEST(Param, SliversAndDegenerateTrianglesAreMappedByTheConvexMap) {
       },
       all);
   ParamReport r;
-  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, MapKind::convex, false, r)));
-  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, MapKind::conformal, false, r)));
+  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, {.map = MapKind::convex}, r)));
+  EXPECT_TRUE(one_to_one(slivers, map_part(slivers, {}, r)));
 }
 
 //  2        one triangle, and two triangles that share no edge at 0
@@ -132,8 +153,6 @@ TEST(Param, SmallAndWrongParts) {
                  {0, 1, 2, 3},
                  {0, 1, 2, 3}};
   EXPECT_THROW(convex_map(closed), NotAdmissible);
-  ParamReport r;
-  EXPECT_THROW(map_part(one, MapKind::harmonic, false, r), BadUsage);
 }
 
 // A ramp that winds one and a half times round at the same radius: flat pieces of it overlap.
@@ -153,28 +172,79 @@ static Surface ramp() {
   return s;
 }
 
-TEST(Param, AnOverlappingChartIsCutWhereItIsNarrow) {
+TEST(Param, ABorderThatCrossesItselfIsBent) {
   Surface s = ramp();
   std::size_t n = s.points.size();
   std::vector<ParamReport> reports;
-  auto charts = map_surface(s, 1, MapKind::conformal, false, reports);
+  auto charts = map_surface(s, 1, {}, reports);
+  ASSERT_EQ(charts.size(), 1u);
+  EXPECT_EQ(s.points.size(), n);
+  EXPECT_EQ(reports[0].used, MapKind::conformal);
+  EXPECT_GT(reports[0].bend, 0);
+  EXPECT_FALSE(reports[0].border_was_simple);
+  EXPECT_LT(reports[0].anisotropy_p99, 1.2);  // still conformal
+  EXPECT_TRUE(one_to_one(charts[0].mesh, charts[0].uv));
+  EXPECT_FALSE(charts[0].opposite.empty());
+}
+
+// A long thimble: conformal in one chart, its tip would be exp(-16) of its size.
+TEST(Param, APartThatWouldShrinkToNothingIsCutAcross) {
+  auto thimble = grid(
+      32, 48, true,
+      [](double s, double t) {
+        double a = 2 * pi * s, r = t < 0.999 ? 1 : 0.2;
+        return Vec3{r * std::cos(a), r * std::sin(a), 10 * t};
+      },
+      all);
+  int tip = (int)thimble.points.size();
+  for (const auto& loop : boundary_loops(opposite_halfedges(thimble.tris, tip)))
+    for (int h : loop)  // the small ring at the top is closed
+      if (int v = origin(thimble.tris, h); thimble.points[v].z > 9)
+        thimble.tris.push_back({target(thimble.tris, h), v, tip});
+  thimble.points.push_back({0, 0, 10});
+  Surface s;
+  static_cast<Mesh&>(s) = thimble;
+  s.vertex.rows = s.points.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  std::vector<ParamReport> reports;
+  Surface strict = s;
+  ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
+  EXPECT_GT(reports[0].area_scale, 1e8);
+  auto charts = map_surface(s, 1, {}, reports);
   ASSERT_EQ(charts.size(), 2u);
-  ASSERT_EQ(reports.size(), 2u);
   for (int p = 0; p < 2; ++p) {
-    EXPECT_EQ(reports[p].used, MapKind::conformal);
-    EXPECT_LT(reports[p].anisotropy_p99, 1.1);
+    EXPECT_LT(reports[p].area_scale, 1e8);
     EXPECT_TRUE(one_to_one(charts[p].mesh, charts[p].uv));
     for (int f : charts[p].mesh.face) EXPECT_EQ(s.face.get<int>("part")[f], p);
-    EXPECT_FALSE(charts[p].opposite.empty());
   }
-  EXPECT_LT(s.points.size(), n + 20);  // across, not along
+}
+
+//  3-----2   two ears, 0 1 2 and 0 2 3: the edge 0-2 is split once for both
+//  |   / |
+//  | /   |
+//  0-----1
+TEST(Param, EarsAreSplitThroughTheirThirdEdge) {
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  s.tris = {{0, 1, 2}, {0, 2, 3}};
+  s.vertex.rows = 4;
+  s.face.set("part", std::vector<int>{0, 0});
+  Surface same = s;
+  std::vector<ParamReport> reports;
+  auto charts = map_surface(s, 1, {.map = MapKind::harmonic}, reports);
+  ASSERT_EQ(charts.size(), 1u);
+  EXPECT_EQ(s.points.size(), 5u);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_LT(reports[0].anisotropy_max, 1.01);  // four right isosceles triangles in a square
+  map_surface(same, 1, {.map = MapKind::harmonic, .strict = true}, reports);
+  EXPECT_EQ(same.points.size(), 4u);
 }
 
 TEST(Param, StrictRefusesWithTheReason) {
   Surface s = ramp();
   std::vector<ParamReport> reports;
   try {
-    map_surface(s, 1, MapKind::conformal, true, reports);
+    map_surface(s, 1, {.strict = true}, reports);
     FAIL();
   } catch (const GoalMissed& e) {
     EXPECT_NE(std::string(e.what()).find("part 0: the map is not one-to-one"), std::string::npos) << e.what();
