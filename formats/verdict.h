@@ -4,9 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "formats/stream.h"
 #include "lib/contract.h"
 
 namespace meshpipe {
+
+/// The patches of a surface that have triangles, as a user knows them: by name, or by tag; sorted. The stream
+/// has their names.
+std::vector<std::string> patch_names(const Stream& stream, const Surface& surface);
 
 /// The lines of a table of reference and result; counts that are 0 in both are left out, but for genus, loops
 /// and self-intersections.

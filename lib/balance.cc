@@ -2,7 +2,7 @@
 #include "lib/balance.h"
 
 #include <algorithm>
-#include <array>
+#include <climits>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -13,25 +13,6 @@
 namespace meshpipe {
 
 namespace {
-
-/// Gradients of the three linear shape functions of a triangle, times twice its area.
-std::array<Vec3, 3> gradients(const FilledDisk& disk, int t, double& twice_area) {
-  const Tri& c = disk.tris[t];
-  const Vec3 a = disk.points[c[0]], b = disk.points[c[1]], d = disk.points[c[2]];
-  const Vec3 n = area_vector(a, b, d);
-  twice_area = norm(n);
-  if (!(twice_area > 0)) return {};
-  const Vec3 unit = (1 / twice_area) * n;
-  return {cross(unit, d - b), cross(unit, a - d), cross(unit, b - a)};
-}
-
-Vec3 direction_of_descent(const FilledDisk& disk, int t, const double (&value)[3]) {
-  double twice_area;
-  const std::array<Vec3, 3> g = gradients(disk, t, twice_area);
-  const Vec3 d = value[0] * g[0] + value[1] * g[1] + value[2] * g[2];
-  const double length = norm(d);
-  return length > 0 ? (-1 / length) * d : Vec3{};
-}
 
 /// Strips so thin that the smoothed sides deny them, as on the way to a hole that lies out of the way, change
 /// sides: the hole is then in the other half as a whole. A strip that holds larger pieces of its side
@@ -111,7 +92,11 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
   const std::vector<Tri>& tris = disk.tris;
   std::vector<int> corner(n, -1), from(n, -1), seen, path;
   std::vector<double> distance(n, HUGE_VAL);
-  for (int h = 0; h < 3 * disk.part_tris; ++h) corner[origin(tris, h)] = h;
+  std::vector<char> on_border(n, 0);
+  for (int h = 0; h < 3 * disk.part_tris; ++h) {
+    corner[origin(tris, h)] = h;
+    if (opposite[h] < 0) on_border[origin(tris, h)] = on_border[target(tris, h)] = 1;
+  }
   using Item = std::pair<double, int>;
   for (std::size_t f = 0; f + 1 < disk.fan_begin.size(); ++f) {
     const int begin = disk.fan_begin[f], end = disk.fan_begin[f + 1];
@@ -130,13 +115,17 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
       queue.push({d, v});
     };
     for (int t = begin; t < end; ++t) reach(tris[t][0], 0, -1);
-    int reached = -1;
-    while (!queue.empty() && reached < 0) {
+    int last = -1;  // of the path: the first vertex with a neighbour on the other side
+    while (!queue.empty() && last < 0) {
       const auto [d, v] = queue.top();
       queue.pop();
       if (d > distance[v]) continue;
-      if ((field[v] > 0) != side) reached = v;
-      auto visit = [&](int w) { reach(w, d + norm(disk.points[w] - disk.points[v]), v); };
+      auto visit = [&](int w) {
+        if ((field[w] > 0) != side)
+          last = v;
+        else if (!on_border[w])
+          reach(w, d + norm(disk.points[w] - disk.points[v]), v);
+      };
       int h = corner[v];
       do {
         visit(target(tris, h));
@@ -149,13 +138,12 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
           visit(target(tris, h));
         }
     }
-    if (reached < 0) continue;
+    if (last < 0) continue;
     path.clear();
     bool cuts_open = true;
-    for (int v = from[reached]; v >= 0 && cuts_open; v = from[v]) {
-      bool on_border;
-      const int changes = changes_around(tris, opposite, field, corner[v], on_border);
-      cuts_open = changes == 2 && on_border == (from[v] < 0);
+    for (int v = last; v >= 0 && cuts_open; v = from[v]) {
+      bool border;
+      cuts_open = changes_around(tris, opposite, field, corner[v], border) == 2;
       if (cuts_open) {
         field[v] = -field[v];
         path.push_back(v);
@@ -168,9 +156,12 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
 
 Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels) {
   const int n = disk.part_vertices;
+  constexpr double width = 0.5;  // of a ring, in radii of the tube
   Branches branches;
-  branches.axis.resize(disk.part_tris);
-  std::vector<double> log_radius(n, 0), weight(n, 0), image, area;
+  branches.ring.assign(n, -1);
+  branches.between.assign(n, 0);
+  std::vector<double> log_radius(n, 0), weight(n, 0), image, area, distance;
+  std::vector<int> nearest, first, last;
   for (const Level& level : levels) {
     std::vector<Vec2> stops;
     for (int c : level.children) stops.push_back(levels[c].centre);
@@ -185,21 +176,39 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
           std::abs(cross(level.uv[c[1]] - level.uv[c[0]], level.uv[c[2]] - level.uv[c[0]]));
       const double in_space = norm(area_vector(disk.points[t[0]], disk.points[t[1]], disk.points[t[2]]));
       for (int k : c) image[k] += in_plane, area[k] += in_space;
-      const Vec2 middle = (1. / 3) * (level.uv[c[0]] + level.uv[c[1]] + level.uv[c[2]]);
-      const Vec2 stop = *std::min_element(stops.begin(), stops.end(), [&](Vec2 a, Vec2 b) {
-        return dot(a - middle, a - middle) < dot(b - middle, b - middle);
-      });
-      double log_distance[3];
-      for (int k = 0; k < 3; ++k) log_distance[k] = std::log(std::max(norm(level.uv[c[k]] - stop), 1e-300));
-      branches.axis[level.tris[i]] = direction_of_descent(disk, level.tris[i], log_distance);
+    }
+    distance.assign(level.vertex.size(), 0);
+    nearest.assign(level.vertex.size(), 0);
+    first.assign(stops.size(), INT_MAX);
+    last.assign(stops.size(), INT_MIN);
+    for (std::size_t k = 0; k < level.vertex.size(); ++k) {
+      double square = HUGE_VAL;
+      for (std::size_t s = 0; s < stops.size(); ++s)
+        if (double d = dot(level.uv[k] - stops[s], level.uv[k] - stops[s]); d < square) {
+          square = d;
+          nearest[k] = (int)s;
+        }
+      distance[k] = 0.5 * std::log(std::max(square, 1e-300));
+      const int v = level.vertex[k], ring = (int)std::floor(distance[k] / width);
+      if (v >= n) continue;
+      first[nearest[k]] = std::min(first[nearest[k]], ring);
+      last[nearest[k]] = std::max(last[nearest[k]], ring + 1);
+      if (!(image[k] > 0) || !(area[k] > 0)) continue;
+      log_radius[v] += area[k] * (distance[k] + 0.5 * std::log(area[k] / image[k]));
+      weight[v] += area[k];
+    }
+    for (std::size_t s = 0; s < stops.size(); ++s) {
+      if (last[s] < first[s]) continue;
+      const int rings = last[s] - first[s] + 1;
+      first[s] -= branches.rings;  // from here on, what to subtract from a ring's number
+      branches.rings += rings;
     }
     for (std::size_t k = 0; k < level.vertex.size(); ++k) {
       const int v = level.vertex[k];
-      if (v >= n || !(image[k] > 0) || !(area[k] > 0)) continue;
-      double nearest = HUGE_VAL;
-      for (Vec2 s : stops) nearest = std::min(nearest, dot(level.uv[k] - s, level.uv[k] - s));
-      log_radius[v] += 0.5 * area[k] * std::log(std::max(nearest, 1e-300) * area[k] / image[k]);
-      weight[v] += area[k];
+      if (v >= n || branches.ring[v] >= 0) continue;
+      const double at = distance[k] / width, ring = std::floor(at);
+      branches.ring[v] = (int)ring - first[nearest[k]];
+      branches.between[v] = at - ring;
     }
   }
   std::vector<double> length(n, 0), sum(n);
@@ -229,8 +238,19 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
   return branches;
 }
 
+void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field) {
+  constexpr double snapped = 0.005;  // of an edge: less than any snap but 0
+  for (std::size_t h = 0; h < crease.size(); ++h) {
+    if (!crease[h]) continue;
+    const int u = origin(disk.tris, h), v = target(disk.tris, h), apex = target(disk.tris, next(h));
+    if ((field[u] > 0) != (field[v] > 0) || (field[u] > 0) == (field[apex] > 0)) continue;
+    for (int w : {u, v})
+      field[w] = std::copysign(std::min(std::abs(field[w]), snapped * std::abs(field[apex])), field[w]);
+  }
+}
+
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
-                   std::vector<double>& field, int rounds) {
+                   const std::vector<char>& crease, std::vector<double>& field, int rounds) {
   const int n = disk.part_vertices;
   const std::vector<Tri>& tris = disk.tris;  // only those of the part are read: others are no one's opposite
   std::vector<double> mass(n, 0);
@@ -244,80 +264,90 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
     }
   }
   for (int v = 0; v < n; ++v) mass[v] /= branches.radius[v] * branches.radius[v];
-  // M / r^2 + K, K with conductances around and along the branch
-  auto factorise = [&](double around, double along) {
-    std::vector<Entry<double>> matrix;
-    matrix.reserve(3 * disk.part_tris + n);
-    std::vector<double> diagonal = mass;
-    for (int t = 0; t < disk.part_tris; ++t) {
-      double twice;
-      const std::array<Vec3, 3> g = gradients(disk, t, twice);
-      const Vec3 d = branches.axis[t];
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, a = tris[t][i], b = tris[t][j];
-        const double isotropic = -disk.weights[3 * t + i];
-        double k = around * isotropic;
-        if (along != around) {
-          const double axial =
-              twice > 0 ? std::clamp(dot(g[i], d) * dot(g[j], d) / (2 * twice), -100., 100.) : 0;
-          k += (along - around) * axial;
-        }
-        k = std::min(k, 0.);
-        diagonal[a] -= k, diagonal[b] -= k;
-        matrix.push_back({std::max(a, b), std::min(a, b), k});
-      }
-    }
-    for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
-    return Factorisation<double>(n, matrix);
-  };
-  // around a tube the smoother, applied twice, leaves a third of the first harmonic and a fifteenth of the
-  // second; the section's mean reaches less than half a radius along it
-  const Factorisation<double> smoother = factorise(0.7, 0.7), section = factorise(4, 0.2);
-  auto apply = [&](const Factorisation<double>& filter, std::vector<double>& x) {
+  // M / r^2 + K: around a tube the smoother, applied twice, leaves a third of the first harmonic and a
+  // fifteenth of the second
+  constexpr double conductance = 0.7, across_crease = 0.1;
+  std::vector<char> on_crease(n, 0);
+  for (std::size_t h = 0; h < crease.size(); ++h)
+    if (crease[h]) on_crease[origin(tris, h)] = on_crease[target(tris, h)] = 1;
+  std::vector<Entry<double>> matrix;
+  matrix.reserve(3 * disk.part_tris + n);
+  std::vector<double> diagonal = mass;
+  for (int h = 0; h < 3 * disk.part_tris; ++h) {
+    const int a = origin(tris, h), b = target(tris, h);
+    const bool leaves_crease = on_crease[a] + on_crease[b] == 1;
+    const double k = conductance * disk.weights[h] * (leaves_crease ? across_crease : 1);
+    diagonal[a] += k, diagonal[b] += k;
+    matrix.push_back({std::max(a, b), std::min(a, b), -k});
+  }
+  for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
+  const Factorisation<double> smoother(n, matrix);
+  auto smooth = [&](std::vector<double>& x) {
     for (int v = 0; v < n; ++v) x[v] *= mass[v];
-    filter.solve(x);
+    smoother.solve(x);
+  };
+  std::vector<double> sum(branches.rings), weight(branches.rings);
+  auto subtract_section = [&](std::vector<double>& x) {
+    std::fill(sum.begin(), sum.end(), 0);
+    std::fill(weight.begin(), weight.end(), 0);
+    for (int v = 0; v < n; ++v)
+      for (int i : {0, 1}) {
+        const int ring = branches.ring[v] + i;
+        const double w = mass[v] * (i ? branches.between[v] : 1 - branches.between[v]);
+        sum[ring] += w * x[v];
+        weight[ring] += w;
+      }
+    for (int r = 0; r < branches.rings; ++r)
+      if (weight[r] > 0) sum[r] /= weight[r];
+    for (int v = 0; v < n; ++v)
+      x[v] -= std::lerp(sum[branches.ring[v]], sum[branches.ring[v] + 1], branches.between[v]);
   };
 
-  std::vector<double> level(n), again;
+  std::vector<double> level(n);
   std::vector<int> changes, rest;
-  auto settle = [&](int most_rounds) {
-    for (int round = 0, flipped = n; round < most_rounds && flipped > n / 10000; ++round) {
-      for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
-      again = level;
-      apply(section, again);
-      for (int v = 0; v < n; ++v) level[v] -= again[v];
-      apply(smoother, level);
-      apply(smoother, level);
-      changes.clear();
-      for (int v = 0; v < n; ++v)
-        if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
-      // from the level inwards, as far as the topology lets it
-      flipped = 0;
-      for (std::size_t before = 0; changes.size() != before;) {
-        before = changes.size();
-        rest.clear();
-        for (int v : changes)
-          if (is_simple(tris, opposite, field, corner[v])) {
-            field[v] = -field[v];
-            ++flipped;
-          } else {
-            rest.push_back(v);
-          }
-        changes.swap(rest);
-      }
-      // a vertex that has to stay on its side is passed closely
-      constexpr double close = 1e-2, least = 1e-12;
-      for (int v = 0; v < n; ++v) {
-        const double size = std::abs(level[v]);
-        field[v] = std::copysign(
-            (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
-      }
+  // gives the vertices the sides of `level`, as far as the topology lets it; returns how many changed
+  auto adopt_level = [&] {
+    changes.clear();
+    for (int v = 0; v < n; ++v)
+      if ((level[v] > 0) != (field[v] > 0)) changes.push_back(v);
+    int flipped = 0;
+    for (std::size_t before = 0; changes.size() != before;) {  // from the level inwards
+      before = changes.size();
+      rest.clear();
+      for (int v : changes)
+        if (is_simple(tris, opposite, field, corner[v])) {
+          field[v] = -field[v];
+          ++flipped;
+        } else {
+          rest.push_back(v);
+        }
+      changes.swap(rest);
+    }
+    // a vertex that has to stay on its side is passed closely
+    constexpr double close = 1e-2, least = 1e-12;
+    for (int v = 0; v < n; ++v) {
+      const double size = std::abs(level[v]);
+      field[v] = std::copysign(
+          (level[v] > 0) == (field[v] > 0) ? std::max(size, least) : close * size + least, field[v]);
+    }
+    return flipped;
+  };
+  auto take_sides = [&] {
+    for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
+  };
+  auto settle = [&] {
+    for (int round = 0, flipped = n; round < rounds && flipped > n / 1000; ++round) {
+      take_sides();
+      subtract_section(level);
+      smooth(level);
+      smooth(level);
+      flipped = adopt_level();
     }
   };
-  settle(rounds);
-  for (int v = 0; v < n; ++v) level[v] = field[v] > 0 ? 1 : -1;
-  apply(smoother, level);
-  if (drop_hairs(tris, disk.part_tris, level, field)) settle(rounds);
+  settle();
+  take_sides();
+  smooth(level);
+  if (drop_hairs(tris, disk.part_tris, level, field)) settle();
 }
 
 }  // namespace meshpipe

@@ -14,10 +14,13 @@ bool is_simple(const std::vector<Tri>& tris, const std::vector<int>& opposite,
 
 /// The branches of a part as its Laplace maps see them: the map of a tube of radius r is exp((-z + i s) / r)
 /// around the centre of the set or hole behind it.
+/// Rings of like distance to the centre are therefore sections of the tube.
 struct Branches {
   std::vector<double>
-      radius;              ///< of vertices: the distance to the nearest such centre over the map's stretch
-  std::vector<Vec3> axis;  ///< of triangles: the unit direction towards it, or zero
+      radius;             ///< of vertices: the distance to the nearest such centre over the map's stretch
+  std::vector<int> ring;  ///< of vertices: of the two rings that it lies between, the first
+  std::vector<double> between;  ///< of vertices: 0 on that ring, 1 on the next, ring + 1
+  int rings = 0;
 };
 Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels);
 
@@ -26,11 +29,16 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
 void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::vector<double>& field);
 
 /// Threshold dynamics of the sides of the zero level at the scale of the branches: new sides are the signs of
-/// S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the cross-section. On a tube that
+/// S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the ring. On a tube that
 /// leaves mostly the first harmonic around it: two halves on opposite sides. Vertices change sides one after
 /// another and only where that keeps the topology of both sides; so a strip that is too thin grows, and the
-/// ends of the cut slide along the borders.
+/// ends of the cut slide along the borders. Half-edges with crease[h] != 0 (empty: none) conduct little from
+/// one of their sides to the other, so that the cut stays where it meets them.
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
-                   std::vector<double>& field, int rounds);
+                   const std::vector<char>& crease, std::vector<double>& field, int rounds);
+
+/// Where the zero level passes beside a crease, within a triangle, moves it onto the crease as closely as
+/// cut_by_scalar_field snaps: no region that thin is left between the two. Signs stay.
+void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field);
 
 }  // namespace meshpipe

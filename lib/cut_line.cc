@@ -174,9 +174,32 @@ std::vector<Stop> stops_of(const FilledDisk& disk, const std::vector<Level>& lev
   return path;
 }
 
-/// The line of every level, in its own disk; both ends lie far outside.
-std::vector<std::vector<Vec2>> draw(const FilledDisk& disk, const std::vector<Level>& levels,
-                                    double direction) {
+/// Signed distance to a line: positive on its left, which is what the far arc from its end to its start
+/// encloses.
+class Sides {
+ public:
+  explicit Sides(const std::vector<Vec2>& line) : n_(line.size()), polygon_(line) {
+    double start = angle_of(line.front()), end = angle_of(line.back());
+    if (start < end) start += 2 * pi;
+    constexpr int steps = 8;
+    for (int i = 0; i <= steps; i++) polygon_.push_back(20 * unit(end + i * (start - end) / steps));
+  }
+  double operator()(Vec2 p) const {
+    double nearest = 1e300;
+    for (std::size_t i = 0; i + 1 < n_; i++)
+      nearest = std::min(nearest, distance_to_segment(p, polygon_[i], polygon_[i + 1]));
+    return encloses(polygon_, p) ? nearest : -nearest;
+  }
+
+ private:
+  std::size_t n_;
+  std::vector<Vec2> polygon_;
+};
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> cut_lines(const FilledDisk& disk, const std::vector<Level>& levels,
+                                         double direction) {
   std::vector<std::vector<Vec2>> lines(levels.size());
   std::vector<std::array<double, 2>> ends(levels.size());  // where the parent's line meets the set's circle
   for (std::size_t l = 0; l < levels.size(); l++) {
@@ -210,33 +233,8 @@ std::vector<std::vector<Vec2>> draw(const FilledDisk& disk, const std::vector<Le
   return lines;
 }
 
-/// Signed distance to a line: positive on its left, which is what the far arc from its end to its start
-/// encloses.
-class Sides {
- public:
-  explicit Sides(const std::vector<Vec2>& line) : n_(line.size()), polygon_(line) {
-    double start = angle_of(line.front()), end = angle_of(line.back());
-    if (start < end) start += 2 * pi;
-    constexpr int steps = 8;
-    for (int i = 0; i <= steps; i++) polygon_.push_back(20 * unit(end + i * (start - end) / steps));
-  }
-  double operator()(Vec2 p) const {
-    double nearest = 1e300;
-    for (std::size_t i = 0; i + 1 < n_; i++)
-      nearest = std::min(nearest, distance_to_segment(p, polygon_[i], polygon_[i + 1]));
-    return encloses(polygon_, p) ? nearest : -nearest;
-  }
-
- private:
-  std::size_t n_;
-  std::vector<Vec2> polygon_;
-};
-
-}  // namespace
-
 std::vector<double> cut_line_field(const FilledDisk& disk, const std::vector<Level>& levels,
-                                   double direction) {
-  const auto lines = draw(disk, levels, direction);
+                                   const std::vector<std::vector<Vec2>>& lines) {
   // a vertex between levels is the mean of what they say, each as a distance in space: value over gradient
   std::vector<double> sum(disk.part_vertices, 0), weight(disk.part_vertices, 0);
   std::vector<double> value, gradient, area;

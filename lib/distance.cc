@@ -86,7 +86,9 @@ class OneSided {
   std::vector<int> doubtful_triangles();
   std::vector<Piece> doubtful_pieces(std::span<const int> triangles);
   void set_upper(Piece& piece, double enough) const;
+  double from_triangle(Vec3 p, int face) const;
   double farthest_corner(const Piece& piece, int face) const;
+  double overlay_upper(const Piece& piece, double enough) const;
 
   const Mesh& from_;
   const Bvh& from_tree_;
@@ -166,25 +168,75 @@ std::vector<int> OneSided::doubtful_triangles() {
   return groups;
 }
 
-/// The largest distance of the corners from one triangle of the other surface.
-double OneSided::farthest_corner(const Piece& piece, int face) const {
+double OneSided::from_triangle(Vec3 p, int face) const {
   const Tri& v = to_.tris[face];
   const Vec3 &a = to_.points[v[0]], &b = to_.points[v[1]], &c = to_.points[v[2]];
+  const auto w = closest_on_triangle(p, a, b, c);
+  return norm(w[0] * a + w[1] * b + w[2] * c - p);
+}
+
+/// The largest distance of the corners from one triangle of the other surface.
+double OneSided::farthest_corner(const Piece& piece, int face) const {
   double farthest = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (piece.near[i].face == face) {
-      farthest = std::max(farthest, piece.near[i].distance);
-      continue;
-    }
-    const auto w = closest_on_triangle(piece.corner[i], a, b, c);
-    farthest = std::max(farthest, norm(w[0] * a + w[1] * b + w[2] * c - piece.corner[i]));
-  }
+  for (int i = 0; i < 3; ++i)
+    farthest = std::max(
+        farthest, piece.near[i].face == face ? piece.near[i].distance : from_triangle(piece.corner[i], face));
   return farthest;
+}
+
+/// A point in a triangle's own frame: x and y in its plane, z above it.
+using Polygon = std::array<Vec3, 8>;
+
+/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative.
+template <class Height>
+int clip(const Polygon& in, int n, Polygon& out, const Height& height) {
+  int kept = 0;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 &p = in[i], &q = in[i + 1 < n ? i + 1 : 0];
+    const double a = height(p), b = height(q);
+    if (a >= 0) out[kept++] = p;
+    if ((a < 0) != (b < 0)) out[kept++] = lerp(p, q, a / (a - b));
+  }
+  return kept;
+}
+
+/// What lies of the other surface, facing the same way, straight above and below a triangle, laid over it: if
+/// it covers the triangle once, no point of the triangle is farther than the highest corner of the overlay.
+double OneSided::overlay_upper(const Piece& piece, double enough) const {
+  const auto& c = piece.corner;
+  const Vec3 n = area_vector(c[0], c[1], c[2]), x = normalized(c[1] - c[0]), z = normalized(n),
+             y = cross(z, x);
+  const double area = norm(n), length = norm(c[1] - c[0]), tip_x = dot(c[2] - c[0], x),
+               tip_y = dot(c[2] - c[0], y);
+  if (!(area > 0)) return infinity;
+  double covered = 0, highest = 0;
+  const Vec3 margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
+  to_tree_.overlapping(
+      {lower(lower(c[0], c[1]), c[2]) - margin, meshpipe::upper(meshpipe::upper(c[0], c[1]), c[2]) + margin},
+      [&](int t) {
+        Polygon p, q;
+        for (int k = 0; k < 3; ++k) {
+          const Vec3 d = to_.points[to_.tris[t][k]] - c[0];
+          p[k] = {dot(d, x), dot(d, y), dot(d, z)};
+        }
+        if (!((p[1].x - p[0].x) * (p[2].y - p[0].y) > (p[1].y - p[0].y) * (p[2].x - p[0].x))) return;
+        int m = clip(p, 3, q, [](const Vec3& v) { return v.y; });
+        m = clip(q, m, p, [&](const Vec3& v) { return (tip_x - length) * v.y - tip_y * (v.x - length); });
+        m = clip(p, m, q, [&](const Vec3& v) { return tip_y * v.x - tip_x * v.y; });
+        for (int k = 0; k < m; ++k) {
+          const Vec3 &a = q[k], &b = q[k + 1 < m ? k + 1 : 0];
+          covered += (a.x - q[0].x) * (b.y - q[0].y) - (a.y - q[0].y) * (b.x - q[0].x);
+          highest = std::max(highest, std::abs(a.z));
+        }
+      });
+  // what rounding may leave uncovered is no wider than this
+  constexpr double gap = 1e-8;
+  return std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
 }
 
 /// No point of a triangle is farther from a corner than its longest side over sqrt(3). And distance from a
 /// convex set is convex: a triangle is within the largest distance of its corners from any one triangle of
-/// the other surface. The latter is dearer, and looked at only if the former is not `enough`.
+/// the other surface. The dearer bounds are looked at only if the cheaper ones are not `enough`.
 void OneSided::set_upper(Piece& p, double enough) const {
   double side = 0, distance = 0;
   for (int i = 0; i < 3; ++i) {
@@ -195,6 +247,7 @@ void OneSided::set_upper(Piece& p, double enough) const {
   for (int i = 0; i < 3 && p.upper > enough; ++i)
     if (i == 0 || (p.near[i].face != p.near[0].face && p.near[i].face != p.near[i - 1].face))
       p.upper = std::min(p.upper, farthest_corner(p, p.near[i].face));
+  if (p.upper > enough) p.upper = std::min(p.upper, overlay_upper(p, enough));
 }
 
 std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> triangles) {
@@ -267,16 +320,16 @@ void OneSided::bound(int budget) {
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                           const Bvh& mesh_tree, int samples) {
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
-  // no more than what a few points in every triangle are
-  const long long enough = 2 * ((long long)reference.tris.size() + (long long)mesh.tris.size()) + 500;
+  // small meshes need no more than this for the mean to be right within a percent
+  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 2 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   OneSided there(mesh, mesh_tree, reference, reference_tree, d),
       back(reference, reference_tree, mesh, mesh_tree, d);
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
-  there.bound(4 * n);
+  there.bound(8 * samples);
   back.known = there.largest;
-  back.bound(4 * n);
+  back.bound(8 * samples);
   const OneSided& worse = there.largest >= back.largest ? there : back;
   Distance r;
   r.to_reference = there.largest / unit;
@@ -300,6 +353,55 @@ std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, con
       distances[vertices[i]] = seek(mesh.points[vertices[i]]).distance;
   }
   return distances;
+}
+
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree) {
+  std::vector<double> errors(mesh.tris.size(), 0);
+  struct Found {
+    int triangle;
+    double distance;
+  };
+  for (const bool back : {false, true}) {
+    const Mesh& from = back ? reference : mesh;
+    const Bvh &from_tree = back ? reference_tree : mesh_tree, &tree = back ? mesh_tree : reference_tree;
+    const auto& order = from_tree.order();
+    const int n = (int)order.size(), chunks = (n + chunk - 1) / chunk;
+    constexpr double weights[7][3] = {{1, 0, 0},   {0, 1, 0},   {0, 0, 1},  {1.0 / 3, 1.0 / 3, 1.0 / 3},
+                                      {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}};
+    std::vector<std::vector<Found>> found(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c) {
+      Seeker seek(tree);
+      for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+        const Tri& t = from.tris[order[i]];
+        for (const auto& w : weights) {
+          const Near near =
+              seek(w[0] * from.points[t[0]] + w[1] * from.points[t[1]] + w[2] * from.points[t[2]]);
+          if (near.distance > 0) found[c].push_back({back ? near.face : order[i], near.distance});
+        }
+      }
+    }
+    for (const auto& part : found)
+      for (const Found& f : part) errors[f.triangle] = std::max(errors[f.triangle], f.distance);
+  }
+  return errors;
+}
+
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit) {
+  std::vector<double> factor(size.size(), 1);
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t) {
+    if (errors[t] <= 0.6 * limit) continue;  // well within, since the next mesh is another
+    for (int v : mesh.tris[t]) factor[v] = std::min(factor[v], std::max(0.25, 0.6 * limit / errors[t]));
+  }
+  // the neighbours too, or a dip as narrow as a triangle would be lost in the next mesh
+  std::vector<double> refined = size;
+  for (const Tri& t : mesh.tris) {
+    const double least = std::min({factor[t[0]], factor[t[1]], factor[t[2]]});
+    for (int v : t) refined[v] = std::min(refined[v], least * size[v]);
+  }
+  return refined;
 }
 
 double curve_distance(const Mesh& a, const Mesh& b) {

@@ -18,16 +18,28 @@ struct Distance {
 
 /// Mean and RMS are taken from points spread evenly over each surface, `samples` at most on each. What is
 /// known from them is the start of a branch and bound: a ball of radius r about a point that is d away is at
-/// most d + r away, and a triangle is no farther from any one triangle of the other surface than its corners
-/// are. What may be farther than the farthest point known is divided, down to a bound of 5 % or 1e-4 of the
-/// diagonal, with at most 4 `samples` more points a side. Deterministic at any thread count. Precondition:
-/// both have triangles.
+/// most d + r away; a triangle is no farther from any one triangle of the other surface than its corners are,
+/// nor than the part of the other surface that covers it, seen along its normal. What may be farther than the
+/// farthest point known is divided, down to a bound of 5 % or 1e-4 of the diagonal, with at most 8 `samples`
+/// more points a side. Deterministic at any thread count. Precondition: both have triangles.
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples = 20000);
+                          const Bvh& mesh_tree, int samples = 10000);
 
 /// Distances of the mesh's vertices from a surface (0 for vertices that no triangle uses). `mesh_tree` is the
 /// mesh's, `tree` the surface's.
 std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree);
+
+/// How far the two surfaces are apart at every triangle of the mesh, a length: the largest distance of its
+/// centre and sides' middles from the reference, and of the reference's vertices, centres and sides' middles
+/// from it, where it is the nearest.
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree);
+
+/// The size (per vertex) that brings the mesh nearer to within `limit` of the reference: smaller in proportion
+/// where a triangle's error is larger, by no more than a factor of 4. (Where a surface is smooth the error goes
+/// with the square of the size, but on its ridges and tips only with the size.) Other sizes stay.
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit);
 
 /// Edges as triangles (a, b, b), which a Bvh takes as the segments that they are: half-edges for which
 /// wanted(h). Linear.

@@ -97,7 +97,9 @@ std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, 
 }
 
 std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, const Quality& quality,
-                                         const Lines& lines, const Mesh& surface) {
+                                         const std::vector<int>& opposite,
+                                         const std::vector<std::uint8_t>& model, const Lines& lines,
+                                         const Mesh& surface) {
   std::vector<char> close(mesh.tris.size(), 0);
   auto at = [&](int i) {
     const LinePoint& p = lines.points[i];
@@ -121,9 +123,15 @@ std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, cons
     for (int i = 1; i < l.count; ++i) mark(at(l.first + i - 1), at(l.first + i));
     if (l.closed && l.count) mark(at(l.first + l.count - 1), at(l.first));
   }
+  std::vector<char> held(mesh.points.size(), 0);
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] < 0 || (!model.empty() && (model[h / 3] >> h % 3 & 1)))
+      held[origin(mesh.tris, h)] = held[target(mesh.tris, h)] = 1;
   double sum[2] = {0, 0};
   int count[2] = {0, 0};
   for (std::size_t t = 0; t < close.size(); ++t) {
+    const Tri& v = mesh.tris[t];
+    if (held[v[0]] || held[v[1]] || held[v[2]]) continue;
     sum[(int)close[t]] += quality.kappas[t];
     ++count[(int)close[t]];
   }
@@ -177,8 +185,10 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   }
   f.kappa_by_cuts = f.kappa_elsewhere = nan;
   if (lines)
-    std::tie(f.kappa_by_cuts, f.kappa_elsewhere) =
-        kappa_by_lines(result, mesh_tree, f.quality, *lines, given);
+    std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(
+        result, mesh_tree, f.quality, f.mesh.opposite,
+        result.face.has("model") ? result.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>(),
+        *lines, given);
   return f;
 }
 

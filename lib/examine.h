@@ -39,8 +39,12 @@ std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, 
                             const Bvh& reference_tree);
 
 /// Mean kappa of the triangles whose centre is within an edge (their mean one) of an interface line, and of
-/// all others. Where a result shows no trace of the cuts the two are the same. The lines lie on `surface`.
+/// all others; triangles that touch the border or a model edge (bit i of `model`, which may be empty) are in
+/// neither, since those cost quality of their own. Where a result shows no trace of the cuts the two means
+/// are the same. The lines lie on `surface`.
 std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, const Quality& quality,
-                                         const Lines& lines, const Mesh& surface);
+                                         const std::vector<int>& opposite,
+                                         const std::vector<std::uint8_t>& model, const Lines& lines,
+                                         const Mesh& surface);
 
 }  // namespace meshpipe

@@ -14,48 +14,23 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
-constexpr double smooth_turn = 20 * degree;    ///< mean change of the turning vector from vertex to vertex
-constexpr double design_share = 0.5;           ///< of the strong edges, by length, in good chains
-
-/// Unit normals. A triangle so thin that rounding of single-precision coordinates turns its normal has that
-/// of the neighbour across its longest edge, in whose plane it lies.
-std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite) {
-  const double least = 3e-6 * diagonal(mesh);
-  const int n = (int)mesh.tris.size();
-  std::vector<Vec3> normal(n);
-  std::vector<int> heir(n, -1);
-  for (int t = 0; t < n; ++t) {
-    const Tri& c = mesh.tris[t];
-    const Vec3 a = area_vector(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    int longest = 3 * t;
-    double length = 0;
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (double l = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
-          l > length) {
-        length = l;
-        longest = h;
-      }
-    normal[t] = normalized(a);
-    if (norm(a) < least * length) heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
-  }
-  for (int t = 0; t < n; ++t) {
-    int u = t;
-    for (int steps = 0; heir[u] >= 0 && steps < 16; ++steps) u = heir[u];
-    normal[t] = normal[u];
-  }
-  return normal;
-}
+constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
+constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
+constexpr double design_share = 0.5;         ///< of the strong edges, by length, in good chains
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 class Creases {
  public:
-  Creases(const Surface& surface, const FeatureOptions& options)
+  Creases(const Surface& surface, const FeatureOptions& options, const std::vector<int>* before,
+          const std::vector<char>* given)
       : s_(surface), opposite_(opposite_halfedges(surface.tris, (int)surface.points.size())) {
     const int n = (int)opposite_.size();
     const std::vector<Vec3> normal = sound_normals(s_, opposite_);
     angle_.assign(n, 0);
     on_.assign(n, 0);
     patch_.assign(n, 0);
+    given_.assign(n, 0);
+    merged_.assign(n, 0);
     star_.assign(s_.points.size(), -1);
     valence_.assign(s_.points.size(), 0);
     anchor_.assign(s_.points.size(), 0);
@@ -66,8 +41,12 @@ class Creases {
       if (star_[v] < 0 || o < 0) star_[v] = h;
       sum += length(h);
       if (o >= 0) angle_[h] = angle(normal[h / 3], normal[o / 3]);
-      patch_[h] = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
-      if (o < 0 || patch_[h]) anchor_[v] = anchor_[to(h)] = 1;
+      const bool border = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
+      const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
+      given_[h] = o >= 0 && !merged && given && (*given)[h];
+      patch_[h] = border || given_[h];
+      merged_[h] = merged && options.mode == FeatureOptions::automatic && angle_[h] <= step;
+      if (o < 0 || patch_[h] || merged_[h]) anchor_[v] = anchor_[to(h)] = 1;
     }
     // what looks designed is a matter of the input's own edges, what is worth keeping of the target's; a
     // coarse model of few triangles has no longer chains than a tenth of itself
@@ -78,7 +57,7 @@ class Creases {
 
   void choose(double strong, double weak) {
     for (int h = 0; h < (int)opposite_.size(); ++h)
-      if (opposite_[h] > h && !patch_[h] && angle_[h] > strong) set(h, 1);
+      if (opposite_[h] > h && !patch_[h] && !merged_[h] && angle_[h] > strong) set(h, 1);
     strong_ = on_;
     const int n = (int)s_.points.size();
     std::vector<int> ends;
@@ -169,11 +148,11 @@ class Creases {
       if (!on_[h] && !patch_[h]) continue;
       model[h / 3] |= 1 << h % 3;
       if (opposite_[h] < h) continue;
-      (patch_[h] ? r.patch_edges : r.crease_edges) += 1;
+      (given_[h] ? r.given_edges : patch_[h] ? r.patch_edges : r.crease_edges) += 1;
       ++lines[from(h)];
       ++lines[to(h)];
     }
-    r.model_edges = r.patch_edges + r.crease_edges;
+    r.model_edges = r.patch_edges + r.given_edges + r.crease_edges;
     for (int v = 0; v < (int)s_.points.size(); ++v) {
       if (!lines[v]) continue;
       bool corner = lines[v] != 2;
@@ -232,7 +211,7 @@ class Creases {
       int best = -1;
       double least = continue_turn;
       around(v, [&](int h) {
-        if (on_[h] || patch_[h] || angle_[h] <= weak) return;
+        if (on_[h] || patch_[h] || merged_[h] || angle_[h] <= weak) return;
         if (double a = turn(in, h); a < least) {
           least = a;
           best = h;
@@ -287,18 +266,48 @@ class Creases {
   std::vector<int> opposite_;
   std::vector<double> angle_;      ///< between the normals on either side
   std::vector<char> on_, strong_;  ///< chosen; chosen by its angle alone
-  std::vector<char> patch_;        ///< between two patches
+  std::vector<char> patch_;        ///< between two patches, or given
+  std::vector<char> given_;        ///< by the caller
+  std::vector<char> merged_;       ///< between two patches that have become one
   std::vector<int> star_;          ///< a half-edge that leaves the vertex, on the border the border's
   std::vector<int> valence_;       ///< of the network of creases
-  std::vector<char> anchor_;       ///< on a patch border or the surface's: chains may end there
-  double short_ = 0;               ///< pieces below this length are dropped
-  double telling_ = 0;             ///< chains above this length tell whether the surface is designed
+  std::vector<char> anchor_;  ///< on a patch border, former ones too, or the surface's: chains may end there
+  double short_ = 0;          ///< pieces below this length are dropped
+  double telling_ = 0;        ///< chains above this length tell whether the surface is designed
 };
 
 }  // namespace
 
-FeatureReport mark_features(Surface& surface, const FeatureOptions& options) {
-  Creases creases(surface, options);
+std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite) {
+  const double least = 3e-6 * diagonal(mesh);
+  const int n = (int)mesh.tris.size();
+  std::vector<Vec3> normal(n);
+  std::vector<int> heir(n, -1);
+  for (int t = 0; t < n; ++t) {
+    const Tri& c = mesh.tris[t];
+    const Vec3 a = area_vector(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
+    int longest = 3 * t;
+    double length = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (double l = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+          l > length) {
+        length = l;
+        longest = h;
+      }
+    normal[t] = normalized(a);
+    if (norm(a) < least * length) heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
+  }
+  for (int t = 0; t < n; ++t) {
+    int u = t;
+    for (int steps = 0; heir[u] >= 0 && steps < 16; ++steps) u = heir[u];
+    normal[t] = normal[u];
+  }
+  return normal;
+}
+
+FeatureReport mark_features(Surface& surface, const FeatureOptions& options, const std::vector<int>* before,
+                            const std::vector<char>* given) {
+  Creases creases(surface, options, before, given);
   if (options.mode != FeatureOptions::none) {
     creases.choose(options.strong * degree, options.weak * degree);
     if (options.mode == FeatureOptions::automatic) {

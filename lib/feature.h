@@ -11,8 +11,12 @@ struct FeatureOptions {
   double size = 0;                ///< target edge length h; 0: the mean edge length
 };
 
+/// Unit normals of the triangles. A triangle so thin that rounding of single-precision coordinates turns its
+/// normal has that of the neighbour across its longest edge, in whose plane it lies.
+std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite);
+
 struct FeatureReport {
-  int model_edges = 0, patch_edges = 0, crease_edges = 0, corners = 0;
+  int model_edges = 0, patch_edges = 0, given_edges = 0, crease_edges = 0, corners = 0;
 };
 
 /// Sets face column `model`: bit i of triangle t is set if the edge from corner i to i+1 is a model edge (set
@@ -22,7 +26,12 @@ struct FeatureReport {
 /// dropped, and a component keeps its creases only if it looks designed: at least half of its strong edges,
 /// by length, are between patches or in chains that turn smoothly and are longer than five mean edges of the
 /// input. Otherwise free ends are dropped if shorter than 3 h. Pieces below 3 h are dropped in automatic
-/// mode. Throws like opposite_halfedges.
-FeatureReport mark_features(Surface& surface, const FeatureOptions& options);
+/// mode. `before`, if not null, holds the patches before some were merged: in automatic mode no crease runs
+/// along a border that vanished, unless it bends by more than 60 degrees. `given`, if not null, marks
+/// half-edges (both, where there are two) that are model edges in any mode, but for borders that vanished.
+/// Throws like opposite_halfedges.
+FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
+                            const std::vector<int>* before = nullptr,
+                            const std::vector<char>* given = nullptr);
 
 }  // namespace meshpipe

@@ -13,9 +13,6 @@ namespace meshpipe {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// positive weights make the map of a disk one-to-one (Floater 1997); raised by the edge and not by the
-// triangle, since raising more than needed twists tubes whose diagonals all lean to one side
-constexpr double least_weight = 1e-3;
 // a level resolves about four diameters of a tube (a factor e^-2 in length each); two more make a margin for
 // the natural condition where the system is cut off
 constexpr double depth_in_diameters = 6;
@@ -112,8 +109,8 @@ class LevelSolver {
   }
 
   /// Gathers domain_: the triangles of the set within `depth` of its border; breadth first, so distances are
-  /// those of the tree: an upper bound. Returns whether some were left out.
-  bool gather(const Pending& set, double depth) {
+  /// those of the tree: an upper bound. Gives up beyond `most`. Returns whether some were left out.
+  bool gather(const Pending& set, double depth, std::size_t most = SIZE_MAX) {
     for (int t : domain_) place_[t] = -1;
     domain_.clear();
     distance_.clear();
@@ -124,6 +121,7 @@ class LevelSolver {
     }
     bool truncated = false;
     for (std::size_t i = 0; i < domain_.size(); i++) {
+      if (domain_.size() > most) return true;
       int t = domain_[i];
       for (int h = 3 * t; h < 3 * t + 3; h++) {
         int n = disk_.opposite[h] < 0 ? -1 : disk_.opposite[h] / 3;
@@ -154,6 +152,12 @@ class LevelSolver {
     bool truncated;
     for (;; depth *= 2) {
       truncated = gather(set, depth);
+      // a small remainder is cheaper solved along than found to be needed
+      const std::size_t most = domain_.size() + domain_.size() / 4;
+      if (truncated && gather(set, 1e300, most))
+        gather(set, depth);
+      else
+        truncated = false;
       map(set);
       find_small(area_limit, stretch_limit);
       keep_fans_whole();
@@ -523,63 +527,6 @@ class LevelSolver {
 };
 
 }  // namespace
-
-bool encloses(const std::vector<Vec2>& polygon, Vec2 p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    Vec2 a = polygon[j], b = polygon[i];
-    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) * (b.x - a.x) / (b.y - a.y)) inside = !inside;
-  }
-  return inside;
-}
-
-FilledDisk fill_holes(const Mesh& part) {
-  FilledDisk disk;
-  disk.points = part.points;
-  disk.tris = part.tris;
-  disk.part_vertices = part.points.size();
-  disk.part_tris = part.tris.size();
-  std::vector<int> opposite = opposite_halfedges(part.tris, part.points.size());
-  std::vector<std::vector<int>> loops = boundary_loops(opposite);
-  std::size_t longest = 0;
-  double length = -1;
-  for (std::size_t l = 0; l < loops.size(); l++) {
-    double sum = 0;
-    for (int h : loops[l]) sum += norm(part.points[target(part.tris, h)] - part.points[origin(part.tris, h)]);
-    if (sum > length) {
-      length = sum;
-      longest = l;
-    }
-  }
-  for (std::size_t l = 0; l < loops.size(); l++) {
-    if (l == longest) {
-      for (int h : loops[l]) disk.rim.push_back(origin(part.tris, h));
-      continue;
-    }
-    disk.fan_begin.push_back(disk.tris.size());
-    Vec3 centre;
-    for (int h : loops[l]) centre = centre + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
-    for (int h : loops[l])
-      disk.tris.push_back({target(part.tris, h), origin(part.tris, h), static_cast<int>(disk.points.size())});
-    disk.points.push_back(centre);
-  }
-  disk.fan_begin.push_back(disk.tris.size());
-  disk.opposite = opposite_halfedges(disk.tris, disk.points.size());
-  disk.weights.resize(3 * disk.tris.size());
-  for (std::size_t t = 0; t < disk.tris.size(); t++) {
-    const Tri& c = disk.tris[t];
-    auto w = cotangent_weights(disk.points[c[0]], disk.points[c[1]], disk.points[c[2]]);
-    std::copy(w.begin(), w.end(), disk.weights.begin() + 3 * t);
-  }
-  for (int h = 0; h < static_cast<int>(disk.weights.size()); h++) {
-    const int o = disk.opposite[h];
-    if (o < 0)
-      disk.weights[h] = std::max(disk.weights[h], least_weight);
-    else if (o > h)
-      disk.weights[h] = disk.weights[o] = std::max((disk.weights[h] + disk.weights[o]) / 2, least_weight);
-  }
-  return disk;
-}
 
 Vec2 middle_of(const FilledDisk& disk, const Level& level) {
   Vec2 sum;

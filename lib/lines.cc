@@ -18,9 +18,11 @@ namespace {
 struct SpecialEdge {
   int a, b, kind;
   int left, right;  ///< parts on the left and the right of a -> b
+  int tag;          ///< label, 0: none
 };
 
-std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>& part) {
+std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>& part,
+                                       const std::vector<int>* tag = nullptr) {
   const std::vector<int> opposite = opposite_halfedges(s.tris, static_cast<int>(s.points.size()));
   const std::vector<std::uint8_t>* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
   auto is_model = [&](int h) { return model && ((*model)[h / 3] >> (h % 3) & 1); };
@@ -31,14 +33,17 @@ std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>&
     const int left = part[h / 3], right = o < 0 ? -1 : part[o / 3];
     if (o >= 0 && left == right && !is_model(h) && !is_model(o)) continue;
     const int kind = o < 0 ? border_line : is_model(h) || is_model(o) ? model_line : interface_line;
-    edges.push_back({meshpipe::origin(s.tris, h), target(s.tris, h), kind, left, right});
+    edges.push_back({meshpipe::origin(s.tris, h), target(s.tris, h), kind, left, right,
+                     tag && kind != interface_line ? (*tag)[h] : 0});
   }
   return edges;
 }
 
 /// Chains the edges between joints (vertices where their number is not two, and `corner` ones), then the
-/// loops that are left, each from its smallest vertex.
-Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner) {
+/// loops that are left, each from its smallest vertex. A change of label is a joint. Adds their labels to
+/// `tag`.
+Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner,
+                   std::vector<int>* tag = nullptr) {
   const int n_vertices = static_cast<int>(corner.size());
   std::vector<int> start(n_vertices + 1, 0), star(2 * edges.size());
   for (const SpecialEdge& e : edges) ++start[e.a + 1], ++start[e.b + 1];
@@ -48,7 +53,10 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
     star[at[edges[i].a]++] = i;
     star[at[edges[i].b]++] = i;
   }
-  auto is_joint = [&](int v) { return corner[v] || start[v + 1] - start[v] != 2; };
+  auto is_joint = [&](int v) {
+    return corner[v] || start[v + 1] - start[v] != 2 ||
+           edges[star[start[v]]].tag != edges[star[start[v] + 1]].tag;
+  };
 
   Chains chains;
   std::vector<char> used(edges.size(), 0);
@@ -69,6 +77,7 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
       e = star[s] == e ? star[s + 1] : star[s];
     }
     chains.chain.push_back(c);
+    if (tag) tag->push_back(first.tag);
   };
   for (bool closed : {false, true})
     for (int v = 0; v < n_vertices; ++v) {
@@ -210,7 +219,8 @@ std::vector<char> model_corners(const Surface& surface, double corner) {
                       special_edges(surface, surface.face.get<int>("part")), corner);
 }
 
-Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner) {
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner,
+                 const std::vector<int>* tag) {
   const int n_vertices = static_cast<int>(surface.points.size());
   if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
   const auto& size = surface.vertex.get<double>("size");
@@ -224,8 +234,9 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
       throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
                      ", but there are " + std::to_string(charts.size()) + " charts");
 
-  const std::vector<SpecialEdge> edges = special_edges(surface, part);
-  Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner));
+  const std::vector<SpecialEdge> edges = special_edges(surface, part, tag);
+  std::vector<int> chain_tag;
+  Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner), &chain_tag);
   measure_chains(surface, size, chains);
   Division division(chains.chain.size());
   const std::vector<int> count = segment_counts(chains);
@@ -236,7 +247,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   for (int l = 0; l < static_cast<int>(division.size()); ++l) {
     const Chain& c = chains.chain[l];
     const int n = static_cast<int>(division[l].size()) - (c.closed ? 1 : 0);
-    lines.lines.push_back({c.kind, 0, static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0});
+    lines.lines.push_back({c.kind, chain_tag[l], static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0});
     for (int i = 0; i < n; ++i) {
       const Cut& cut = division[l][i];
       const int a = chains.vertex[c.first + cut.piece];

@@ -43,6 +43,8 @@ std::vector<char> model_corners(const Surface& surface, double corner = 0.7);
 /// `size` linear along edges. No two lines, nor a line and itself, cross or touch in any chart but at common
 /// ends: where the chords would, or would lose the shape of a loop, the lines are refined. A line's points
 /// are the same in every chart that uses it. Precondition: charts in part order, positively oriented.
-Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7);
+/// `tag`, if not null, is the label of each half-edge's edge: lines end where it changes.
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7,
+                 const std::vector<int>* tag = nullptr);
 
 }  // namespace meshpipe

@@ -15,6 +15,7 @@
 #include "lib/cut_line.h"
 #include "lib/error.h"
 #include "lib/levels.h"
+#include "lib/maxcut.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
@@ -37,8 +38,21 @@ struct Assessment {
 struct Part {
   SubMesh mesh;
   std::vector<int> opposite;
+  std::vector<char> crease;  ///< of half-edges: model edges inside the part; empty if there are none
   FilledDisk disk;
 };
+
+std::vector<char> creases(const Surface& surface, const Part& part) {
+  std::vector<char> crease;
+  if (!surface.face.has("model")) return crease;
+  const auto& model = surface.face.get<std::uint8_t>("model");
+  for (std::size_t h = 0; h < part.opposite.size(); h++) {
+    if (part.opposite[h] < 0 || !(model[part.mesh.face[h / 3]] >> h % 3 & 1)) continue;
+    crease.resize(part.opposite.size(), 0);
+    crease[h] = 1;
+  }
+  return crease;
+}
 
 int root_of(std::vector<int>& parent, int v) {
   while (parent[v] != v) v = parent[v] = parent[parent[v]];
@@ -154,30 +168,45 @@ std::vector<double> across(const Part& part) {
 }
 
 /// The best field over all directions, straightened.
-std::vector<double> best_field(const Part& part, const MultiscaleOptions& options, int& n_levels) {
-  const std::vector<Level> levels = laplace_levels(part.disk, options.min_area, options.min_set);
-  n_levels = levels.size();
-  std::vector<double> best;
+CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
+  CutMaps cut;
+  cut.levels = laplace_levels(part.disk, options.min_area, options.min_set);
   Assessment best_is;
   for (int i = 0; i < options.directions; i++) {
-    std::vector<double> field = cut_line_field(part.disk, levels, std::numbers::pi * i / options.directions);
+    auto lines = cut_lines(part.disk, cut.levels, std::numbers::pi * i / options.directions);
+    std::vector<double> field = cut_line_field(part.disk, cut.levels, lines);
     drop_fragments(part, field);
     Assessment is = assess(part, field);
-    if (best.empty() || better(is, best_is)) {
-      best = std::move(field);
+    if (cut.field.empty() || better(is, best_is)) {
+      cut.field = std::move(field);
+      cut.lines = std::move(lines);
       best_is = is;
     }
   }
   if (!best_is.valid || best_is.smaller_share < least_share) {
-    best = across(part);
-    drop_fragments(part, best);
-    best_is = assess(part, best);
+    cut.field = across(part);
+    cut.lines.assign(cut.levels.size(), {});
+    drop_fragments(part, cut.field);
   }
   constexpr int rounds = 8;
-  reach_holes(part.disk, part.opposite, best);
-  balance_sides(part.disk, part.opposite, find_branches(part.disk, levels), best, rounds);
-  drop_fragments(part, best);
-  return best;
+  reach_holes(part.disk, part.opposite, cut.field);
+  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, cut.field,
+                rounds);
+  drop_fragments(part, cut.field);
+  follow_creases(part.disk, part.crease, cut.field);
+  return cut;
+}
+
+/// The single-level cut, as it comes; says how much of the part its map cannot tell apart.
+CutMaps single_cut(const Part& part, MultiscaleCut& says) {
+  MaxCut one = max_cut(part.disk);
+  says.too_small = one.too_small;
+  says.turned_over = one.turned_over;
+  CutMaps cut;
+  cut.levels.push_back(std::move(one.level));
+  cut.lines.push_back(std::move(one.line));
+  cut.field = std::move(one.field);
+  return cut;
 }
 
 /// The two sides of a cut as meshes, if they are parts as the stream wants them; their loops, or 0.
@@ -195,6 +224,31 @@ int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topolo
     return 0;
   }
   return loops;
+}
+
+/// A surface with one part cut in two.
+struct Halves {
+  Surface surface;
+  std::vector<int> side;
+  Topology is[2];
+  int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
+};
+
+/// Cuts the active triangles along the field. A line that is snapped to vertices may touch itself there: then
+/// it is snapped less, until the halves have no more loops than expected.
+Halves split(const Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
+             int expected_loops) {
+  Halves best;
+  for (double snap : {0.1, 0.03, 0.01, 0.}) {
+    Halves trial;
+    trial.surface = surface;
+    cut_by_scalar_field(trial.surface, field, active, trial.side, snap);
+    trial.loops = loops_of_halves(trial.surface, trial.side, trial.is);
+    if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
+    best = std::move(trial);
+    if (best.loops <= expected_loops) break;
+  }
+  return best;
 }
 
 /// Joins neighbours one of which was cut here, those with the longest shared border first, while the union is
@@ -312,47 +366,53 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     Part part;
     part.mesh = std::move(split_by_label(surface, mine, 1)[0]);
     part.opposite = opposite_halfedges(part.mesh.tris, part.mesh.points.size());
+    part.crease = creases(surface, part);
     part.disk = fill_holes(part.mesh);
-    MultiscaleCut cut{task.part, {task.part, n_parts}, is[task.part].eta_geo, 0, 0};
-    const std::vector<double> local = best_field(part, options, cut.levels);
-    const Assessment expected = assess(part, local);
-    if (!expected.valid) throw GoalMissed(name(task.part) + " cannot be cut in two");
+    MultiscaleCut cut;
+    cut.part = task.part;
+    cut.halves[0] = task.part;
+    cut.halves[1] = n_parts;
+    cut.eta = is[task.part].eta_geo;
+    CutMaps maps = options.method == CutMethod::maxcut ? single_cut(part, cut) : best_cut(part, options);
+    cut.levels = maps.levels.size();
+    const Assessment expected = assess(part, maps.field);
     cut.length = expected.length / diagonal(part.mesh);
     std::vector<double> field(surface.points.size(), 1);
-    for (std::size_t v = 0; v < local.size(); v++) field[part.mesh.vertex[v]] = local[v];
-
-    // a line that is snapped to vertices may touch itself there: snap less then
-    Surface result;
-    std::vector<int> side;
-    Topology halves[2];
-    int loops = 0;
-    for (double snap : {0.1, 0.03, 0.01, 0.}) {
-      Surface trial = surface;
-      std::vector<int> trial_side;
-      Topology trial_halves[2];
-      cut_by_scalar_field(trial, field, active, trial_side, snap);
-      int trial_loops = loops_of_halves(trial, trial_side, trial_halves);
-      if (trial_loops == 0 || (loops > 0 && trial_loops >= loops)) continue;
-      loops = trial_loops;
-      result = std::move(trial);
-      side.swap(trial_side);
-      for (int s : {0, 1}) halves[s] = trial_halves[s];
-      if (loops <= expected.loops) break;
+    for (std::size_t v = 0; v < maps.field.size(); v++) field[part.mesh.vertex[v]] = maps.field[v];
+    if (options.keep_maps) {
+      cut.maps = std::move(maps);
+      cut.maps.disk = part.disk;
     }
-    if (loops == 0) throw GoalMissed(name(task.part) + " cannot be cut into 2 connected halves");
-    surface = std::move(result);
+    const int too_small = cut.too_small, turned_over = cut.turned_over;
+    if (cuts) cuts->push_back(std::move(cut));
+    auto fail = [&](const std::string& why) {
+      std::string message = name(task.part) + " " + why;
+      if (options.method == CutMethod::maxcut)
+        message += ": one map shrinks " + std::to_string(too_small) + " of " +
+                   std::to_string(part.mesh.tris.size()) + " triangles below 1e-15 of area and turns " +
+                   std::to_string(turned_over) + " over";
+      throw GoalMissed(message);
+    };
+    Halves made;
+    if (!expected.valid || !(made = split(surface, field, active, expected.loops)).loops)
+      fail("cannot be cut into 2 connected halves");
+    for (const Topology& half : made.is)
+      if (options.method == CutMethod::maxcut && half.eta_geo > options.max_aspect)
+        fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +
+             std::to_string(made.is[1].eta_geo) + ", above " + std::to_string(options.max_aspect));
+    surface = std::move(made.surface);
     std::vector<int>& labels = surface.face.get<int>("part");
     for (std::size_t t = 0; t < labels.size(); t++)
-      if (side[t] == 1) labels[t] = n_parts;
+      if (made.side[t] == 1) labels[t] = n_parts;
+    was_cut.resize(n_parts + 1, 0);
     is.resize(n_parts + 1);
     for (int s : {0, 1}) {
-      is[cut.halves[s]] = halves[s];
-      if (halves[s].eta_geo > options.max_aspect) tasks.push_back({cut.halves[s], task.depth + 1});
+      const int half = s ? n_parts : task.part;
+      was_cut[half] = 1;
+      is[half] = made.is[s];
+      if (is[half].eta_geo > options.max_aspect) tasks.push_back({half, task.depth + 1});
     }
     n_parts++;
-    if (cuts) cuts->push_back(cut);
-    was_cut.resize(n_parts, 0);
-    for (int half : cut.halves) was_cut[half] = 1;
   }
   return n_parts > std::max(given_parts, 2) ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
                                             : n_parts;

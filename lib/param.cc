@@ -11,7 +11,6 @@
 #include "lib/injective.h"
 #include "lib/param_conformal.h"
 #include "lib/param_ears.h"
-#include "lib/param_intrinsic.h"
 #include "lib/param_optimize.h"
 #include "lib/predicates.h"
 #include "lib/topology.h"
@@ -103,23 +102,52 @@ class Search {
     if (!valid && options_.map == MapKind::conformal) valid = try_bends(uv);
     for (MapKind kind : {MapKind::harmonic, MapKind::convex})
       if (!valid && kind > options_.map) valid = try_circle(kind, uv);
+    if (!valid && options_.map != MapKind::conformal) {
+      // circles that shrink a limb below what doubles hold: a free border may not
+      std::vector<Vec2> other;
+      report_.used = MapKind::conformal;
+      if (try_bends(other)) {
+        uv = std::move(other);
+        valid = true;
+      }
+    }
+    if (!valid) uv.resize(part_.points.size());  // none if every system of equations was singular
+    if (!valid && report_.apart.empty()) {
+      // what has shrunk to nothing, from the border
+      std::vector<std::array<int, 2>> pairs;
+      for (const Tri& t : part_.tris)
+        if (orient2d(uv[t[0]], uv[t[1]], uv[t[2]]) <= 0)
+          pairs.push_back({t[0], origin(part_.tris, disk_.loops[0][0])});
+      report_.apart = sample(pairs);
+    }
     if (!valid)
       throw GoalMissed("no one-to-one map: " + std::to_string(count_inverted(part_.tris, uv)) + " of " +
                        std::to_string(part_.tris.size()) + " triangles of the convex map inverted or flat");
-    // a circle says nothing of the part's shape: its map is a start only when it was not asked for
-    constexpr int after_fallback = 20;
-    int steps = std::max(options_.optimize, report_.used != options_.map ? after_fallback : 0);
-    if (steps > 0) {
-      std::vector<Vec2> better = uv;
-      report_.steps = lower_distortion(part_, disk_, steps, better, &report_.time);
-      scale_to_area(part_, better);
-      if (valid_map(better)) uv = std::move(better);
-    }
     measure_distortion(part_, uv, report_);
+    // what is valid and poor costs the mesher more than a few steps here
+    constexpr double poor = 4;
+    constexpr int steps_if_poor = 20;
+    bool mend = !options_.strict && (report_.used != options_.map || options_.map == MapKind::conformal) &&
+                report_.anisotropy_p99 > poor;
+    if (int steps = std::max(options_.optimize, mend ? steps_if_poor : 0); steps > 0) lower(uv, steps);
     return uv;
   }
 
  private:
+  /// Lowers the distortion, unless that makes the map worse by its worst triangles.
+  void lower(std::vector<Vec2>& uv, int steps) {
+    std::vector<Vec2> better = uv;
+    ParamReport after = report_;
+    after.steps = lower_distortion(part_, disk_, steps, better, &report_.time);
+    after.time = report_.time;
+    scale_to_area(part_, better);
+    if (after.steps == 0 || !valid_map(better)) return;
+    measure_distortion(part_, better, after);
+    if (after.anisotropy_p99 > report_.anisotropy_p99 && options_.optimize == 0) return;
+    report_ = after;
+    uv = std::move(better);
+  }
+
   bool valid_map(const std::vector<Vec2>& uv) const {
     return count_inverted(part_.tris, uv) == 0 && border_is_simple(part_.tris, disk_.opposite, uv);
   }
@@ -140,7 +168,7 @@ class Search {
     return *round_;
   }
   const Filled& flat() {
-    if (!flat_) flat_ = intrinsic_delaunay(flat_holes(part_, disk_, &report_.time));
+    if (!flat_) flat_ = flat_holes(part_, disk_, &report_.time);
     return *flat_;
   }
 
@@ -155,8 +183,8 @@ class Search {
   std::vector<Vec2> bent(double bend) {
     if (!boundary_first_) boundary_first_.emplace(part_, disk_, flat(), &report_.time);
     std::vector<Vec2> polygon = boundary_first_->polygon(bend);
-    if (polygon.empty()) throw GoalMissed("the border of the conformal map does not close");
-    if (bend > 0 && !polygon_is_simple(polygon)) return {};
+    if (polygon.empty() && bend == 0) throw GoalMissed("the border of the conformal map does not close");
+    if (bend > 0 && (polygon.empty() || !polygon_is_simple(polygon))) return {};
     return boundary_first_->map(polygon);
   }
 
@@ -167,8 +195,19 @@ class Search {
     auto stars = [&](std::vector<Vec2>& at) {
       return repair_stars(part_.tris, disk_.opposite, sweeps, at) == 0 && valid_map(at);
     };
-    if (stars(uv)) return true;
+    std::vector<Vec2> first = uv;
+    if (stars(first)) {
+      uv = std::move(first);
+      return true;
+    }
     try {
+      if (report_.used == MapKind::conformal) {
+        // the border of the intrinsic triangulation, but harmonic on the triangles that there are
+        std::vector<Vec2> again =
+            extend_border(part_, round(), disk_, Weights::finite_element, uv, &report_.time);
+        if (count_inverted(part_.tris, again) < count_inverted(part_.tris, uv)) uv = std::move(again);
+        if (valid_map(uv) || stars(uv)) return true;
+      }
       for (int rings : {2, 6}) {
         std::vector<Vec2> again = uv;
         solve_patches(part_, disk_, rings, again);
@@ -187,7 +226,9 @@ class Search {
 
   bool try_bends(std::vector<Vec2>& uv) {
     try {
-      for (double bend : {0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
+      for (double bend : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
+        if (bend == 0 && options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first)
+          continue;  // that was the map asked for
         uv = bent(bend);
         if (uv.empty() || (!valid_map(uv) && !repaired(uv))) continue;
         report_.bend = bend;
@@ -258,8 +299,8 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 8, uneven_rounds = 2;  // unevenness is no failure: then it stays
-  constexpr double too_uneven = 1e8;
+  constexpr int most_rounds = 24, limb_rounds = 2;
+  constexpr double too_uneven = 1e8, unresolved = 1e16;  // edges of 1e-8 of the chart keep half their digits
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   std::vector<Chart> charts;
   std::vector<char> waiting;
@@ -291,18 +332,32 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     }
     int n_before = n_parts;
     for (int p = 0; p < n_before; ++p) {
-      bool fresh = waiting[p];
+      bool fresh = waiting[p], missed = false;
       waiting[p] = 0;
+      if (!fresh) continue;
       try {
         if (failure[p]) std::rethrow_exception(failure[p]);
-        if (fresh && !options.strict && round < uneven_rounds && reports[p].area_scale > too_uneven)
-          n_parts = cut_along_limbs(surface, p, n_parts);
       } catch (const GoalMissed&) {
-        if (options.strict || round == most_rounds || !bisect_part(surface, p, n_parts, reports[p].apart))
-          throw;
-        ++n_parts;
-        waiting[p] = 1;
+        missed = true;
       }
+      int n = n_parts;
+      double uneven = missed ? HUGE_VAL : reports[p].area_scale;
+      if (!options.strict && round < most_rounds) {
+        if (!missed && uneven > too_uneven && round < limb_rounds)
+          n_parts = cut_along_limbs(surface, p, n_parts);
+        if (n_parts == n && uneven > unresolved) {
+          // places that should be apart, and halves of the part; the latter first if the former has not
+          // helped
+          std::vector<std::array<int, 2>> choice[2] = {reports[p].apart, {}};
+          if (round >= limb_rounds) std::swap(choice[0], choice[1]);
+          if (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]))
+            ++n_parts;
+        }
+      }
+      if (n_parts > n)
+        waiting[p] = 1;
+      else if (missed)
+        std::rethrow_exception(failure[p]);
     }
     if (n_parts == n_before) break;
   }

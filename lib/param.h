@@ -52,9 +52,10 @@ std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
 /// Maps a part: as asked for, else repaired (single vertices moved into the kernel of their star, patches
 /// around inverted triangles solved again with positive weights, then the inside as a whole), else the next
 /// of conformal, conformal with a border bent towards a circle until it does not cross itself, harmonic,
-/// convex; of the last two the distortion is lowered. With `strict` there is only the map asked for. The
-/// result is proved one-to-one (exact orientation of every triangle, simple borders). Throws GoalMissed if no
-/// map is; never returns a bad one.
+/// convex; after a circle map that was asked for, the conformal ones are the last resort. The distortion of
+/// any other map than the one asked for, and of a conformal one with sigma1/sigma2 above 4 (p99), is lowered.
+/// With `strict` there is only the map asked for. The result is proved one-to-one (exact orientation of every
+/// triangle, simple borders). Throws GoalMissed if no map is; never returns a bad one.
 std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report);
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part that has no

@@ -112,10 +112,10 @@ Filled round_holes(const SubMesh& part, const Disk& disk) {
 
 Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
   Filled filled = open_holes(part);
+  const Filled alone = intrinsic_delaunay(filled);
   int n_holes = (int)disk.loops.size() - 1, n_points = (int)part.points.size();
-  if (n_holes == 0) return filled;
-  const Filled part_alone = intrinsic_delaunay(filled);
-  std::vector<double> weights = cotangents(part_alone), angle_sum = angle_sums(part_alone, weights);
+  if (n_holes == 0) return alone;
+  std::vector<double> weights = cotangents(alone), angle_sum = angle_sums(alone, weights);
 
   // unknowns: one scale for each hole, then one for each inner vertex
   constexpr int unset = -2;
@@ -132,18 +132,18 @@ Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
       unknown[v] = (int)scale.size();
       scale.push_back(angle_sum[v] - 2 * pi);
     }
-  laplacian(part_alone, weights, unknown, (int)scale.size(), time).solve(scale);
+  laplacian(alone, weights, unknown, (int)scale.size(), time).solve(scale);
   std::vector<double> at(n_points, 0);
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) at[v] = scale[unknown[v]];
-  std::vector<double> turn = turns(part_alone, weights, angle_sum, at);
+  std::vector<double> turn = turns(alone, weights, angle_sum, at);
   for (int l = 1; l <= n_holes; ++l) {
     const auto& loop = disk.loops[l];
     int centre = filled.n_vertices++;
     if (!add_polygon_fan(part, loop, polygon_of(part, loop, turn, lengths_of(part, loop)), centre, filled))
       add_round_fan(part, loop, disk.length[l], centre, filled);
   }
-  return filled;
+  return intrinsic_delaunay(std::move(filled));
 }
 
 std::vector<double> cotangents(const Filled& filled, double floor, double ceiling) {

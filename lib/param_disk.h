@@ -36,10 +36,10 @@ Filled open_holes(const SubMesh& part);
 /// a round hole of the same perimeter. Angles stay below 135 degrees.
 Filled round_holes(const SubMesh& part, const Disk& disk);
 
-/// Each hole filled by the polygon that it is in the plane if its border is scaled as a whole: in the flat
-/// metric that is conformal to the part's, has one scale on each hole's border, and lets that turn by one
-/// round. Fans of polygons that are not star-shaped are those of round_holes. One factorisation if there are
-/// holes.
+/// The part's intrinsic Delaunay triangulation (lib/param_intrinsic.h), each hole filled by the polygon that
+/// it is in the plane if its border is scaled as a whole: in the flat metric that is conformal to the part's,
+/// has one scale on each hole's border, and lets that turn by one round. Fans of polygons that are not
+/// star-shaped are those of round_holes. One factorisation if there are holes.
 Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time);
 
 /// Cotangent weights (lib/sparse.h) of every half-edge of a filled part.

@@ -31,22 +31,13 @@ class Flipper {
  public:
   explicit Flipper(Filled& filled) : filled_(filled) {
     opposite_ = opposite_halfedges(filled.tris, filled.n_vertices);
-    double sum = 0;
-    for (const auto& p : filled.shape)
-      for (int i = 0; i < 3; ++i) {
-        length_.push_back(norm(p[(i + 1) % 3] - p[i]));
-        sum += length_.back();
-      }
-    // both sides of an edge have the same length, up to rounding, and every triangle its inequality
-    double least = 1e-7 * sum / (double)length_.size(), more = 0;
-    for (int h = 0; h < (int)length_.size(); ++h) {
-      if (opposite_[h] > h) length_[opposite_[h]] = length_[h];
-      if (h % 3 == 2)
-        for (int i = 0; i < 3; ++i)
-          more =
-              std::max(more, least - (length_[h - (i + 1) % 3] + length_[h - (i + 2) % 3] - length_[h - i]));
+    for (const auto& p : filled.shape) {
+      std::array<double, 3> l{norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])};
+      double sum = l[0] + l[1] + l[2], more = 0;
+      if (!(sum > 0)) l.fill(1);
+      for (double side : l) more = std::max(more, 1e-7 * sum - (sum - 2 * side));
+      for (double side : l) length_.push_back(side + more);
     }
-    for (double& l : length_) l += more;
   }
 
   void run() {
@@ -62,7 +53,8 @@ class Flipper {
       int h = queue.front();
       queue.pop_front();
       waiting[h] = 0;
-      if (delaunay(h) || !flip(h)) continue;
+      // flips move edges: what is here by now may be another one, even of the border
+      if (opposite_[h] < 0 || delaunay(h) || !flip(h)) continue;
       for (int e : {next(h), prev(h), next(opposite_[h]), prev(opposite_[h])}) {
         if (opposite_[e] < 0) continue;
         int g = std::min(e, opposite_[e]);
@@ -98,10 +90,13 @@ class Flipper {
   bool flip(int h) {
     int g = opposite_[h], hn = next(h), hp = prev(h), gn = next(g), gp = prev(g);
     if (h / 3 == g / 3) return false;
+    // of a fan's edge and the border's the lengths differ: what is on the right is scaled to fit
+    double scale = length_[h] / length_[g];
+    for (int e : {g, gn, gp}) length_[e] *= scale;
     Layout left = layout(h), right = layout(g);
     // in one plane, i at 0 and j at (b, 0); seen from the right triangle the edge runs the other way
     Vec2 k = left.c, m{left.b - right.c.x, -right.c.y}, j{left.b, 0};
-    if (!(cross(m, k) < 0 && cross(k - j, m - j) < 0))
+    if (!(cross(m, k) > 0 && cross(k - j, m - j) > 0))
       return false;  // the two do not form a convex quadrilateral
     double diagonal = norm(k - m);
     auto& tris = filled_.tris;
@@ -137,7 +132,7 @@ class Flipper {
 
   Filled& filled_;
   std::vector<int> opposite_;
-  std::vector<double> length_;
+  std::vector<double> length_;  ///< of half-edges: a triangle's shape, at a scale of its own
 };
 
 }  // namespace

@@ -68,6 +68,30 @@ double energy(const std::vector<Tri>& tris, const std::vector<Rest>& rest, const
   return sum;
 }
 
+/// The rest shapes, those that the map distorts by more than a factor of `bound` taken part of the way to
+/// their images: until the map has followed, the energy stays within what doubles hold, and a step does not
+/// chase the worst triangles only (progressive parameterizations, Liu and others 2018). `bounded`: whether
+/// there are any.
+std::vector<Rest> nearer_shapes(const std::vector<Tri>& tris, const std::vector<Rest>& rest,
+                                const std::vector<Vec2>& uv, double bound, bool& bounded) {
+  std::vector<Rest> nearer = rest;
+  bounded = false;
+  for (std::size_t t = 0; t < tris.size(); ++t) {
+    Jacobian j = jacobian(rest[t], tris[t], uv);
+    double a = 0.5 * (j.xx + j.yy), b = 0.5 * (j.yx - j.xy), c = 0.5 * (j.xx - j.yy), d = 0.5 * (j.yx + j.xy);
+    double s1 = std::hypot(a, b) + std::hypot(c, d), s2 = (j.xx * j.yy - j.xy * j.yx) / s1;
+    double most = std::max(std::abs(std::log(s1)), std::abs(std::log(s2)));
+    if (most <= std::log(bound)) continue;
+    bounded = true;
+    // J = U S V^T becomes U S^share V^T: gradients are multiplied by V S^(share - 1) V^T
+    double share = std::log(bound) / most, e1 = std::pow(s1, share - 1), e2 = std::pow(s2, share - 1);
+    double turn = std::atan2(d, c) - std::atan2(b, a), mean = 0.5 * (e1 + e2), half = 0.5 * (e1 - e2);
+    double xx = mean + half * std::cos(turn), xy = half * std::sin(turn), yy = mean - half * std::cos(turn);
+    for (Vec2& g : nearer[t].gradient) g = {xx * g.x + xy * g.y, xy * g.x + yy * g.y};
+  }
+  return nearer;
+}
+
 /// The quadratic proxy of the energy around a map: sum of area |W (J - R)|^2 with the nearest rotation R and
 /// the W that gives the proxy the energy's gradient, as a matrix and a right-hand side for x and y in turn. A
 /// small weight holds every vertex where it is.
@@ -150,14 +174,17 @@ double longest_step(const std::vector<Tri>& tris, const std::vector<Vec2>& uv,
 
 int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vector<Vec2>& uv,
                      SolveTime* time) {
-  const std::vector<Rest> rest = rest_shapes(part);
+  const std::vector<Rest> shapes = rest_shapes(part);
   int n = (int)uv.size();
   scale_to_area(part, uv);
-  double before = energy(part.tris, rest, uv);
   Proxy proxy;
   std::unique_ptr<Factorisation<double>> factorisation;
   std::vector<Vec2> move(n), trial(n);
   for (int taken = 0; taken < steps; ++taken) {
+    constexpr double bound = 8;
+    bool bounded;
+    const std::vector<Rest> rest = nearer_shapes(part.tris, shapes, uv, bound, bounded);
+    double before = energy(part.tris, rest, uv);
     set_proxy(part.tris, rest, uv, proxy);
     try {
       if (factorisation)
@@ -187,9 +214,7 @@ int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vect
     }
     if (!found) return taken;
     uv.swap(trial);
-    double gain = before - after;
-    before = after;
-    if (gain < 1e-3 * before) return taken + 1;
+    if (!bounded && before - after < 1e-3 * after) return taken + 1;
   }
   return steps;
 }

@@ -93,7 +93,7 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
     std::size_t cut = all.size() / 100;
     range = std::max({range, std::abs(all[cut]), std::abs(all[all.size() - 1 - cut])});
   }
-  double unit = std::min((width - 2 * gap) / widest, 0.8 * width / std::sqrt(area));
+  double unit = std::min(0.48 * (width - 2 * gap) / widest, 0.8 * width / std::sqrt(area));
 
   std::vector<int> order(charts.size());
   std::iota(order.begin(), order.end(), 0);

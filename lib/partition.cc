@@ -8,8 +8,11 @@
 #include <string>
 #include <tuple>
 
+#include "lib/cells.h"
 #include "lib/error.h"
+#include "lib/forecast.h"
 #include "lib/graph.h"
+#include "lib/handles.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
@@ -17,24 +20,23 @@
 namespace meshpipe {
 namespace {
 
-/// A component of the surface with its dual graph: triangles joined across edges, weighed by the edge's
+/// A component of the surface with what its graph is made of: cells joined across edges, weighed by their
 /// length.
 struct Component {
   SubMesh mesh;
   std::vector<int> opposite;
   std::vector<double> area;  // of each triangle
   std::vector<int> weight;   // of each half-edge, as in the graph: the cost of a cut along it
+  Cells cells;
   Region whole;
 };
 
-/// How a labelling compares: fewer parts first, long ones counted twice, then the cheaper cut.
+/// How a labelling compares: fewer charts in the end first, then the cheaper cut.
 struct Labelling {
   std::vector<int> label;
   int burden = 0, parts = 0;
   std::int64_t cost = 0;
-  bool operator<(const Labelling& o) const {
-    return std::tie(burden, parts, cost) < std::tie(o.burden, o.parts, o.cost);
-  }
+  bool operator<(const Labelling& o) const { return std::tie(burden, cost) < std::tie(o.burden, o.cost); }
 };
 
 /// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
@@ -69,24 +71,53 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
   return weight;
 }
 
-/// The dual graph of the triangles with this label (all of them if `label` is empty), on their own numbers.
-Graph dual_graph(const Component& c, const std::vector<int>& triangles, const std::vector<int>& local) {
-  Graph g;
-  g.start.push_back(0);
-  double mean = 0;
-  for (int t : triangles) mean += c.area[t];
-  mean /= (double)triangles.size();
-  for (int t : triangles) {
-    for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      int o = c.opposite[h];
-      if (o < 0 || local[o / 3] < 0) continue;
-      g.adjacency.push_back(local[o / 3]);
-      g.edge_weight.push_back(c.weight[h]);
+/// Cuts the triangles of a label into k parts by METIS, along borders of cells: the first part keeps the
+/// label, the others get next, next + 1, ... False if METIS leaves them together.
+bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, double imbalance, int seed,
+               int next) {
+  std::vector<int> node(c.cells.n, -1);
+  std::vector<double> area(c.cells.n, 0);
+  int n = 0;
+  double total = 0;
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (label[t] == mine) {
+      const int cell = c.cells.of[t];
+      if (node[cell] < 0) node[cell] = n++;
+      area[cell] += c.area[t];
+      total += c.area[t];
     }
-    g.start.push_back((int)g.adjacency.size());
-    g.vertex_weight.push_back(mean > 0 ? (int)std::clamp(std::round(10 * c.area[t] / mean), 1.0, 1000.0) : 1);
+  struct Link {
+    int a, b, weight;
+  };
+  std::vector<Link> links;
+  for (int h : c.cells.crossing) {
+    const int o = c.opposite[h];
+    if (label[h / 3] != mine || label[o / 3] != mine) continue;
+    const int a = node[c.cells.of[h / 3]], b = node[c.cells.of[o / 3]];
+    if (links.empty() || links.back().a != a || links.back().b != b) links.push_back({a, b, 0});
+    links.back().weight += c.weight[h];
   }
-  return g;
+  Graph g;
+  g.start.assign(n + 1, 0);
+  for (const Link& l : links) ++g.start[l.a + 1], ++g.start[l.b + 1];
+  std::partial_sum(g.start.begin(), g.start.end(), g.start.begin());
+  g.adjacency.resize(g.start.back());
+  g.edge_weight.resize(g.start.back());
+  std::vector<int> fill(g.start.begin(), g.start.end() - 1);
+  for (const Link& l : links)
+    for (auto [from, to] : {std::pair(l.a, l.b), std::pair(l.b, l.a)}) {
+      g.adjacency[fill[from]] = to;
+      g.edge_weight[fill[from]++] = l.weight;
+    }
+  g.vertex_weight.assign(n, 1);
+  for (int cell = 0; cell < c.cells.n; ++cell)
+    if (node[cell] >= 0 && total > 0)
+      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * area[cell] * n / total), 1.0, 1000.0);
+  const std::vector<int> part = partition_graph(g, k, imbalance, seed);
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (label[t] == mine)
+      if (int p = part[node[c.cells.of[t]]]; p > 0) label[t] = next + p - 1;
+  return std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) != part.end();
 }
 
 /// Borders between labels: (a, b, weight), a < b, each pair once, sorted.
@@ -186,16 +217,13 @@ bool open_pinches(const Component& c, std::vector<int>& label, const Regions& re
   return changed;
 }
 
-/// Halves the triangles by METIS, or by their numbers if it leaves them together.
-void bisect(const Component& c, const std::vector<int>& triangles, std::vector<int>& label, int new_label,
-            int seed) {
-  std::vector<int> local(c.mesh.tris.size(), -1);
-  for (std::size_t i = 0; i < triangles.size(); ++i) local[triangles[i]] = (int)i;
-  std::vector<int> part = partition_graph(dual_graph(c, triangles, local), 2, 0.3, seed);
-  if (std::adjacent_find(part.begin(), part.end(), std::not_equal_to<>()) == part.end())
-    for (std::size_t i = 0; i < part.size(); ++i) part[i] = 2 * i < part.size();
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (part[i]) label[triangles[i]] = new_label;
+/// Halves the triangles of a label by METIS, or by their numbers if it leaves them together.
+void bisect(const Component& c, std::vector<int>& label, int mine, int new_label, int seed) {
+  if (cut_label(c, label, mine, 2, 0.3, seed, new_label)) return;
+  const auto all = std::count(label.begin(), label.end(), mine);
+  std::ptrdiff_t seen = 0;
+  for (int& l : label)
+    if (l == mine && 2 * seen++ < all) l = new_label;
 }
 
 /// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
@@ -213,44 +241,52 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
     if (absorb_fragments(c, label, r, min_faces, min_area)) r = regions_of_pieces();
     for (int i = 0; i < 8 && open_pinches(c, label, r); ++i) r = regions_of_pieces();
     int n = (int)r.region.size();
-    std::vector<int> bad(n, -1);
-    std::vector<std::vector<int>> triangles;
-    for (int l = 0; l < n; ++l)
-      if (!r.region[l].maps_to_the_plane()) bad[l] = (int)triangles.size(), triangles.emplace_back();
-    if (triangles.empty()) return r;
-    for (int t = 0; t < n_faces; ++t)
-      if (bad[label[t]] >= 0) triangles[bad[label[t]]].push_back(t);
-    for (const auto& ts : triangles) bisect(c, ts, label, n++, seed);
+    for (int l = 0; l < (int)r.region.size(); ++l)
+      if (!r.region[l].maps_to_the_plane()) bisect(c, label, l, n++, seed);
+    if (n == (int)r.region.size()) return r;
   }
   return {};
 }
 
-/// A part counts twice if it is so long that the multiscale partitioner will have to cut it: eta > 4, where
-/// the border along the triangles' edges is about 15 % longer than it will be.
-int burden(const Region& r) { return r.faces == 0 ? 0 : r.aspect() > 3 ? 2 : 1; }
+/// How many charts a part will come to: the multiscale partitioner halves one whose map would be too uneven,
+/// if it is a tree or tube and no sponge, and mparam cuts one whose map overlaps until it does not. The limit
+/// is below what is admissible, since the forecast is for a border along the triangles' edges.
+int burden(const Region& r, const Forecast& f) {
+  constexpr double uneven = 1e7;
+  constexpr int holes_of_a_cut = 4;
+  return 1 + f.crossings + (f.unevenness > uneven ? 1 + r.loops / holes_of_a_cut : 0);
+}
 
 /// Joins neighbours, those with the longest shared border first, while their union maps to the plane and is a
-/// lesser burden.
-Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
+/// lesser burden. Leaves the burden of each label in `load`, 0 where there is none any more.
+Regions merge(const Component& c, const Forecaster& forecaster, std::vector<int>& label, Regions regions,
+              std::vector<int>& load) {
   std::vector<Shared> shared = shared_borders(c, label, regions);
+  load.clear();
+  for (int l = 0; l < (int)regions.region.size(); ++l)
+    load.push_back(burden(regions.region[l], forecaster.of(label, l, l, regions.border[l])));
   Joiner joiner(c.mesh, c.opposite, label, std::move(regions));
   std::vector<std::pair<int, int>> refused;  // sorted
   for (;;) {
     std::sort(shared.begin(), shared.end(), [](const Shared& p, const Shared& q) {
       return std::tuple(-p.weight, p.a, p.b) < std::tuple(-q.weight, q.a, q.b);
     });
+    int together = 0;
     auto found = std::find_if(shared.begin(), shared.end(), [&](const Shared& s) {
       auto place = std::lower_bound(refused.begin(), refused.end(), std::pair(s.a, s.b));
       if (place != refused.end() && *place == std::pair(s.a, s.b)) return false;
-      const Region r = joiner.joined(s.a, s.b);
-      const auto& all = joiner.regions().region;
-      if (r.maps_to_the_plane() && burden(r) < burden(all[s.a]) + burden(all[s.b])) return true;
+      if (const Region r = joiner.joined(s.a, s.b); r.maps_to_the_plane()) {
+        together = burden(r, forecaster.of(label, s.a, s.b, joiner.border_of_union()));
+        if (together < load[s.a] + load[s.b]) return true;
+      }
       refused.insert(place, {s.a, s.b});
       return false;
     });
     if (found == shared.end()) break;
     const int a = found->a, b = found->b;
     joiner.join(a, b);
+    load[a] = together;
+    load[b] = 0;
     std::erase_if(refused,
                   [&](auto& p) { return p.first == a || p.second == a || p.first == b || p.second == b; });
     shared = shared_borders(c, label, joiner.regions());
@@ -271,14 +307,28 @@ std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, cons
   return cost;
 }
 
-Labelling finish(const Component& c, std::vector<int> label, int seed) {
+/// Halves the parts whose maps would overlap. Returns true if there was one.
+bool halve_tangled(const Component& c, const Forecaster& forecaster, std::vector<int>& label,
+                   const Regions& regions, int seed) {
+  constexpr int few = 100;  // triangles
+  int n = (int)regions.region.size();
+  for (int l = 0; l < (int)regions.region.size(); ++l)
+    if (regions.region[l].faces > few && forecaster.of(label, l, l, regions.border[l]).crossings > 0)
+      bisect(c, label, l, n++, seed);
+  return n > (int)regions.region.size();
+}
+
+Labelling finish(const Component& c, const Forecaster& forecaster, std::vector<int> label, int seed) {
   Labelling l;
   Regions r = make_admissible(c, label, seed);
+  for (int round = 0; round < 4 && halve_tangled(c, forecaster, label, r, seed); ++round)
+    r = make_admissible(c, label, seed);
   if (r.region.empty()) return l;
-  r = merge(c, label, std::move(r));
-  for (const Region& x : r.region) {
-    l.parts += x.faces > 0;
-    l.burden += burden(x);
+  std::vector<int> load;
+  r = merge(c, forecaster, label, std::move(r), load);
+  for (int x : load) {
+    l.parts += x > 0;
+    l.burden += x;
   }
   for (const Shared& s : shared_borders(c, label, r)) l.cost += s.weight;
   l.cost += bridge_cost(c, label, r);
@@ -287,37 +337,82 @@ Labelling finish(const Component& c, std::vector<int> label, int seed) {
   return l;
 }
 
+/// The two sides of the surface as seen from far away: the sign of the normal's component along `axis`,
+/// smoothed over a few per cent of the surface. Each limb is divided lengthwise, so that neither side has one
+/// that would shrink to nothing in the plane.
+std::vector<int> two_sides(const Component& c, Vec3 axis) {
+  const int n = (int)c.mesh.tris.size(), steps = std::clamp((int)std::sqrt(n) / 8, 4, 60);
+  std::vector<double> facing(n), smooth(n);
+  for (int t = 0; t < n; ++t) {
+    const Tri& v = c.mesh.tris[t];
+    facing[t] =
+        dot(normalized(area_vector(c.mesh.points[v[0]], c.mesh.points[v[1]], c.mesh.points[v[2]])), axis);
+  }
+  for (int step = 0; step < steps; ++step) {
+    for (int t = 0; t < n; ++t) {
+      double sum = c.area[t] * facing[t], weight = c.area[t];
+      for (int h = 3 * t; h < 3 * t + 3; ++h)
+        if (int o = c.opposite[h] / 3; c.opposite[h] >= 0) {
+          sum += c.area[o] * facing[o];
+          weight += c.area[o];
+        }
+      smooth[t] = weight > 0 ? sum / weight : 0;
+    }
+    facing.swap(smooth);
+  }
+  std::vector<int> label(n);
+  for (int t = 0; t < n; ++t) label[t] = facing[t] < 0;
+  return label;
+}
+
 /// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
 Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   const int n = (int)c.mesh.tris.size();
-  std::vector<int> all(n);
-  std::iota(all.begin(), all.end(), 0);
-  const Graph graph = dual_graph(c, all, all);
-
-  // METIS takes about 0.3 us a triangle; the budget keeps large surfaces near linear. Joining neighbours
-  // afterwards makes the number of parts asked for uncritical: about G + 2 does best
-  const int trials = std::clamp(500000 / n, 6, 40), genus = c.whole.genus();
+  // Joining neighbours afterwards makes the number of parts asked for uncritical: about G + 2 does best. On
+  // a large surface the trials end with a labelling that is good enough
+  const int genus = c.whole.genus();
+  const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 40),
+            enough = n > 20000 ? std::max(2, genus + 1) : 2;
   std::vector<int> ks{genus + 2};
   for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
     ks.push_back(genus + 2 + d);
     ks.push_back(genus + 2 - d);
   }
   const double balances[] = {0.3, 0.1, 0.5};
-  std::vector<Labelling> tried(trials);
-  std::exception_ptr failure;  // must not leave the parallel region by itself
+  const Forecaster forecaster(c.mesh, c.opposite);
+  constexpr int batch = 2, first_side = 2, sides = 3;  // the sides of the surface come after two trials
+  const Vec3 axes[sides] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  auto candidate = [&](int i) {
+    if (i >= first_side && i < first_side + sides) return two_sides(c, axes[i - first_side]);
+    const int trial = i < first_side ? i : i - sides;
+    std::vector<int> label(n, 0);
+    cut_label(c, label, 0, ks[trial % ks.size()], balances[trial / ks.size() % 3], options.seed + trial, 1);
+    return label;
+  };
+  Labelling best;
+  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.burden > enough);
+       tried += batch) {
+    Labelling found[batch];
+    std::exception_ptr failure;  // must not leave the parallel region by itself
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < trials; ++i) try {
-      const int k = ks[i % ks.size()], seed = options.seed + i;
-      tried[i] = finish(c, partition_graph(graph, k, balances[i / ks.size() % 3], seed), seed);
-    } catch (...) {
+    for (int i = 0; i < batch; ++i) try {
+        found[i] = finish(c, forecaster, candidate(tried + i), options.seed + tried + i);
+      } catch (...) {
 #pragma omp critical
-      failure = std::current_exception();
+        failure = std::current_exception();
+      }
+    if (failure) std::rethrow_exception(failure);
+    for (Labelling& l : found)
+      if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+  }
+  if (genus > 0 && (options.homology || best.burden > genus + 2)) {
+    const auto loops = handle_loops(c.mesh, c.opposite, genus);
+    if ((int)loops.size() == genus) {
+      Labelling l = finish(c, forecaster, label_by_sides(c.mesh, c.opposite, loops), options.seed);
+      if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     }
-  if (failure) std::rethrow_exception(failure);
-  auto best = tried.begin();
-  for (auto l = tried.begin(); l != tried.end(); ++l)
-    if (l->parts > 0 && (best->parts == 0 || *l < *best)) best = l;
-  return std::move(*best);
+  }
+  return best;
 }
 
 Component make_component(const Surface& surface, SubMesh sub) {
@@ -330,6 +425,10 @@ Component make_component(const Surface& surface, SubMesh sub) {
   if (surface.face.has("model"))
     for (int t : c.mesh.face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
   c.weight = cut_weights(c.mesh, c.opposite, model);
+  // METIS takes 0.7 us a node: cells of some triangles do as well on large surfaces, for the interface is
+  // straightened afterwards
+  const int n = (int)c.mesh.tris.size();
+  c.cells = grow_cells(c.opposite, c.area, std::max(20000, n / 8));
   c.whole = find_regions(c.mesh, c.opposite, std::vector<int>(c.mesh.tris.size(), 0), 1).region[0];
   return c;
 }
@@ -339,11 +438,11 @@ void bound_faces(const Component& c, Labelling& l, const PartitionOptions& optio
   const int limit = std::max(1, (int)(0.9 * options.max_faces));
   for (int round = 0; round < 60; ++round) {
     bool again = false;
-    std::vector<std::vector<int>> triangles(l.parts);
-    for (std::size_t t = 0; t < l.label.size(); ++t) triangles[l.label[t]].push_back((int)t);
+    std::vector<int> faces(l.parts, 0);
+    for (int x : l.label) ++faces[x];
     int n = l.parts;
-    for (const auto& ts : triangles)
-      if ((int)ts.size() > limit) bisect(c, ts, l.label, n++, options.seed), again = true;
+    for (int p = 0; p < (int)faces.size(); ++p)
+      if (faces[p] > limit) bisect(c, l.label, p, n++, options.seed), again = true;
     if (!again) return;
     l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
     if (l.parts == 0) return;

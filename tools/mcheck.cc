@@ -16,31 +16,17 @@ using namespace meshpipe;
 namespace {
 
 struct Options {
-  std::string reference, require = default_contract, histogram, culprits;
+  std::string reference, require = default_contract, histogram, culprits, refine;
+  double max_error = 0;
   bool accept = false;
-  int samples = 20000;
+  int samples = 10000;
 };
 
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
 
-/// The patches that have triangles, as a user knows them: by name, or by tag.
-std::vector<std::string> patch_names(const Stream& stream, const Surface& surface) {
-  std::vector<std::string> names;
-  if (!surface.face.has("patch")) return names;
-  std::vector<int> tags = surface.face.get<int>("patch");
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-  for (int tag : tags) {
-    const std::string name = stream.name_of(2, tag);
-    names.push_back(name.empty() ? std::to_string(tag) : name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-Findings compare(Io& io, Stream& stream, const Options& o) {
-  Surface &result = stream.surface, reference;
+Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
+  Surface& result = stream.surface;
   std::vector<std::string> before;
   Lines lines;
   if (o.reference.empty()) {
@@ -85,10 +71,25 @@ void tell(Io& io, const Findings& f) {
   report["reference"] = reference;
 }
 
+/// The result with the sizes that would meet the largest error allowed.
+void write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o) {
+  Stream refined;
+  static_cast<Mesh&>(refined.surface) = stream.surface;
+  const auto errors = triangle_errors(reference, Bvh(reference), refined.surface, Bvh(refined.surface));
+  const auto& size = stream.surface.vertex.get<double>("size");
+  refined.surface.face.rows = refined.surface.tris.size();
+  refined.surface.vertex.set("size",
+                             refined_size(refined.surface, size, errors, o.max_error * diagonal(reference)));
+  io.write_to(o.refine, refined);
+}
+
 void check(Io& io, const Options& o) {
-  const Contract contract = parse_contract(o.require);
+  Contract contract = parse_contract(o.require);
+  if (o.max_error > 0) contract.push_back({"hausdorff", o.max_error});
+  if (!o.refine.empty() && !(o.max_error > 0)) throw BadUsage("--refine needs --max-error");
   Stream stream = io.read();
-  const Findings f = compare(io, stream, o);
+  Surface reference;
+  const Findings f = compare(io, stream, o, reference);
   tell(io, f);
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.culprits.empty()) {
@@ -102,6 +103,8 @@ void check(Io& io, const Options& o) {
     io.say("failed: " + x.requirement + ": " + x.fact);
     io.report["failed"].push_back({{"requirement", x.requirement}, {"fact", x.fact}});
   }
+  const bool far = f.distance.hausdorff + f.distance.bound > o.max_error;
+  if (!o.refine.empty() && far) write_refined(io, stream, reference, o);
   if (failures.empty() || o.accept) io.write(stream);
   if (failures.empty()) return;
   throw ContractMissed(
@@ -119,14 +122,19 @@ int main(int argc, char** argv) {
         ->type_name("FILE");
     app.add_option("--require", o.require, "what must be met, see mcheck(1) (default " + o.require + ")")
         ->type_name("LIST");
+    app.add_option("--max-error", o.max_error, "requires hausdorff=E, too")
+        ->check(CLI::PositiveNumber)
+        ->type_name("E");
     app.add_flag("--accept", o.accept,
                  "pass the stream on even if the contract is missed; the status is still 6");
     auto report = [&](const char* name, auto& value, const char* what) {
       return app.add_option(name, value, what)->group("Reports");
     };
-    report("--samples", o.samples, "points on each surface for the distance (default 20000)")
+    report("--samples", o.samples, "points on each surface for the distance (default 10000)")
         ->check(CLI::Range(1, 100000000));
     report("--histogram", o.histogram, "draw kappa and angles of both meshes")->type_name("FILE.svg");
+    report("--refine", o.refine, "if --max-error is missed, write the sizes that would meet it")
+        ->type_name("FILE");
     report("--culprits", o.culprits, "write the triangles at fault")->type_name("FILE");
   };
   return run_tool(

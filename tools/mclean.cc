@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "formats/model_edges.h"
 #include "lib/clean.h"
 #include "tools/common.h"
 
@@ -126,6 +127,8 @@ int main(int argc, char** argv) {
         if (!o.weld.empty()) options.weld = tolerance(o.weld, stream.surface);
         Mesh input;
         if (!o.culprits.empty()) input = stream.surface;
+        // lines of a foreign file, by their place: vertices are about to be renumbered
+        const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
         CleanReport report;
         try {
           clean(stream.surface, options, report);
@@ -140,6 +143,7 @@ int main(int argc, char** argv) {
         // whatever was found out about another surface, or by another program, does not hold for this one
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
           stream.tables.clear();
+          write_model_edges(stream, lines);
           for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
           for (const char* column : {"ref_face", "b1", "b2", "kind", "line"})
             stream.surface.vertex.erase(column);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 
+#include "formats/groups.h"
+#include "formats/model_edges.h"
 #include "lib/feature.h"
+#include "lib/merge.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
@@ -28,11 +31,27 @@ void parse_angles(const std::string& text, FeatureOptions& options) {
     throw BadUsage("--feature-angle " + text + " is not auto, none, A or A,B with 0 < B <= A < 180 degrees");
 }
 
+constexpr double tangent = 20 * 3.14159265358979324 / 180;  ///< patches that meet at less are tangent
+
+/// Gives the faces the patches that theirs have become, and the patches the names of their groups.
+void relabel(Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
+  for (int& label : stream.surface.face.get<int>("patch")) label = merge(label);
+  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && merge(n.tag) != n.tag; });
+  for (const PatchGroup& g : groups) {
+    if (g.name.empty()) continue;
+    const int tag = merge(g.patches[0]);
+    std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && n.tag == tag; });
+    stream.names.push_back({2, tag, g.name});
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   FeatureOptions options;
   std::string angles = "auto";
+  std::string group_file, edge_file;
+  bool merge_auto = false;
   double triangles = 0;
   return run_tool(
       argc, argv, "mfeature",
@@ -52,17 +71,53 @@ int main(int argc, char** argv) {
             ->check(CLI::PositiveNumber)
             ->excludes(size)
             ->type_name("N");
+        app.add_option("--merge", group_file, "make one patch of each group of patches in this file")
+            ->type_name("FILE");
+        app.add_option("--edges", edge_file,
+                       "the lines of this mesh are model edges too; none: nor are those of the input's file")
+            ->type_name("FILE|none");
+        app.add_flag("--merge-auto", merge_auto,
+                     "merge patches that are tangent to each other, or smaller than the mesh size");
       },
       [&](Io& io) {
         parse_angles(angles, options);
         Stream stream = io.read();
-        if (triangles > 0) options.size = size_for_count(total_area(stream.surface), triangles);
-        const FeatureReport r = mark_features(stream.surface, options);
+        Surface& surface = stream.surface;
+        const bool asked = options.size > 0 || triangles > 0;
+        if (triangles == 0)
+          triangles = stream.input_triangles > 0 ? stream.input_triangles : (double)surface.tris.size();
+        const double length =
+            options.size > 0 ? options.size : size_for_count(total_area(surface), triangles);
+        if (asked) options.size = length;
+        PatchMerge merge = no_merge(surface);
+        std::vector<int> before;
+        if (surface.face.has("patch")) before = surface.face.get<int>("patch");
+        if (!before.empty() && (merge_auto || !group_file.empty())) {
+          std::vector<PatchGroup> groups;
+          if (!group_file.empty()) groups = read_groups(Io::read_bytes(group_file), group_file, stream);
+          std::vector<std::vector<int>> members;
+          for (const PatchGroup& g : groups) members.push_back(g.patches);
+          merge_groups(merge, members);
+          if (merge_auto) merge_automatically(merge, surface, length, tangent);
+          relabel(stream, merge, groups);
+          io.say(std::to_string(merge.patch.size()) + " patches merged to " + std::to_string(merge.count()));
+        }
+        io.report["patches_before"] = merge.patch.size();
+        io.report["patches"] = merge.count();
+        ModelSegments lines = edge_file == "none" ? ModelSegments() : read_model_edges(stream);
+        if (!edge_file.empty() && edge_file != "none") append(lines, segments_of(io.read(edge_file)));
+        write_model_edges(stream, lines);
+        std::vector<char> given(3 * surface.tris.size());
+        const std::vector<int> under = segments_under(surface, lines);
+        for (std::size_t h = 0; h < given.size(); ++h) given[h] = under[h] >= 0;
+        const FeatureReport r = mark_features(surface, options, before.empty() ? nullptr : &before, &given);
         io.say(std::to_string(r.model_edges) + " model edges: " + std::to_string(r.patch_edges) +
-               " between patches, " + std::to_string(r.crease_edges) + " on creases; " +
-               std::to_string(r.corners) + " corners");
+               " between patches, " +
+               (r.given_edges ? std::to_string(r.given_edges) + " given, " : std::string()) +
+               std::to_string(r.crease_edges) + " on creases; " + std::to_string(r.corners) + " corners");
         io.report["model_edges"] = r.model_edges;
         io.report["patch_edges"] = r.patch_edges;
+        io.report["given_edges"] = r.given_edges;
         io.report["crease_edges"] = r.crease_edges;
         io.report["corners"] = r.corners;
         io.write(stream);

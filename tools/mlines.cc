@@ -2,6 +2,7 @@
 // mlines: divide borders, model edges and interfaces between parts by the size
 // field.
 #include "formats/line_tables.h"
+#include "formats/model_edges.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
@@ -13,7 +14,10 @@ int main(int argc, char** argv) {
     const Table& vertex = stream.surface.vertex;
     if (vertex.has("size"))
       refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());
-    const Lines lines = make_lines(stream.surface, read_charts(stream));
+    const ModelSegments given = read_model_edges(stream);
+    std::vector<int> tag = segments_under(stream.surface, given);
+    for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
+    const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;
     for (const Line& l : lines.lines) {

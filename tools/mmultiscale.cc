@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmultiscale: cut every part of large aspect ratio in two, through the levels of its Laplace maps.
-#include <algorithm>
+#include <filesystem>
+#include <numeric>
 
+#include "formats/level_svg.h"
 #include "lib/multiscale.h"
 #include "lib/partition.h"
 #include "lib/topology.h"
@@ -9,30 +11,61 @@
 
 using namespace meshpipe;
 
+namespace {
+
+/// Every cut's levels as pictures in a directory.
+void draw_levels(const std::string& directory, const std::vector<MultiscaleCut>& cuts) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw CannotWrite(directory + ": " + error.message());
+  for (std::size_t c = 0; c < cuts.size(); c++) {
+    const CutMaps& maps = cuts[c].maps;
+    const std::string stem = "cut-" + std::to_string(c);
+    std::vector<std::string> files = level_names(maps.levels);
+    for (std::size_t l = 0; l < files.size(); l++) {
+      files[l] = stem + "-level-" + files[l] + ".svg";
+      Io::write_file(directory + "/" + files[l], level_svg(maps, l));
+    }
+    Io::write_file(directory + "/" + stem + ".svg", levels_svg(maps.levels, files));
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   MultiscaleOptions options;
-  std::string method = "multiscale";
-  bool levels = false;
+  std::string method = "multiscale", directory;
   auto add_options = [&](CLI::App& app) {
     app.add_option("--max-aspect", options.max_aspect,
                    "cut parts with a larger geodesic aspect ratio (default 4)")
         ->check(CLI::Range(0.5, 1e6))
         ->type_name("ETA");
-    app.add_option("--method", method, "multiscale (default) or maxcut (not built yet)")
+    app.add_option("--method", method,
+                   "multiscale (default) or maxcut: one map and one straight line, for comparison; fails on "
+                   "long parts")
         ->check(CLI::IsMember({"multiscale", "maxcut"}))
         ->type_name("NAME");
-    app.add_flag("--levels", levels, "keep the maps of all levels (not built yet)");
+    app.add_option("--levels", directory, "draw the maps of all levels as SVG pictures")
+        ->type_name("DIR")
+        ->group("Reports");
   };
   auto body = [&](Io& io) {
-    if (method == "maxcut") throw BadUsage("--method maxcut is not built yet");
-    if (levels) throw BadUsage("--levels is not built yet");
+    if (method == "maxcut") options.method = CutMethod::maxcut;
+    options.keep_maps = !directory.empty();
     Stream stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     std::vector<MultiscaleCut> cuts;
-    const int n_parts = multiscale_cut(stream.surface, options, &cuts);
+    int n_parts;
+    try {
+      n_parts = multiscale_cut(stream.surface, options, &cuts);
+    } catch (const GoalMissed&) {  // the pictures show why
+      if (options.keep_maps) draw_levels(directory, cuts);
+      throw;
+    }
+    if (options.keep_maps) draw_levels(directory, cuts);
     if (!stream.surface.face.has("origin")) {
       std::vector<int> same(stream.surface.tris.size());
-      for (std::size_t t = 0; t < same.size(); t++) same[t] = t;
+      std::iota(same.begin(), same.end(), 0);
       stream.surface.face.set("origin", std::move(same));
     }
     io.report["parts"] = n_parts;
@@ -43,10 +76,17 @@ int main(int argc, char** argv) {
                     "part %d: aspect ratio %.2f, %d levels, cut of %.3g diagonals, now parts %d and %d",
                     c.part, c.eta, c.levels, c.length, c.halves[0], c.halves[1]);
       io.say(text);
+      if (options.method == CutMethod::maxcut) {
+        std::snprintf(text, sizeof text, "one map: %d triangles below 1e-15 of area, %d turned over",
+                      c.too_small, c.turned_over);
+        io.say(text);
+      }
       io.report["cuts"].push_back({{"part", c.part},
                                    {"eta", c.eta},
                                    {"levels", c.levels},
                                    {"length", c.length},
+                                   {"too_small", c.too_small},
+                                   {"turned_over", c.turned_over},
                                    {"halves", {c.halves[0], c.halves[1]}}});
     }
     const Interfaces cut = measure_interfaces(stream.surface);

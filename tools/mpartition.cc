@@ -16,12 +16,12 @@ int main(int argc, char** argv) {
     app.add_option("--max-faces", options.max_faces, "no part has more triangles than this")
         ->check(CLI::Range(100, 2147483647))
         ->type_name("N");
-    app.add_option("--method", method, "metis (default) or homology (not built yet)")
+    app.add_option("--method", method, "metis (default), or homology: cuts along handles too, if they give fewer parts")
         ->check(CLI::IsMember({"metis", "homology"}))
         ->type_name("NAME");
   };
   auto body = [&](Io& io) {
-    if (method == "homology") throw BadUsage("--method homology is not built yet");
+    options.homology = method == "homology";
     Stream stream = io.read();
     const int n_parts = partition_to_disks(stream.surface, options);
     const Interfaces cut = measure_interfaces(stream.surface);

@@ -120,3 +120,32 @@ def save(args, rows):
     if args.json:
         with open(args.json, "w") as f:
             json.dump(rows, f, indent=1)
+
+
+def stages(path, count, work, threads=None):
+    """Runs the chain of mremesh on a surface stage by stage through files: (stage, Run) for each, and the name of the
+    result. Stops after a stage that fails."""
+    out = os.path.join(work, "result.ply")
+    keep = os.path.join(work, "stages")
+    os.makedirs(keep, exist_ok=True)
+    options = ["-q", "--triangles", str(count)] + (["-j", str(threads)] if threads else [])
+    commands = subprocess.run(["mremesh", "-n", "--keep", keep, *options, path, "-o", out], check=True, capture_output=True, text=True)
+    done = []
+    for command in commands.stdout.splitlines():
+        program = command.split()[0]
+        report = os.path.join(work, program + ".json")
+        done.append((program, run(f"{command} --json '{report}'")))
+        if done[-1][1].status:
+            break
+    return done, out
+
+
+def count_triangles(path):
+    """Triangles of a surface as the chain sees it: after mclean."""
+    with tempfile.TemporaryDirectory() as work:
+        report = os.path.join(work, "topology.json")
+        done = run(f"mclean -q '{path}' | mtopo -q --json '{report}' -o '{os.path.join(work, 'surface.ply')}'")
+        if done.status:
+            raise SystemExit(f"{path}: {done.text.strip()}")
+        with open(report) as f:
+            return sum(p["faces"] for p in json.load(f)["components"])

@@ -10,6 +10,7 @@
 #include "lib/error.h"
 #include "lib/segments.h"
 #include "lib/size.h"
+#include "lib/topology.h"
 
 using namespace meshpipe;
 
@@ -324,6 +325,25 @@ TEST(Lines, LoopsKeepTheirOrientation) {
     area += cross(charts[0].uv[t[1]] - charts[0].uv[t[0]], charts[0].uv[t[2]] - charts[0].uv[t[0]]);
   ASSERT_GT(area, 0);
   expect_embedded(charts, make_lines(pinched, charts), 0, 0.3);
+}
+
+// the border of a square in two colours: it ends where the colour changes, and the lines have their labels
+TEST(Lines, EndWhereTheLabelChanges) {
+  const Surface s = grid(
+      6, 6, flat, [](int, int) { return 0; }, 0.2);
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  std::vector<int> tag(opposite.size(), 0);
+  for (int h = 0; h < (int)tag.size(); ++h)
+    if (opposite[h] < 0)
+      tag[h] = 0.5 * (s.points[origin(s.tris, h)].x + s.points[target(s.tris, h)].x) < 0.5 ? 3 : 4;
+  const Lines lines = make_lines(s, flat_charts(s, 1), 0.7, &tag);
+  ASSERT_EQ(lines.lines.size(), 6u);
+  for (const Line& l : lines.lines)
+    for (int i = l.first; i < l.first + l.count; ++i) {
+      const LinePoint& p = lines.points[i];
+      const double x = (1 - p.t) * s.points[p.a].x + p.t * s.points[p.b].x;
+      EXPECT_TRUE(l.tag == 3 ? x <= 0.5 : x >= 0.5);
+    }
 }
 
 TEST(Lines, SaysWhatIsMissing) {

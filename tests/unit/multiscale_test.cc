@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "formats/formats.h"
+#include "formats/level_svg.h"
 #include "lib/cut_line.h"
 #include "lib/error.h"
 #include "lib/levels.h"
@@ -133,7 +134,8 @@ TEST(Levels, AShortPartIsOneLevelAndItsHoleOnePoint) {
 TEST(CutLine, OfAStraightTubeRunsAlongTwoGenerators) {
   Surface s = tube(20, 24);
   FilledDisk disk = fill_holes(s);
-  std::vector<double> f = cut_line_field(disk, laplace_levels(disk, 1e-10, 10), 0.3);
+  const std::vector<Level> levels = laplace_levels(disk, 1e-10, 10);
+  std::vector<double> f = cut_line_field(disk, levels, cut_lines(disk, levels, 0.3));
   // the rim's first vertex is at angle 0 of the disk: left of the line is where the angle from it is in (0,
   // pi)
   double start = std::atan2(s.points[disk.rim[0]].y, s.points[disk.rim[0]].x);
@@ -245,4 +247,44 @@ TEST(Multiscale, RealSurfacesFallIntoTwo) {
     ASSERT_EQ(multiscale_cut(s), 2) << file;
     expect_admissible(s, 2);
   }
+}
+
+TEST(MaxCut, HalvesAShortTubeAndMissesALongOne) {
+  Surface s = tube(2, 24);
+  MultiscaleOptions options;
+  options.method = CutMethod::maxcut;
+  options.max_aspect = 1.5;
+  std::vector<MultiscaleCut> cuts;
+  ASSERT_EQ(multiscale_cut(s, options, &cuts), 2);
+  EXPECT_EQ(cuts[0].too_small, 0);
+  EXPECT_EQ(cuts[0].turned_over, 0);
+  EXPECT_NEAR(parts(s, 2)[0].area, pi, 0.3 * pi);
+
+  s = tube(100, 16);
+  const std::size_t before = s.tris.size();
+  EXPECT_THROW(multiscale_cut(s, options, &cuts), GoalMissed);
+  EXPECT_EQ(s.tris.size(), before);
+  // an image of 1e-15 is reached where exp(-2 z / r) is, after 17 radii or 9 diameters
+  EXPECT_GT(cuts.back().too_small, 0.8 * (double)before);
+}
+
+TEST(LevelSvg, EveryLevelShowsItsSetsAndItsLine) {
+  Surface s = tube(20, 16);
+  MultiscaleOptions options;
+  options.keep_maps = true;
+  std::vector<MultiscaleCut> cuts;
+  multiscale_cut(s, options, &cuts);
+  const CutMaps& maps = cuts[0].maps;
+  const std::vector<std::string> names = level_names(maps.levels);
+  ASSERT_GE(names.size(), 3u);
+  EXPECT_EQ(names[0], "0-0");
+  EXPECT_EQ(names[2], "2-0");
+  for (std::size_t l = 0; l < names.size(); l++) {
+    const std::string svg = level_svg(maps, l);
+    EXPECT_NE(svg.find("level " + names[l]), std::string::npos);
+    EXPECT_NE(svg.find("#d01010"), std::string::npos);
+    for (int child : maps.levels[l].children)
+      EXPECT_NE(svg.find(">" + names[child] + "<"), std::string::npos);
+  }
+  EXPECT_NE(levels_svg(maps.levels, names).find("href=\"1-0\""), std::string::npos);
 }

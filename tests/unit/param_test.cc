@@ -8,6 +8,7 @@
 #include "lib/bisect.h"
 #include "lib/error.h"
 #include "lib/injective.h"
+#include "lib/param_intrinsic.h"
 #include "lib/topology.h"
 
 using namespace meshpipe;
@@ -273,4 +274,64 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
       EXPECT_NEAR(t.longest_loop, 12, 1);
     }
   }
+}
+
+// A needle across a flat strip: the long edge of two obtuse triangles is flipped, and all weights are
+// positive.
+TEST(Param, IntrinsicDelaunayFlipsNeedles) {
+  auto strip = grid(
+      30, 4, false,
+      [](double s, double t) {
+        return Vec3{10 * s + 3 * t, 0.2 * t, 0};  // sheared: angles of 3 and 170 degrees
+      },
+      all);
+  Filled before = open_holes(strip), after = intrinsic_delaunay(before);
+  double area = 0;
+  for (const auto& [a, b, c] : after.shape) area += 0.5 * norm(area_vector(a, b, c));
+  EXPECT_NEAR(area, total_area(strip), 1e-9 * area);
+  auto worst = [&](const Filled& filled) {
+    // of the inner edges, by their vertices: all belong to one pair here
+    std::vector<std::pair<std::array<int, 2>, double>> edges;
+    auto w = cotangents(filled);
+    for (int h = 0; h < (int)w.size(); ++h) {
+      int a = origin(filled.tris, h), b = target(filled.tris, h);
+      edges.push_back({{std::min(a, b), std::max(a, b)}, w[h]});
+    }
+    std::sort(edges.begin(), edges.end());
+    double least = 1;
+    for (std::size_t e = 1; e < edges.size(); ++e)
+      if (edges[e].first == edges[e - 1].first)
+        least = std::min(least, edges[e].second + edges[e - 1].second);
+    return least;
+  };
+  EXPECT_LT(worst(before), -1);
+  EXPECT_GE(worst(after), -1e-9);
+  auto uv = plain_map(strip, {});
+  EXPECT_NEAR(distortion(strip, uv).anisotropy_max, 1, 1e-6);
+}
+
+TEST(Param, OptimisationLowersDistortionAndStaysOneToOne) {
+  auto cap = grid(
+      20, 20, false,
+      [](double s, double t) {
+        double x = 2 * s - 1, y = 2 * t - 1, l = std::sqrt(x * x + y * y + 0.3);
+        return Vec3{x / l, y / l, 1 / l};
+      },
+      all);
+  ParamReport before, after;
+  auto uv = map_part(cap, {.map = MapKind::convex, .weights = Weights::uniform}, before);
+  auto better = map_part(cap, {.map = MapKind::convex, .weights = Weights::uniform, .optimize = 30}, after);
+  EXPECT_TRUE(one_to_one(cap, better));
+  EXPECT_GT(after.steps, 1);
+  EXPECT_LT(after.anisotropy_max, 0.5 * before.anisotropy_max);
+  EXPECT_LT(after.area_scale, before.area_scale);
+  auto flat = grid(
+      8, 8, false,
+      [](double s, double t) {
+        return Vec3{s, 2 * t, 0};
+      },
+      all);
+  map_part(flat, {.map = MapKind::convex, .optimize = 100}, after);
+  EXPECT_LT(after.anisotropy_max, 1.1);  // the least is an isometry
+  EXPECT_LT(after.area_scale, 1.1);
 }

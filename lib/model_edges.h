@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Model edges that are given as segments in space: they stay valid however the surface is renumbered or cut.
+#pragma once
+#include "lib/mesh.h"
+
+namespace meshpipe {
+
+/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none).
+struct ModelSegments : Mesh {
+  std::vector<int> tag;
+};
+
+/// Per half-edge the number of a segment on which it lies, or -1: its ends and its middle are on segments,
+/// within a millionth of the diagonal.
+std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments);
+
+}  // namespace meshpipe

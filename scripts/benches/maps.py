@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""the maps of mparam: distortion by map, share of a whole run, growth with the size of a chart
+
+usage: scripts/bench maps [--bin DIR] [--json FILE] [--times N] [--largest N] [--figures DIR] [FILE[:TRIANGLES] ...]
+
+Surfaces are the FILEs, or made by mshape. Three tables: the charts of every surface by every map (worst chart of each);
+seconds of CPU in mparam and its share of the whole chain, on one thread (best of N, default 3); and the time of one chart
+from 10 000 triangles to --largest (default 1 000 000), with the exponent of its growth. --figures DIR writes two
+pictures: harmonic beside conformal charts of an arterial tree with nine ends, and the same of a short tube.
+"""
+import json
+import math
+import os
+import subprocess
+import tempfile
+
+from benches import common
+
+MAPS = [
+    ("conformal", []),
+    ("least squares", ["--conformal", "least-squares"]),
+    ("spectral", ["--conformal", "spectral"]),
+    ("harmonic", ["--map", "harmonic"]),
+    ("convex", ["--map", "convex"]),
+    ("mean value", ["--map", "convex", "--weights", "mean-value"]),
+]
+STAGES = "mclean mtopo mfeature mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck".split()
+
+
+def main(words):
+    p = common.parser(__doc__)
+    p.add_argument("--times", type=int, default=3)
+    p.add_argument("--largest", type=int, default=1000000)
+    p.add_argument("--figures")
+    args = common.parse(p, words)
+    found = {"distortion": [], "share": [], "growth": []}
+    with tempfile.TemporaryDirectory() as work:
+        surfaces = common.surfaces(args, work)
+        for name, path, _ in surfaces:
+            subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q {path} | mtopo -q | mfeature -q | mpartition -q | "
+                            f"mmultiscale -q -o {work}/{name}.parts.ply"], check=True)
+        found["distortion"] = distortion(surfaces, work)
+        found["share"] = [share(name, path, count, work, args.times) for name, path, count in surfaces]
+        row = common.table(["surface", "charts", "mparam s", "whole s", "share %"])
+        for r in found["share"]:
+            row(r["surface"], r["charts"], f"{r['mparam']:.3f}", f"{r['whole']:.3f}", f"{100 * r['mparam'] / r['whole']:.1f}")
+        found["growth"] = growth(work, args.largest, args.times)
+        if args.figures:
+            figures(work, args.figures)
+    common.save(args, found)
+    return 0
+
+
+def report_of(parts, options, work):
+    """The report of mparam, or None where it fails."""
+    run = common.run(["mparam", "-q", "-j", "1", *options, parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
+    if run.status:
+        print(run.text.strip())
+        return None
+    with open(f"{work}/report.json") as f:
+        return json.load(f)
+
+
+def seconds(report, which=("ordering", "factorisation", "solve")):
+    return sum(c["seconds_" + k] for c in report["charts"] for k in which)
+
+
+def distortion(surfaces, work):
+    rows = []
+    row = common.table(["surface", "map", "charts", "cut", "repaired", "other map", "median", "p99", "area scale", "solving s"])
+    for name, _, _ in surfaces:
+        for label, options in MAPS:
+            report = report_of(f"{work}/{name}.parts.ply", options, work)
+            if report is None:
+                continue
+            charts = report["charts"]
+            asked = "convex" if "convex" in options else "harmonic" if "harmonic" in options else "conformal"
+            r = {
+                "surface": name,
+                "map": label,
+                "charts": len(charts),
+                "cut": report["cut"],
+                "repaired": sum(c["map"] == asked and (c["flips_before"] > 0 or not c["border_was_simple"]) for c in charts),
+                "other": sum(c["map"] != asked for c in charts),
+                "median": max(c["anisotropy_median"] for c in charts),
+                "p99": max(c["anisotropy_p99"] for c in charts),
+                "area_scale": max(c["area_scale"] for c in charts),
+                "seconds": seconds(report),
+            }
+            rows.append(r)
+            row(name, label, r["charts"], r["cut"], r["repaired"], r["other"], f"{r['median']:.3f}", f"{r['p99']:.3f}",
+                f"{r['area_scale']:.3g}", f"{r['seconds']:.3f}")
+    return rows
+
+
+def share(name, path, count, work, times):
+    """CPU seconds of mparam and of all stages, each the best of several."""
+    best = {}
+    for _ in range(times):
+        at = path
+        for stage in STAGES:
+            extra = ["--triangles", str(count)] if stage == "msize" and count else ["--accept"] if stage == "mcheck" else []
+            run = common.run([stage, "-q", "-j", "1", *extra, at, "-o", f"{work}/{stage}.ply"])
+            if run.status not in (0, 6):
+                print(f"{name}: {stage} ends with {run.status}: {run.text.strip()}")
+            at = f"{work}/{stage}.ply"
+            best[stage] = min(best.get(stage, math.inf), run.cpu)
+    with open(f"{work}/mparam.ply", "rb") as f:
+        head = f.read(4096).decode(errors="replace")
+    charts = int(head.split("element part ")[1].split()[0])
+    return {"surface": name, "charts": charts, "mparam": best["mparam"], "whole": sum(best.values()), "stages": best}
+
+
+def growth(work, largest, times):
+    rows = []
+    row = common.table(["triangles", "mparam s", "ordering s", "factorisation s", "solve s", "us a triangle"])
+    n = 10000
+    while n <= largest:
+        parts = f"{work}/growth.ply"
+        subprocess.run(["bash", "-c", f"set -o pipefail; mshape tube --aspect 2 --triangles {n} --noise 0.2 -q | mclean -q | "
+                        f"mtopo -q | mpartition -q -o {parts}"], check=True)
+        best = None
+        for _ in range(times):
+            run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
+            with open(f"{work}/report.json") as f:
+                report = json.load(f)
+            if best is None or run.cpu < best["cpu"]:
+                best = {"triangles": sum(c["triangles"] for c in report["charts"]), "cpu": run.cpu}
+                best.update({k: seconds(report, (k,)) for k in ("ordering", "factorisation", "solve")})
+        rows.append(best)
+        row(best["triangles"], f"{best['cpu']:.3f}", f"{best['ordering']:.3f}", f"{best['factorisation']:.3f}",
+            f"{best['solve']:.3f}", f"{1e6 * best['cpu'] / best['triangles']:.2f}")
+        n = 3 * n if str(n)[0] == "1" else 10 * n // 3
+    if len(rows) > 1:
+        x = [math.log(r["triangles"]) for r in rows]
+        y = [math.log(r["cpu"]) for r in rows]
+        mx, my = sum(x) / len(x), sum(y) / len(y)
+        exponent = sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+        print(f"\nCPU time grows with the power {exponent:.3f} of the triangles of a chart\n")
+        rows.append({"exponent": exponent})
+    return rows
+
+
+def figures(work, folder):
+    """The paper's Figs. 8 and 1: harmonic (left) beside conformal (right)."""
+    os.makedirs(folder, exist_ok=True)
+    for name, shape in [("tree", "tree --outlets 9 --ratio 0.93 --triangles 12000"), ("tube", "tube --aspect 2 --triangles 4000")]:
+        parts = f"{work}/figure.ply"
+        subprocess.run(["bash", "-c", f"set -o pipefail; mshape {shape} -q | mclean -q | mtopo | mpartition -q | mmultiscale -q "
+                        f"-o {parts}"], check=True)
+        pictures = []
+        for kind in ("harmonic", "conformal"):
+            run = common.run(["mparam", "--map", kind, parts, "-o", f"{work}/charts.ply", "--svg", f"{work}/{kind}.svg"])
+            print(run.text.strip())
+            with open(f"{work}/{kind}.svg") as f:
+                pictures.append(f.read())
+        height = max(float(p.split('height="', 1)[1].split('"', 1)[0]) for p in pictures)
+        width = float(pictures[0].split('width="', 1)[1].split('"', 1)[0])
+        with open(os.path.join(folder, name + ".svg"), "w") as f:
+            f.write(f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:g}" height="{height:g}">\n')
+            for i, picture in enumerate(pictures):
+                f.write(picture.replace("<svg ", f'<svg x="{i * width:g}" ', 1))
+            f.write("</svg>\n")
