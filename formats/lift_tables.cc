@@ -13,6 +13,38 @@ std::vector<T> copy_or(const Table& table, const char* column, std::vector<T> ot
   return table.has(column) ? table.get<T>(column) : std::move(otherwise);
 }
 
+/// Columns of a vertex that the programs write themselves.
+bool is_own(const std::string& column) {
+  for (const char* own : {"x", "y", "z", "size", "ref_face", "b1", "b2", "kind", "line"})
+    if (column == own) return true;
+  return false;
+}
+
+/// The input's own vertex data at the places of the mesh's vertices: doubles linear on the triangles, others
+/// from the nearest corner.
+void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& vertex) {
+  const Table& reference = stream.need("ref_vertex", "mlift");
+  const Table& face = stream.need("ref_face", "mlift");
+  const auto &a = face.get<int>("a"), &b = face.get<int>("b"), &c = face.get<int>("c");
+  for (const Column& column : reference.columns) {
+    if (is_own(column.name)) continue;
+    std::visit(
+        [&]<class T>(const std::vector<T>& from) {
+          std::vector<T> to;
+          to.reserve(mesh.place.size());
+          for (const Place& p : mesh.place) {
+            const int corner[3] = {a[p.face], b[p.face], c[p.face]};
+            if constexpr (std::is_same_v<T, double>)
+              to.push_back(p.b0 * from[corner[0]] + p.b1 * from[corner[1]] + p.b2 * from[corner[2]]);
+            else
+              to.push_back(from[corner[p.b0 >= p.b1 && p.b0 >= p.b2 ? 0 : p.b1 >= p.b2 ? 1 : 2]]);
+          }
+          vertex.set(column.name, std::move(to));
+        },
+        column.data);
+  }
+}
+
 }  // namespace
 
 LiftedMesh read_lifted(const Stream& stream) {
@@ -68,6 +100,7 @@ void write_lifted(Stream& stream, const LiftedMesh& mesh) {
   s.vertex.set("b2", std::move(b2));
   s.vertex.set("kind", mesh.kind);
   s.vertex.set("line", mesh.line);
+  interpolate_data(stream, mesh, s.vertex);
   s.face.set("patch", mesh.patch);
   s.face.set("part", mesh.part);
   s.face.set("model", mesh.model);
@@ -109,6 +142,8 @@ void write_reference(Stream& stream, const Surface& reference) {
   vertex.set("y", std::move(xyz[1]));
   vertex.set("z", std::move(xyz[2]));
   if (reference.vertex.has("size")) vertex.set("size", reference.vertex.get<double>("size"));
+  for (const Column& c : reference.vertex.columns)
+    if (!is_own(c.name)) vertex.columns.push_back(c);
   stream.set(std::move(vertex));
 
   const std::size_t n = reference.tris.size();

@@ -11,15 +11,16 @@ namespace meshpipe {
 /// checked. Throws NotAdmissible if mlift has not run, BadInput naming the row that is wrong.
 LiftedMesh read_lifted(const Stream& stream);
 
-/// Replaces `vertex` and `face` by the mesh and its columns; tables stay.
+/// Replaces `vertex` and `face` by the mesh and its columns; tables stay. The input's own vertex data, which
+/// the reference keeps, is interpolated. Precondition: write_reference.
 void write_lifted(Stream& stream, const LiftedMesh& mesh);
 
 /// The surface that the mesh was lifted to: face columns patch, part, origin and model.
 /// Throws NotAdmissible if mlift has not run.
 Surface read_reference(const Stream& stream);
 
-/// Adds the tables ref_vertex and ref_face; columns that the surface lacks are 0 (`origin`: the triangle
-/// itself).
+/// Adds the tables ref_vertex, with the surface's own vertex data, and ref_face; columns that the surface
+/// lacks are 0 (`origin`: the triangle itself).
 void write_reference(Stream& stream, const Surface& reference);
 
 }  // namespace meshpipe

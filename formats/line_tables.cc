@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/line_tables.h"
 
+#include <algorithm>
+
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -29,6 +31,7 @@ Lines read_lines(const Stream& stream) {
   Lines lines;
   const auto &kind = line.get<int>("kind"), &tag = line.get<int>("tag"), &first = line.get<int>("first"),
              &count = line.get<int>("count"), &closed = line.get<int>("closed");
+  const std::vector<int>* kept = line.has("kept") ? &line.get<int>("kept") : nullptr;
   int due = 0;  // the lines tile the points
   for (std::size_t i = 0; i < line.rows; ++i) {
     if (kind[i] < border_line || kind[i] > interface_line)
@@ -44,7 +47,7 @@ Lines read_lines(const Stream& stream) {
       bad("line", i,
           "has " + std::to_string(count[i]) + " points, " + std::to_string(n_points - due) + " are left");
     due += count[i];
-    lines.lines.push_back({kind[i], tag[i], first[i], count[i], closed[i]});
+    lines.lines.push_back({kind[i], tag[i], first[i], count[i], closed[i], kept ? (*kept)[i] : 0});
   }
   if (due != n_points)
     throw BadInput("the lines have " + std::to_string(due) + " points, table 'line_vertex' has " +
@@ -86,6 +89,9 @@ void write_lines(Stream& stream, const Lines& lines) {
   Table line{"line", 0, {}};
   const char* names[] = {"kind", "tag", "first", "count", "closed"};
   for (int i = 0; i < 5; ++i) line.set(names[i], std::move(column[i]));
+  std::vector<int> kept;
+  for (const Line& l : lines.lines) kept.push_back(l.kept);
+  if (std::count(kept.begin(), kept.end(), 1)) line.set("kept", std::move(kept));
   stream.set(std::move(line));
 
   std::vector<int> use_line, use_part;

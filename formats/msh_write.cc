@@ -14,9 +14,9 @@ namespace meshpipe {
 namespace {
 
 /// Writes rows of a section, in text or binary.
-class Sink {
+class Rows {
  public:
-  explicit Sink(bool ascii) : ascii_(ascii) {}
+  explicit Rows(bool ascii) : ascii_(ascii) {}
 
   void integer(long long v) { ascii_ ? word(v) : put(out, static_cast<int>(v)); }
   /// What version 4 writes in eight bytes.
@@ -44,7 +44,7 @@ class Sink {
   bool ascii_;
 };
 
-void head(Sink& sink, const char* version, bool ascii) {
+void head(Rows& sink, const char* version, bool ascii) {
   sink.out = std::string("$MeshFormat\n") + version + (ascii ? " 0 8\n" : " 1 8\n");
   if (!ascii) {
     put(sink.out, 1);
@@ -63,6 +63,7 @@ long long checked_shift(const ByPatch& by) {
 
 /// The model edges that have a label, by label.
 struct Curves {
+  bool all = false;  ///< there are some, and all model edges have a label: bits need not be written
   std::vector<LineEdge> edges;
   std::vector<int> tags;
   std::vector<std::size_t> first;  ///< edges first[k] .. first[k+1] have tags[k]
@@ -71,7 +72,7 @@ struct Curves {
 Curves curves_of(const Stream& stream) {
   Curves c;
   c.edges = model_lines(stream);
-  std::erase_if(c.edges, [](const LineEdge& e) { return e.tag <= 0; });
+  c.all = !c.edges.empty() && std::erase_if(c.edges, [](const LineEdge& e) { return e.tag <= 0; }) == 0;
   std::stable_sort(c.edges.begin(), c.edges.end(),
                    [](const LineEdge& x, const LineEdge& y) { return x.tag < y.tag; });
   for (std::size_t i = 0; i < c.edges.size(); ++i)
@@ -83,7 +84,7 @@ Curves curves_of(const Stream& stream) {
   return c;
 }
 
-void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
+void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
   std::string named;
   int n_named = 0;
   auto add = [&](int dim, int tag, long long shown) {
@@ -98,10 +99,11 @@ void names(Sink& sink, const Stream& stream, const ByPatch& by, long long shift,
     sink.out += "$PhysicalNames\n" + (std::to_string(n_named) + '\n') + named + "$EndPhysicalNames\n";
 }
 
-/// `more` elements that are no triangles have zeros, since readers want data for all elements or none.
-void data(Sink& sink, const char* section, const Table& table, std::size_t more) {
+/// Data of all triangles; elements of curves have zeros, since readers want data for all elements or none.
+void data(Rows& sink, const char* section, const Table& table, const Curves& curves) {
+  const std::size_t more = table.name == "face" ? curves.edges.size() : 0;
   for (const Group& g : groups_of(table)) {
-    if (g.name == "patch") continue;
+    if (g.name == "patch" || (g.name == "model" && curves.all)) continue;
     const std::size_t n = g.columns[0]->size(), m = g.columns.size();
     sink.out += std::string("$") + section + "\n1\n\"" + quotable(one_line(g.name)) + "\"\n1\n0\n3\n0\n" +
                 std::to_string(m) + '\n' + std::to_string(n + more) + '\n';
@@ -132,7 +134,7 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
   const Curves curves = curves_of(stream);
-  Sink sink(ascii);
+  Rows sink(ascii);
   head(sink, "2.2", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
   names(sink, stream, by, shift, curves);
@@ -166,8 +168,8 @@ std::string write_msh2(const Stream& stream, bool ascii) {
     sink.end_row();
   }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex, 0);
-  data(sink, "ElementData", s.face, curves.edges.size());
+  data(sink, "NodeData", s.vertex, curves);
+  data(sink, "ElementData", s.face, curves);
   return std::move(sink.out);
 }
 
@@ -176,7 +178,7 @@ std::string write_msh4(const Stream& stream, bool ascii) {
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
   const Curves curves = curves_of(stream);
-  Sink sink(ascii);
+  Rows sink(ascii);
   head(sink, "4.1", ascii);
   sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
   names(sink, stream, by, shift, curves);
@@ -268,8 +270,8 @@ std::string write_msh4(const Stream& stream, bool ascii) {
     }
   }
   sink.end("Elements");
-  data(sink, "NodeData", s.vertex, 0);
-  data(sink, "ElementData", s.face, curves.edges.size());
+  data(sink, "NodeData", s.vertex, curves);
+  data(sink, "ElementData", s.face, curves);
   return std::move(sink.out);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/stl.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,12 +9,13 @@
 #include "formats/polygons.h"
 #include "formats/text.h"
 #include "lib/error.h"
+#include "lib/weld.h"
 
 namespace meshpipe {
 namespace {
 
 constexpr std::size_t head_bytes = 84, facet_bytes = 50;
-/// Three vertices a triangle must be numbered by an int.
+/// Half-edges, three a triangle, must be numbered by an int.
 constexpr std::size_t max_facets = std::numeric_limits<int>::max() / 3;
 
 std::uint32_t declared_facets(std::string_view bytes) {
@@ -26,20 +28,44 @@ bool begins_with_solid(std::string_view bytes) {
   return same_word(trim(bytes.substr(0, 512)).substr(0, 5), "solid");
 }
 
-void add_facet(Mesh& mesh, const Vec3 (&p)[3]) {
-  const int v = static_cast<int>(mesh.points.size());
-  mesh.points.insert(mesh.points.end(), p, p + 3);
-  mesh.tris.push_back({v, v + 1, v + 2});
-}
+/// The corners of triangles as they come; equal ones are one vertex, since the format has no other way to say
+/// that triangles are joined.
+class Corners {
+ public:
+  explicit Corners(std::size_t triangles) : numbers_(triangles / 2) { tris_.reserve(triangles); }
+
+  void add(const Vec3 (&p)[3]) {
+    std::copy_n(p, 3, waiting_ + 3 * n_waiting_);
+    if (++n_waiting_ == block) flush();
+  }
+  std::size_t size() const { return tris_.size() + n_waiting_; }
+  void give(Surface& s) {
+    flush();
+    s.tris = std::move(tris_);
+    s.points = std::move(numbers_.points);
+    s.vertex.rows = s.points.size();
+  }
+
+ private:
+  void flush() {
+    const std::size_t first = tris_.size();
+    tris_.resize(first + n_waiting_);
+    if (n_waiting_) numbers_.add(waiting_, 3 * n_waiting_, tris_[first].data());
+    n_waiting_ = 0;
+  }
+
+  static constexpr int block = 64;
+  PointNumbers numbers_;
+  std::vector<Tri> tris_;
+  Vec3 waiting_[3 * block];
+  int n_waiting_ = 0;
+};
 
 Stream read_binary(std::string_view bytes, std::size_t n, const std::string& where) {
   if (n > max_facets)
     throw BadInput(where + ":80: the file has " + std::to_string(n) + " triangles, the limit is " +
                    std::to_string(max_facets));
-  Stream stream;
-  Surface& s = stream.surface;
-  s.points.reserve(3 * n);
-  s.tris.reserve(n);
+  Corners corners(n);
   for (std::size_t t = 0; t < n; ++t) {
     float f[9];
     std::memcpy(f, bytes.data() + head_bytes + facet_bytes * t + 12, sizeof f);
@@ -47,10 +73,11 @@ Stream read_binary(std::string_view bytes, std::size_t n, const std::string& whe
       if (!std::isfinite(f[i]))
         throw BadInput(where + ":" + std::to_string(head_bytes + facet_bytes * t + 12 + 4 * i) +
                        ": triangle " + std::to_string(t) + " holds a number that is not finite");
-    add_facet(s, {{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}});
+    corners.add({{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}});
   }
-  s.vertex.rows = s.points.size();
-  s.face.set("patch", std::vector<int>(n, 1));
+  Stream stream;
+  corners.give(stream.surface);
+  stream.surface.face.set("patch", std::vector<int>(n, 1));
   return stream;
 }
 
@@ -65,7 +92,7 @@ void expect(Text& text, const char* first, const char* second = nullptr) {
 Stream read_text(std::string_view bytes, const std::string& where) {
   Text text(bytes, where);
   Stream stream;
-  Surface& s = stream.surface;
+  Corners corners(bytes.size() / 256);
   std::vector<int> patch;
   int solid = 0;
   bool open = false;
@@ -83,9 +110,9 @@ Stream read_text(std::string_view bytes, const std::string& where) {
       }
       expect(text, "endloop");
       expect(text, "endfacet");
-      if (s.tris.size() == max_facets)
+      if (corners.size() == max_facets)
         text.fail("more than " + std::to_string(max_facets) + " triangles, which is the limit");
-      add_facet(s, p);
+      corners.add(p);
       patch.push_back(solid);
     } else if (same_word(w, "solid")) {
       if (open) text.fail("'solid' where 'facet' or 'endsolid' is due");
@@ -102,8 +129,8 @@ Stream read_text(std::string_view bytes, const std::string& where) {
     }  // anything else after a solid is a remark of the program that wrote the file
   }
   if (open) text.fail("the file ends where 'endsolid' is due");
-  s.vertex.rows = s.points.size();
-  s.face.set("patch", std::move(patch));
+  corners.give(stream.surface);
+  stream.surface.face.set("patch", std::move(patch));
   return stream;
 }
 

@@ -13,8 +13,8 @@ bool is_stl(std::string_view bytes);
 bool is_odd_stl(std::string_view bytes);
 /// Why bytes that look binary are no binary STL, with both sizes; empty if they are text.
 std::string binary_stl_mismatch(std::string_view bytes);
-/// Three vertices a triangle (STL does not share them); each solid is a patch, numbered from 1, with its
-/// name.
+/// Corners of triangles at the same place, to the last bit, are one vertex, numbered as they come; each solid is a
+/// patch, numbered from 1, with its name.
 Stream read_stl(std::string_view bytes, const std::string& where);
 /// Binary in single precision, the patches lost, or text with a solid for each patch and all digits.
 std::string write_stl(const Stream& stream, bool ascii);

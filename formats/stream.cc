@@ -432,36 +432,46 @@ void declare(std::string& out, const Table& table, std::size_t rows) {
     out += std::string("property ") + type_names[c.data.index()] + ' ' + c.name + '\n';
 }
 
-/// One table's rows; `mesh_row(r)` appends what the mesh itself holds of row r.
+/// One table's rows, in blocks that are handed on as they fill `out`; `mesh_row(r, row)` writes what the mesh
+/// itself holds of row r to `row`, or appends it to `out` if that is null.
 template <class MeshRow>
-void write_rows(std::string& out, const Table& table, std::size_t rows, bool ascii, std::size_t mesh_bytes,
-                const MeshRow& mesh_row) {
-  if (ascii) {
-    for (std::size_t r = 0; r < rows; ++r) {
-      mesh_row(r, nullptr);
-      for (const Column& c : table.columns) {
-        std::visit([&](const auto& v) { append_text(out, v[r]); }, c.data);
-        out += ' ';
-      }
-      out.back() = '\n';
-    }
-    return;
-  }
+void write_rows(std::string& out, const Sink& sink, const Table& table, std::size_t rows, bool ascii,
+                std::size_t mesh_bytes, const MeshRow& mesh_row) {
+  constexpr std::size_t block_bytes = 1 << 20;
   std::size_t stride = mesh_bytes;
   for (const Column& c : table.columns) stride += type_sizes[c.data.index()];
-  std::size_t start = out.size();
-  out.resize(start + rows * stride);
-  char* base = out.data() + start;
-  if (mesh_bytes)
-    for (std::size_t r = 0; r < rows; ++r) mesh_row(r, base + r * stride);
-  std::size_t offset = mesh_bytes;
-  for (const Column& c : table.columns) {
-    std::visit(
-        [&](const auto& v) {
-          for (std::size_t r = 0; r < rows; ++r) std::memcpy(base + r * stride + offset, &v[r], sizeof v[r]);
-          offset += sizeof v[0];
-        },
-        c.data);
+  const std::size_t block = std::max<std::size_t>(1, block_bytes / std::max<std::size_t>(1, stride));
+  for (std::size_t first = 0; first < rows; first += block) {
+    const std::size_t end = std::min(first + block, rows);
+    if (ascii) {
+      for (std::size_t r = first; r < end; ++r) {
+        mesh_row(r, nullptr);
+        for (const Column& c : table.columns) {
+          std::visit([&](const auto& v) { append_text(out, v[r]); }, c.data);
+          out += ' ';
+        }
+        out.back() = '\n';
+      }
+    } else {
+      const std::size_t start = out.size();
+      out.resize(start + (end - first) * stride);
+      char* const base = out.data() + start;
+      if (mesh_bytes)
+        for (std::size_t r = first; r < end; ++r) mesh_row(r, base + (r - first) * stride);
+      std::size_t offset = mesh_bytes;
+      for (const Column& c : table.columns)
+        std::visit(
+            [&](const auto& v) {
+              for (std::size_t r = first; r < end; ++r)
+                std::memcpy(base + (r - first) * stride + offset, &v[r], sizeof v[r]);
+              offset += sizeof v[0];
+            },
+            c.data);
+    }
+    if (out.size() >= block_bytes) {
+      sink(out);
+      out.clear();
+    }
   }
 }
 
@@ -519,6 +529,12 @@ Stream read_stream(std::string_view bytes, const std::string& where) {
 }
 
 std::string write_stream(const Stream& stream, bool ascii) {
+  std::string all;
+  write_stream(stream, ascii, [&](std::string_view bytes) { all += bytes; });
+  return all;
+}
+
+void write_stream(const Stream& stream, bool ascii, const Sink& sink) {
   std::string out = ascii ? "ply\nformat ascii 1.0\n" : "ply\nformat binary_little_endian 1.0\n";
   out += "comment mply 1.0\n";
   for (const Provenance& p : stream.history) {
@@ -539,7 +555,7 @@ std::string write_stream(const Stream& stream, bool ascii) {
   for (const Table& t : stream.tables) declare(out, t, t.rows);
   out += "end_header\n";
 
-  write_rows(out, s.vertex, s.points.size(), ascii, 24, [&](std::size_t r, char* row) {
+  write_rows(out, sink, s.vertex, s.points.size(), ascii, 24, [&](std::size_t r, char* row) {
     const Vec3& p = s.points[r];
     if (row) {
       std::memcpy(row, &p, 24);
@@ -550,7 +566,7 @@ std::string write_stream(const Stream& stream, bool ascii) {
       out += ' ';
     }
   });
-  write_rows(out, s.face, s.tris.size(), ascii, 13, [&](std::size_t r, char* row) {
+  write_rows(out, sink, s.face, s.tris.size(), ascii, 13, [&](std::size_t r, char* row) {
     if (row) {
       *row = 3;
       std::memcpy(row + 1, s.tris[r].data(), 12);
@@ -562,8 +578,8 @@ std::string write_stream(const Stream& stream, bool ascii) {
       out += ' ';
     }
   });
-  for (const Table& t : stream.tables) write_rows(out, t, t.rows, ascii, 0, [](std::size_t, char*) {});
-  return out;
+  for (const Table& t : stream.tables) write_rows(out, sink, t, t.rows, ascii, 0, [](std::size_t, char*) {});
+  sink(out);
 }
 
 }  // namespace meshpipe

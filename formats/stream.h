@@ -2,6 +2,7 @@
 // The stream that the programs speak: mply, a strict profile of PLY (formats/mply.md), in memory and in
 // bytes.
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,9 @@ Stream read_stream(std::string_view bytes, const std::string& where);
 
 /// The stream in bytes: ascii with shortest round-trip numbers, or binary little endian.
 std::string write_stream(const Stream& stream, bool ascii);
+/// The same bytes in pieces of about a megabyte, handed on as they are made.
+using Sink = std::function<void(std::string_view)>;
+void write_stream(const Stream& stream, bool ascii, const Sink& sink);
 
 /// The program before this one in the pipe failed, and has said why.
 struct UpstreamFailed {

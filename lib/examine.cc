@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "lib/intersect.h"
+#include "lib/progress.h"
 
 namespace meshpipe {
 namespace {
@@ -155,13 +156,16 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.quality = quality_of(result, f.mesh.opposite, size);
   f.reference_quality = quality_of(reference, f.reference.opposite, {});
 
+  add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
   f.intersections = self_intersections(result, mesh_tree);
   if (!f.intersections.empty())
     f.reference_intersections = (int)self_intersections(reference, reference_tree).size();
+  add_progress(0.3);
   f.folds = find_folds(result, f.mesh.opposite, reference, reference_tree);
   f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);
   f.off = vertex_distances(result, mesh_tree, reference_tree);
+  add_progress(0.4);
   over_edges(result, f.off);
   f.farthest = (int)(std::max_element(f.off.begin(), f.off.end()) - f.off.begin());
 

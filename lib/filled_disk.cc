@@ -30,8 +30,8 @@ FilledDisk fill_holes(const Mesh& part) {
   disk.tris = part.tris;
   disk.part_vertices = part.points.size();
   disk.part_tris = part.tris.size();
-  std::vector<int> opposite = opposite_halfedges(part.tris, part.points.size());
-  std::vector<std::vector<int>> loops = boundary_loops(opposite);
+  disk.opposite = opposite_halfedges(part.tris, part.points.size());
+  const std::vector<std::vector<int>> loops = boundary_loops(disk.opposite);
   std::size_t longest = 0;
   double length = -1;
   for (std::size_t l = 0; l < loops.size(); l++) {
@@ -47,15 +47,20 @@ FilledDisk fill_holes(const Mesh& part) {
       for (int h : loops[l]) disk.rim.push_back(origin(part.tris, h));
       continue;
     }
-    disk.fan_begin.push_back(disk.tris.size());
+    const int first = disk.tris.size(), n = loops[l].size();
+    disk.fan_begin.push_back(first);
     Vec3 centre;
     for (int h : loops[l]) centre = centre + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
-    for (int h : loops[l])
+    for (int i = 0; i < n; i++) {
+      const int h = loops[l][i], t = first + i;
       disk.tris.push_back({target(part.tris, h), origin(part.tris, h), static_cast<int>(disk.points.size())});
+      disk.opposite[h] = 3 * t;  // and its neighbours in the fan: the half-edge before on the loop, the next
+      disk.opposite.insert(disk.opposite.end(),
+                           {h, 3 * (first + (i + n - 1) % n) + 2, 3 * (first + (i + 1) % n) + 1});
+    }
     disk.points.push_back(centre);
   }
   disk.fan_begin.push_back(disk.tris.size());
-  disk.opposite = opposite_halfedges(disk.tris, disk.points.size());
   disk.weights.resize(3 * disk.tris.size());
   for (std::size_t t = 0; t < disk.tris.size(); t++) {
     const Tri& c = disk.tris[t];

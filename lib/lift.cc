@@ -48,15 +48,7 @@ std::vector<Edge> segments_of(const Lines& lines, const std::vector<int>& vertex
 /// Sets position, size, place, kind and line of the vertices that stand for line points.
 void lift_line_points(const Surface& s, const Lines& lines, const std::vector<int>& vertex, LiftedMesh& out) {
   const auto& size = s.vertex.get<double>("size");
-  std::vector<char> corner = model_corners(s);
-  std::vector<int> tag(s.points.size(), -1);  // of lines that end at a vertex: where it changes is a corner
-  for (const Line& l : lines.lines)
-    for (int i : {l.first, l.first + l.count - 1}) {
-      const LinePoint& p = lines.points[i];
-      if (l.closed || l.kind == interface_line || p.a != p.b) continue;
-      if (tag[p.a] >= 0 && tag[p.a] != l.tag) corner[p.a] = 1;
-      tag[p.a] = l.tag;
-    }
+  const std::vector<char> corner = line_corners(s, lines);
   const int n_rows = static_cast<int>(lines.points.size());
   for (int kept : {1, 0})  // a vertex of several lines is on one that is a border or a model edge, if any
     for (int l = 0; l < static_cast<int>(lines.lines.size()); ++l) {

@@ -214,13 +214,47 @@ std::vector<int> segment_counts(const Chains& chains) {
 
 }  // namespace
 
+std::vector<char> input_border(const Surface& surface) {
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int>* source = surface.face.has("origin") ? &surface.face.get<int>("origin") : nullptr;
+  std::vector<char> found(surface.points.size(), 0);
+  std::vector<int> in(surface.points.size(), -1);  // the border half-edge that ends at a vertex
+  for (int h = 0; h < static_cast<int>(opposite.size()); ++h)
+    if (opposite[h] < 0) in[target(surface.tris, h)] = h;
+  for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {
+    if (opposite[h] >= 0) continue;
+    const int v = origin(surface.tris, h), before = in[v];
+    const Vec3 p = surface.points[v], a = surface.points[origin(surface.tris, before)],
+               b = surface.points[target(surface.tris, h)];
+    found[v] = !source || (*source)[h / 3] != (*source)[before / 3] || angle(p - a, b - p) > 1e-6;
+  }
+  return found;
+}
+
 std::vector<char> model_corners(const Surface& surface, double corner) {
   return mark_corners(surface, surface.vertex.get<double>("size"),
                       special_edges(surface, surface.face.get<int>("part")), corner);
 }
 
+std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
+  std::vector<char> corner = model_corners(surface);
+  std::vector<int> tag(surface.points.size(), -1);  // of a line that ends at the vertex
+  for (const Line& l : lines.lines)
+    for (int i : {l.first, l.first + l.count - 1}) {
+      const LinePoint& p = lines.points[i];
+      if (l.closed || l.kind == interface_line || p.a != p.b) continue;
+      if (tag[p.a] >= 0 && tag[p.a] != l.tag) corner[p.a] = 1;
+      tag[p.a] = l.tag;
+    }
+  if (std::none_of(lines.lines.begin(), lines.lines.end(), [](const Line& l) { return l.kept != 0; }))
+    return corner;
+  const std::vector<char> kept = input_border(surface);
+  for (std::size_t v = 0; v < corner.size(); ++v) corner[v] |= kept[v];
+  return corner;
+}
+
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner,
-                 const std::vector<int>* tag) {
+                 const std::vector<int>* tag, bool keep_border) {
   const int n_vertices = static_cast<int>(surface.points.size());
   if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
   const auto& size = surface.vertex.get<double>("size");
@@ -241,13 +275,25 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   Division division(chains.chain.size());
   const std::vector<int> count = segment_counts(chains);
   for (int l = 0; l < static_cast<int>(count.size()); ++l) division[l] = divide(chains, l, count[l]);
+  if (keep_border) {
+    const std::vector<char> kept = input_border(surface);
+    for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+      const Chain& c = chains.chain[l];
+      if (c.kind != border_line) continue;
+      division[l].clear();
+      for (int i = 0; i < c.count; ++i)
+        if (i == 0 || i == c.count - 1 || kept[chains.vertex[c.first + i]])
+          division[l].push_back({i, 0, chains.measure[c.first + i]});
+    }
+  }
   refine_until_embedded(chains, charts, n_vertices, division);
 
   Lines lines;
   for (int l = 0; l < static_cast<int>(division.size()); ++l) {
     const Chain& c = chains.chain[l];
     const int n = static_cast<int>(division[l].size()) - (c.closed ? 1 : 0);
-    lines.lines.push_back({c.kind, chain_tag[l], static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0});
+    lines.lines.push_back({c.kind, chain_tag[l], static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0,
+                           keep_border && c.kind == border_line});
     for (int i = 0; i < n; ++i) {
       const Cut& cut = division[l][i];
       const int a = chains.vertex[c.first + cut.piece];

@@ -20,6 +20,7 @@ struct LinePoint {
 /// repeats nothing. Segments join consecutive points, and the last to the first when closed.
 struct Line {
   int kind, tag, first, count, closed;
+  int kept = 0;  ///< a border whose points are those of the input
 };
 
 struct LineUse {
@@ -37,6 +38,10 @@ struct Lines {
 /// scans is no corner).
 std::vector<char> model_corners(const Surface& surface, double corner = 0.7);
 
+/// Vertices on the border that the input had: not those by which cutting divided one of its edges (both edges
+/// belong to one triangle of face column `origin`, and are in line).
+std::vector<char> input_border(const Surface& surface);
+
 /// Chains the special edges (mesh border, part borders, model bits) into lines that end at junctions and
 /// corners (a vertex where the number of special edges is not two, and model_corners), and divides each into
 /// N = round(integral of 1/h) segments, at least 1 (3 if closed), equidistributed in that measure, h = column
@@ -44,7 +49,12 @@ std::vector<char> model_corners(const Surface& surface, double corner = 0.7);
 /// ends: where the chords would, or would lose the shape of a loop, the lines are refined. A line's points
 /// are the same in every chart that uses it. Precondition: charts in part order, positively oriented.
 /// `tag`, if not null, is the label of each half-edge's edge: lines end where it changes.
+/// With keep_border borders have exactly the input's points, and those where lines meet them.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7,
-                 const std::vector<int>* tag = nullptr);
+                 const std::vector<int>* tag = nullptr, bool keep_border = false);
+
+/// What a mesh with these lines keeps of a surface: model_corners, vertices where the label of lines changes,
+/// and those of borders that are kept.
+std::vector<char> line_corners(const Surface& surface, const Lines& lines);
 
 }  // namespace meshpipe

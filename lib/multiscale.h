@@ -17,7 +17,7 @@ struct MultiscaleOptions {
   double max_aspect = 4;    ///< eta_max of eq. (5)
   double min_area = 1e-10;  ///< A_min, relative to the level's disk
   int min_set = 10;         ///< smaller sets of small triangles stay good (the paper's footnote)
-  int directions = 6;       ///< root directions tried
+  int directions = 4;       ///< root directions tried
   bool keep_maps = false;   ///< fill MultiscaleCut::maps
 };
 

@@ -13,6 +13,7 @@
 #include "lib/param_ears.h"
 #include "lib/param_optimize.h"
 #include "lib/predicates.h"
+#include "lib/progress.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -322,6 +323,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       if (!waiting[p]) continue;
       try {
         charts[p].uv = map_part(charts[p].mesh, options, reports[p]);
+        if (round == 0) add_progress((double)charts[p].mesh.tris.size() / (double)surface.tris.size());
       } catch (const GoalMissed& e) {
         failure[p] = std::make_exception_ptr(GoalMissed("part " + std::to_string(p) + ": " + e.what()));
       } catch (const NotAdmissible& e) {

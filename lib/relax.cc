@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/progress.h"
 #include "lib/relaxer.h"
 
 namespace meshpipe {
@@ -99,6 +100,7 @@ RelaxReport Relaxer::run() {
     smooth(1);
     flip_to_shape();
     smooth(2);
+    add_progress(0.9 / options_.sweeps);
   }
   reach_tips();
   mend_worst();

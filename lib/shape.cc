@@ -190,6 +190,7 @@ Body cad_body(int columns, int rows, int segments) {
     if (at == body.names.end()) at = body.names.insert(at, name);
     return (int)(at - body.names.begin());
   };
+  const int top = patch("top"), bottom = patch("bottom");
   auto add = [&](Vec3 a, Vec3 b, Vec3 c, int label, bool turn) {
     const int v = (int)body.points.size();
     body.points.insert(body.points.end(), {a, turn ? c : b, turn ? b : c});
@@ -208,39 +209,38 @@ Body cad_body(int columns, int rows, int segments) {
         return Vec3{(double)(column + x[k % 4]), (double)(row + y[k % 4]), z};
       };
       // the square at height z round a circle: a fan at each corner, and a triangle at each side
-      auto face = [&](double radius, double z, const std::string& name, bool down) {
+      auto face = [&](double radius, double z, int label, bool down) {
         for (int k = 0; k < 4; ++k) {
           for (int i = 0; i < n / 4; ++i) {
             const int at = (k * n / 4 + i + n - n / 8) % n;
-            add(corner(k, z), circle(radius, at + 1, z), circle(radius, at, z), patch(name), down);
+            add(corner(k, z), circle(radius, at + 1, z), circle(radius, at, z), label, down);
           }
           const int at = (k * n / 4 + n / 4 + n - n / 8) % n;
-          add(corner(k, z), corner(k + 1, z), circle(radius, at, z), patch(name), down);
+          add(corner(k, z), corner(k + 1, z), circle(radius, at, z), label, down);
         }
       };
       // a cylinder by full-length triangles, seen from outside (or from the axis)
       auto cylinder = [&](double radius, double z0, double z1, const std::string& name, bool inward) {
+        const int label = patch(name);
         for (int i = 0; i < n; ++i) {
-          add(circle(radius, i, z0), circle(radius, i + 1, z0), circle(radius, i + 1, z1), patch(name),
-              inward);
-          add(circle(radius, i, z0), circle(radius, i + 1, z1), circle(radius, i, z1), patch(name), inward);
+          add(circle(radius, i, z0), circle(radius, i + 1, z0), circle(radius, i + 1, z1), label, inward);
+          add(circle(radius, i, z0), circle(radius, i + 1, z1), circle(radius, i, z1), label, inward);
         }
       };
       const std::string id = std::to_string(number);
       if ((row + column) % 2 == 0) {
-        face(hole, thickness, "top", false);
-        face(hole, 0, "bottom", true);
+        face(hole, thickness, top, false);
+        face(hole, 0, bottom, true);
         cylinder(hole, 0, thickness, "hole" + id, true);
       } else {
-        face(boss, thickness, "top", false);
-        face(bore, 0, "bottom", true);
+        face(boss, thickness, top, false);
+        face(bore, 0, bottom, true);
         cylinder(boss, thickness, height, "boss" + id, false);
         cylinder(bore, 0, height, "bore" + id, true);
+        const int cap = patch("cap" + id);
         for (int i = 0; i < n; ++i) {
-          add(circle(boss, i, height), circle(boss, i + 1, height), circle(bore, i, height),
-              patch("cap" + id), false);
-          add(circle(boss, i + 1, height), circle(bore, i + 1, height), circle(bore, i, height),
-              patch("cap" + id), false);
+          add(circle(boss, i, height), circle(boss, i + 1, height), circle(bore, i, height), cap, false);
+          add(circle(boss, i + 1, height), circle(bore, i + 1, height), circle(bore, i, height), cap, false);
         }
       }
       auto wall = [&](int k, const std::string& name) {

@@ -201,7 +201,8 @@ class Tree {
 /// branches stay within cones that do not meet.
 class Grower {
  public:
-  Grower(int leaves, double ratio, int seed) : ratio_(ratio), random_(seed) {
+  /// `length` is that of a branch over its radius.
+  Grower(int leaves, double ratio, double length, int seed) : ratio_(ratio), length_(length), random_(seed) {
     spread_ = 2 * std::sin(0.5 * (0.1 + 0.08 * std::log2(leaves)));
     const double golden = pi * (3 - std::sqrt(5));
     for (int i = 0; i < leaves; ++i) {
@@ -219,14 +220,13 @@ class Grower {
     const Vec3 fork = place(all, apex + length);
     add_branch({0, 0, -0.25}, fork, up, up, 0.5, 0.5 * 0.96);
     split(all, fork, up, apex + length, 0.5);
-    tree_.make_grid();
     return std::move(tree_);
   }
 
  private:
   static constexpr double apex = 2.5;  ///< how far below the inlet the cones of the branches meet
 
-  double branch_length(double radius) { return 5.5 * radius * (0.85 + 0.3 * random_.uniform()); }
+  double branch_length(double radius) { return length_ * radius * (0.85 + 0.3 * random_.uniform()); }
 
   Vec3 place(const std::vector<int>& set, double distance) {
     Vec2 m;
@@ -286,11 +286,24 @@ class Grower {
     }
   }
 
-  double ratio_, spread_;
+  double ratio_, length_, spread_;
   Random random_;
   std::vector<Vec2> leaves_;
   Tree tree_;
 };
+
+/// The area of a tree as that of a tube of its inlet's diameter 1, over which its length is this many
+/// diameters: by its branches, but for what lies within those that they come from.
+double aspect_of(const Tree& tree) {
+  double area = 0;
+  for (const Branch& b : tree.branches) {
+    const Segment &first = tree.segments[b.first], &last = tree.segments[b.first + b.count - 1];
+    double length = 0;
+    for (int i = b.first; i < b.first + b.count; ++i) length += norm(tree.segments[i].b - tree.segments[i].a);
+    area += pi * (first.ra + last.rb) * std::max(0.0, length - first.ra);
+  }
+  return area / pi;
+}
 
 /// Cuts the surface beyond every end's plane off.
 void cut_ends(Mesh& mesh, const std::vector<End>& ends) {
@@ -349,9 +362,15 @@ Mesh genus_surface(int g, int n) {
   return march_to_count(f, -1.0 * half, half, 0.1, n, [](Mesh&) {});
 }
 
-Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed) {
+Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed, double aspect) {
   const int leaves = outlets > 0 ? outlets - 1 : 1 << generations;
-  const Tree tree = Grower(leaves, ratio, seed).grow();
+  double length = 5.5;
+  Tree tree = Grower(leaves, ratio, length, seed).grow();
+  for (int i = 0; aspect > 0 && i < 8; ++i) {
+    length *= aspect / aspect_of(tree);
+    tree = Grower(leaves, ratio, length, seed).grow();
+  }
+  tree.make_grid();
   double smallest = 1;
   for (const End& e : tree.ends) smallest = std::min(smallest, e.radius);
   Mesh mesh =

@@ -19,53 +19,85 @@ std::uint64_t hash(const Cell& c) {
   return mix((std::uint64_t)c[0] + mix((std::uint64_t)c[1] + mix((std::uint64_t)c[2])));
 }
 
+std::uint64_t hash(const Vec3& p) {
+  auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
+  return mix(bits(p.x) + mix(bits(p.y) + mix(bits(p.z))));
+}
+
 }  // namespace
+
+PointNumbers::PointNumbers(std::size_t expected) : slot_(std::bit_ceil(2 * expected + 64), -1) {
+  points.reserve(expected);
+}
+
+void PointNumbers::make_room(std::size_t n) {
+  std::vector<int>().swap(slot_);
+  slot_.assign(std::bit_ceil(4 * (points.size() + n)), -1);
+  const std::size_t mask = slot_.size() - 1;
+  for (int v = 0; v < (int)points.size(); ++v) {
+    std::size_t i = hash(points[v]) & mask;
+    while (slot_[i] >= 0) i = (i + 1) & mask;
+    slot_[i] = v;
+  }
+}
+
+void PointNumbers::add(const Vec3* p, int n, int* numbers) {
+  constexpr int block = 48;
+  std::size_t place[block];
+  for (int first = 0; first < n; first += block) {
+    const int m = std::min(block, n - first);
+    if (2 * (points.size() + m) > slot_.size()) make_room(m);
+    const std::size_t mask = slot_.size() - 1;
+    for (int k = 0; k < m; ++k) {
+      place[k] = hash(p[first + k]) & mask;
+      __builtin_prefetch(&slot_[place[k]]);
+    }
+    for (int k = 0; k < m; ++k)
+      if (const int v = slot_[place[k]]; v >= 0) __builtin_prefetch(&points[v]);
+    for (int k = 0; k < m; ++k) {
+      const Vec3& q = p[first + k];
+      std::size_t i = place[k];
+      while (slot_[i] >= 0 && !(points[slot_[i]] == q)) i = (i + 1) & mask;
+      if (slot_[i] < 0) {
+        slot_[i] = (int)points.size();
+        points.push_back(q);
+      }
+      numbers[first + k] = slot_[i];
+    }
+  }
+}
 
 std::vector<int> first_equal(const std::vector<Vec3>& points, const std::vector<char>& used) {
   const int n = (int)points.size();
-  std::vector<int> same(n);
-  // as large as a soup needs, whose vertices come six times each; it grows for other surfaces
-  std::size_t mask = std::bit_ceil(points.size() / 3 + 64) - 1, stored = 0;
-  std::vector<int> slot(mask + 1, -1);
-  auto hash_of = [&](const Vec3& p) {
-    auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // -0 + 0 is 0
-    return mix(bits(p.x) + mix(bits(p.y) + mix(bits(p.z))));
-  };
-  // in blocks, so that what the table and the points hold is on its way when it is needed
-  constexpr int block = 32;
-  std::size_t place[block];
-  for (int first = 0; first < n; first += block) {
-    const int end = std::min(first + block, n);
-    if (2 * (stored + block) > slot.size()) {
-      std::vector<int> old = std::move(slot);
-      mask = 2 * mask + 1;
-      slot.assign(mask + 1, -1);
-      for (int v : old) {
-        if (v < 0) continue;
-        std::size_t i = hash_of(points[v]) & mask;
-        while (slot[i] >= 0) i = (i + 1) & mask;
-        slot[i] = v;
-      }
-    }
-    for (int v = first; v < end; ++v) {
-      place[v - first] = hash_of(points[v]) & mask;
-      __builtin_prefetch(&slot[place[v - first]]);
-    }
-    for (int v = first; v < end; ++v)
-      if (const int w = slot[place[v - first]]; w >= 0) __builtin_prefetch(&points[w]);
-    for (int v = first; v < end; ++v) {
+  std::vector<int> same(n), first;  // the latter: by the number of a distinct point
+  PointNumbers distinct(points.size());
+  constexpr int block = 1024;
+  Vec3 p[block];
+  int of[block], number[block];
+  for (int v = 0; v < n;) {
+    int m = 0;
+    for (; v < n && m < block; ++v) {
       same[v] = v;
       if (!used[v]) continue;
-      std::size_t i = place[v - first];
-      while (slot[i] >= 0 && !(points[slot[i]] == points[v])) i = (i + 1) & mask;
-      if (slot[i] < 0) {
-        slot[i] = v;
-        ++stored;
-      }
-      same[v] = slot[i];
+      p[m] = points[v];
+      of[m++] = v;
+    }
+    distinct.add(p, m, number);
+    for (int k = 0; k < m; ++k) {
+      if (number[k] == (int)first.size()) first.push_back(of[k]);
+      same[of[k]] = first[number[k]];
     }
   }
   return same;
+}
+
+void weld(Mesh& mesh) {
+  PointNumbers distinct(mesh.points.size() / 6);
+  for (Tri& t : mesh.tris) {
+    const Vec3 p[3] = {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+    distinct.add(p, 3, t.data());
+  }
+  mesh.points = std::move(distinct.points);
 }
 
 int merge_near(const std::vector<Vec3>& points, const std::vector<char>& used, double tolerance,
@@ -118,25 +150,6 @@ int merge_near(const std::vector<Vec3>& points, const std::vector<char>& used, d
   }
   for (int v = 0; v < n; ++v) same[v] = same[same[v]];
   return merged;
-}
-
-void weld(Mesh& mesh) {
-  std::vector<char> used(mesh.points.size(), 0);
-  for (const Tri& t : mesh.tris)
-    for (int v : t) used[v] = 1;
-  const std::vector<int> same = first_equal(mesh.points, used);
-  std::vector<int> number(mesh.points.size(), -1);
-  std::vector<Vec3> points;
-  for (Tri& t : mesh.tris)
-    for (int& v : t) {
-      int& n = number[same[v]];
-      if (n < 0) {
-        n = (int)points.size();
-        points.push_back(mesh.points[v]);
-      }
-      v = n;
-    }
-  mesh.points = std::move(points);
 }
 
 }  // namespace meshpipe

@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One vertex for all at the same place, to the last bit or within a tolerance.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "lib/mesh.h"
 
 namespace meshpipe {
+
+/// Numbers points as they come: equal ones (0 and -0 are) alike.
+class PointNumbers {
+ public:
+  /// Room for about this many distinct points; it grows.
+  explicit PointNumbers(std::size_t expected);
+  /// The numbers of n more points. Best called with many at a time: what memory holds of them is fetched ahead.
+  void add(const Vec3* points, int n, int* numbers);
+  /// The distinct points by their number.
+  std::vector<Vec3> points;
+
+ private:
+  void make_room(std::size_t n);
+  std::vector<int> slot_;  ///< a table of numbers, by a hash of their points; -1 is free
+};
 
 /// Makes one vertex of all that have the same coordinates, and drops those that no triangle uses; vertices
 /// are numbered by first use. Triangles stay as they are otherwise.

@@ -57,6 +57,44 @@ end_header
 """
 VERTICES, FACES = 7, 4
 
+# a line with a name along the first two triangles; without further data, which meshio 5.0 takes from files of one kind of
+# elements only
+LINES = """ply
+format ascii 1.0
+comment mply 1.0
+comment name 2 1 inlet
+comment name 1 3 crease
+element vertex 4
+property double x
+property double y
+property double z
+element face 2
+property list uchar int vertex_indices
+property int patch
+property uchar model
+element line 1
+property int kind
+property int tag
+property int first
+property int count
+property int closed
+element line_vertex 3
+property int vertex_a
+property int vertex_b
+property double t
+end_header
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+3 0 1 2 1 2
+3 0 2 3 1 2
+1 3 0 3 0
+1 1 0
+2 2 0
+3 3 0
+"""
+
 failures = []
 checked = 0
 
@@ -116,7 +154,7 @@ def meshio_checks(path):
     kind = path.rsplit(".", 1)[1]
     if kind == "mply" or (kind == "ply" and "binary" in path):
         return  # meshio takes no further elements, and no column after the list in binary
-    if kind in ("vtp", "gts", "poly", "sol"):
+    if kind in ("vtp", "gts", "poly", "sol", "solb"):
         return
     by_name = {"msh4": "gmsh", "msh2": "gmsh"}
     mesh = meshio.read(path, file_format=by_name.get(kind))
@@ -163,6 +201,36 @@ def gmsh_checks(path, scratch):
         lines = file.read().split("\n")
     elements = lines[lines.index("$Elements") + 2:lines.index("$EndElements")]
     check(f"Gmsh, {path}", sum(e.split()[1] == "2" for e in elements), FACES)
+
+
+def line_checks(mconvert, scratch):
+    """Lines of the model and their names in the formats that hold them, as other programs read them."""
+    sample = os.path.join(scratch, "lines.mply")
+    with open(sample, "w") as file:
+        file.write(LINES)
+    for encoding in ("ascii", "binary"):
+        for kind in ("msh2", "msh4", "mesh", "meshb"):
+            path = os.path.join(scratch, f"lines-{encoding}.{kind}")
+            subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
+            back = subprocess.run([mconvert, "--ascii", path], stdout=subprocess.PIPE, check=True, text=True).stdout
+            rows = [r for r in back.splitlines() if not r.startswith("comment")]
+            check(f"mconvert on {path}", rows, [r for r in LINES.splitlines() if not r.startswith("comment")])
+            if meshio:
+                mesh = meshio.read(path, file_format="gmsh" if kind.startswith("msh") else None)
+                tags = mesh.cell_data["gmsh:physical" if kind.startswith("msh") else "medit:ref"]
+                found = {c.type: [int(t) for t in values] for c, values in zip(mesh.cells, tags)}
+                check(f"meshio, lines of {path}", found, {"triangle": [1, 1], "line": [3, 3]})
+                if kind.startswith("msh"):
+                    check(f"meshio, names of {path}", {n: [int(x) for x in v] for n, v in mesh.field_data.items()},
+                          {"inlet": [1, 2], "crease": [3, 1]})
+            if shutil.which("gmsh") and kind != "meshb":  # which Debian's is built without
+                out = os.path.join(scratch, "gmsh.msh2")
+                subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+                with open(out) as file:
+                    lines = file.read().split("\n")
+                elements = [e.split() for e in lines[lines.index("$Elements") + 2:lines.index("$EndElements")]]
+                check(f"Gmsh, lines of {path}", sorted(e[1] for e in elements), ["1", "1", "2", "2"])
 
 
 def vtk_written(scratch):
@@ -277,7 +345,7 @@ def main():
             file.write(SAMPLE)
         for encoding in ("ascii", "binary"):
             for kind in ("mply", "ply", "stl", "obj", "off", "msh", "msh2", "msh4", "vtu", "vtp", "vtk", "mesh", "meshb", "sol",
-                         "gts", "bdf", "inp", "poly"):
+                         "solb", "gts", "bdf", "inp", "poly"):
                 path = os.path.join(scratch, f"{encoding}.{kind}")
                 subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
                 if vtk:
@@ -295,6 +363,7 @@ def main():
         if shutil.which("gmsh"):
             for path in gmsh_written(os.path.join(scratch, "ascii.msh"), scratch):
                 reads(mconvert, path, [1, 1, 5, 5])
+        line_checks(mconvert, scratch)
         colored = os.path.join(scratch, "colored.ply")
         subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
         if vtk:

@@ -3,18 +3,25 @@
 
 #include <fcntl.h>
 #include <omp.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <condition_variable>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <thread>
+
+#include "lib/progress.h"
 
 namespace meshpipe {
 namespace {
@@ -87,6 +94,11 @@ struct Bytes {
     if (!larger) throw std::bad_alloc();
     (void)data.release();
     data.reset(larger);
+    // whole pages of it may be large ones, which a file of hundreds of megabytes is filled into much faster
+    constexpr std::size_t page = 4096;
+    if (capacity > (std::size_t{1} << 22))
+      ::madvise(larger + (page - reinterpret_cast<std::uintptr_t>(larger) % page), capacity - page,
+                MADV_HUGEPAGE);
   }
   operator std::string_view() const { return {data.get(), size}; }
 };
@@ -123,9 +135,41 @@ bool is_stream_name(const std::string& path) {
   return path == "-" || extension.empty() || extension == ".ply";
 }
 
-/// The bytes of a file.
-std::string encode(const std::string& path, const Stream& stream, bool text) {
-  return is_stream_name(path) ? write_stream(stream, text) : write_as(stream, path, text);
+/// The bytes of a file, in pieces.
+void encode(const std::string& path, const Stream& stream, bool text, const Sink& sink) {
+  if (is_stream_name(path))
+    write_stream(stream, text, sink);
+  else
+    sink(write_as(stream, path, text));
+}
+
+/// Writes what `produce` hands to its sink to a file, beside it and renamed.
+void write_beside(const std::string& path, const std::function<void(const Sink&)>& produce) {
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  // a device or a pipe is written to, not replaced
+  std::string temporary = exists && !S_ISREG(info.st_mode) ? "" : path + ".XXXXXX";
+  int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : make_temporary(temporary);
+  if (fd < 0) throw CannotWrite(path + ": " + reason());
+  try {
+    produce([&](std::string_view bytes) { write_all(fd, bytes, path); });
+    if (!temporary.empty()) {
+      mode_t mask = ::umask(0);
+      ::umask(mask);
+      ::fchmod(fd, exists ? info.st_mode & 0777 : 0666 & ~mask);
+    }
+    int closed = ::close(fd);
+    fd = -1;
+    if (closed != 0) throw CannotWrite(path + ": " + reason());
+    if (!temporary.empty() && ::rename(temporary.c_str(), path.c_str()) != 0)
+      throw CannotWrite(path + ": " + reason());
+    temporary_exists = 0;
+  } catch (...) {
+    if (fd >= 0) ::close(fd);
+    if (!temporary.empty()) ::unlink(temporary.c_str());
+    temporary_exists = 0;
+    throw;
+  }
 }
 
 /// The options given on the command line that change the result, as they are recorded in the stream.
@@ -162,6 +206,51 @@ struct Help : CLI::Formatter {
   }
 };
 
+/// On a terminal, a line that tells how far the work is and how long it will take, from the moment that it
+/// has taken a second. Cleared at the end.
+class Progress {
+ public:
+  explicit Progress(const Io& io) {
+    if (!io.quiet && ::isatty(STDERR_FILENO))
+      thread_ = std::thread([this, name = io.program] { watch(name); });
+  }
+  ~Progress() {
+    if (!thread_.joinable()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+
+ private:
+  void watch(const std::string& name) {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begun{};
+    double first = 0;
+    bool shown = false;
+    std::unique_lock lock(mutex_);
+    while (!wake_.wait_for(lock, std::chrono::milliseconds(200), [this] { return over_; })) {
+      const double share = std::min(1.0, work_done.load());
+      // a program of a pipe may have waited for its input: time counts from the first share
+      if (share <= 0) continue;
+      if (begun == Clock::time_point{}) begun = Clock::now(), first = share;
+      const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+      if (seconds < 1 || share <= first) continue;
+      std::fprintf(stderr, "\r%s: %.0f %%, %.0f s left\033[K\r", name.c_str(), 100 * share,
+                   seconds * (1 - share) / (share - first));
+      shown = true;
+    }
+    if (shown) std::fputs("\r\033[K", stderr);
+  }
+
+  std::thread thread_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool over_ = false;
+};
+
 }  // namespace
 
 Stream Io::read() {
@@ -192,11 +281,14 @@ void Io::write(Stream& stream) {
         " has none");
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  write_bytes(encode(output, stream, text));
+  auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
+  if (output != "-") return write_beside(output, produce);
+  written_ = true;
+  produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
 }
 
 void Io::write_to(const std::string& path, const Stream& stream) const {
-  write_file(path, encode(path, stream, ascii));
+  write_beside(path, [&](const Sink& sink) { encode(path, stream, ascii, sink); });
 }
 
 void Io::write_bytes(std::string_view bytes) const {
@@ -210,31 +302,7 @@ void Io::write_bytes(std::string_view bytes) const {
 }
 
 void Io::write_file(const std::string& path, std::string_view bytes) {
-  struct stat info {};
-  const bool exists = ::stat(path.c_str(), &info) == 0;
-  // a device or a pipe is written to, not replaced
-  std::string temporary = exists && !S_ISREG(info.st_mode) ? "" : path + ".XXXXXX";
-  int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : make_temporary(temporary);
-  if (fd < 0) throw CannotWrite(path + ": " + reason());
-  try {
-    write_all(fd, bytes, path);
-    if (!temporary.empty()) {
-      mode_t mask = ::umask(0);
-      ::umask(mask);
-      ::fchmod(fd, exists ? info.st_mode & 0777 : 0666 & ~mask);
-    }
-    int closed = ::close(fd);
-    fd = -1;
-    if (closed != 0) throw CannotWrite(path + ": " + reason());
-    if (!temporary.empty() && ::rename(temporary.c_str(), path.c_str()) != 0)
-      throw CannotWrite(path + ": " + reason());
-    temporary_exists = 0;
-  } catch (...) {
-    if (fd >= 0) ::close(fd);
-    if (!temporary.empty()) ::unlink(temporary.c_str());
-    temporary_exists = 0;
-    throw;
-  }
+  write_beside(path, [&](const Sink& sink) { sink(bytes); });
 }
 
 void Io::expect_writable(const std::string& path, bool mesh) {
@@ -249,7 +317,9 @@ void Io::expect_writable(const std::string& path, bool mesh) {
 }
 
 void Io::say(const std::string& line) const {
-  if (!quiet) std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
+  // on a terminal over the line of progress
+  const char* clear = ::isatty(STDERR_FILENO) ? "\r\033[K" : "";
+  if (!quiet) std::fprintf(stderr, "%s%s: %s\n", clear, program.c_str(), line.c_str());
 }
 
 void Io::detail(const std::string& line) const {
@@ -341,6 +411,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     if (io.output != "-") Io::expect_writable(io.output, usage.writes_mesh);
     if (!io.json.empty()) Io::expect_writable(io.json);
     try {
+      const Progress progress(io);
       body(io);
     } catch (const NotAdmissible&) {
       if (io.report.size() > 1) write_report();  // it had been measured

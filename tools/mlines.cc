@@ -9,6 +9,7 @@
 using namespace meshpipe;
 
 int main(int argc, char** argv) {
+  bool keep_boundary = false;
   auto body = [&](Io& io) {
     Stream stream = io.read();
     const Table& vertex = stream.surface.vertex;
@@ -17,7 +18,7 @@ int main(int argc, char** argv) {
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
-    const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag);
+    const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag, keep_boundary);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;
     for (const Line& l : lines.lines) {
@@ -42,5 +43,8 @@ int main(int argc, char** argv) {
       "example:\n  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
       "mlines stages/07-size.ply -o "
       "lines.ply",
-      [](CLI::App&) {}, body);
+      [&](CLI::App& app) {
+        app.add_flag("--keep-boundary", keep_boundary, "the border has the input's points, and no others");
+      },
+      body);
 }

@@ -9,6 +9,7 @@
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
 #include "lib/parallel.h"
+#include "lib/progress.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
     std::vector<PlaneMesh> meshes(n);
     parallel_for(n, [&](int part) {
       meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part, meshers.at(mesher));
+      add_progress((double)charts[part].mesh.tris.size() / (double)stream.surface.tris.size());
     });
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 

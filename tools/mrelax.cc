@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mrelax: optimise a lifted mesh on its reference surface, across interfaces that are not model edges.
 #include "formats/lift_tables.h"
+#include "formats/line_tables.h"
 #include "lib/relax.h"
 #include "tools/common.h"
 
@@ -17,8 +18,13 @@ int main(int argc, char** argv) {
     Stream stream = io.read();
     LiftedMesh mesh = read_lifted(stream);
     const Surface reference = read_reference(stream);
-    const auto& kinds = stream.need("line", "mlines").get<int>("kind");
-    const RelaxReport r = relax(mesh, reference, kinds, model_corners(reference), options);
+    const Lines lines = read_lines(stream);
+    std::vector<int> kinds;
+    for (const Line& l : lines.lines) {
+      kinds.push_back(l.kind);
+      options.keep_border = options.keep_border || l.kept;
+    }
+    const RelaxReport r = relax(mesh, reference, kinds, line_corners(reference, lines), options);
     write_lifted(stream, mesh);
     char text[200];
     std::snprintf(text, sizeof text,

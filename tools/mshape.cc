@@ -10,7 +10,8 @@ namespace {
 struct Options {
   std::string kind;
   int triangles = 0;  // 0: as many as is usual for the kind
-  double aspect = 10, ratio = 0, noise = 0, slivers = 0, dirt = 0;
+  double aspect = 0, ratio = 0, noise = 0, slivers = 0, dirt = 0;
+  int patches = 0;
   bool closed = false;
   int genus = 2, generations = 0, outlets = 0, seed = 1;
 };
@@ -25,16 +26,25 @@ Body make(const Options& o) {
   auto triangles = [&](int usual) { return o.triangles > 0 ? o.triangles : usual; };
   auto ratio = [&](double usual) { return o.ratio > 0 ? o.ratio : usual; };
   if (o.kind == "cube") return cube(triangles(1200));
-  if (o.kind == "body") return cad_body(4, 2, triangles(2400) / 40);
+  if (o.kind == "body") {
+    // two patches a cell, and the six sides
+    const int cells = o.patches > 0 ? std::max(1, (o.patches - 5) / 2) : 8;
+    const int columns = o.patches > 0 ? (int)std::ceil(std::sqrt(cells)) : 4;
+    const int rows = std::max(1, (cells + columns / 2) / columns);
+    return cad_body(columns, rows, triangles(300 * cells) / (5 * columns * rows));
+  }
   Body body;
   Mesh& mesh = body;
-  if (o.kind == "tube") mesh = tube(o.aspect, around(o.aspect, o.closed, triangles(10000)), o.closed);
+  if (o.kind == "tube") {
+    const double aspect = o.aspect > 0 ? o.aspect : 10;
+    mesh = tube(aspect, around(aspect, o.closed, triangles(10000)), o.closed);
+  }
   if (o.kind == "sphere") mesh = sphere(triangles(5000));
   if (o.kind == "torus") mesh = torus(ratio(0.4), triangles(5000));
   if (o.kind == "genus") mesh = genus_surface(o.genus, triangles(10000));
   if (o.kind == "tree") {
     const int outlets = o.outlets == 0 && o.generations == 0 ? 13 : o.outlets;
-    mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed);
+    mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed, o.aspect);
   }
   body.patch.assign(mesh.tris.size(), 0);
   return body;
@@ -51,8 +61,11 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube"}))
         ->type_name("");
     app.add_option("--triangles", o.triangles, "about this many triangles")->check(CLI::Range(1, 100000000));
-    app.add_option("--aspect", o.aspect, "tube: height over diameter (default 10)")
+    app.add_option("--aspect", o.aspect,
+                   "tube: height over diameter (default 10); tree: that of a tube of the same area")
         ->check(CLI::Range(0.01, 1e5));
+    app.add_option("--patches", o.patches, "body: about this many faces, each a patch (default 22)")
+        ->check(CLI::Range(8, 100000));
     app.add_flag("--closed", o.closed, "tube: with flat caps");
     app.add_option("--genus", o.genus, "genus: holes of the plate (default 2)")->check(CLI::Range(0, 10000));
     generations =
@@ -99,6 +112,7 @@ int main(int argc, char** argv) {
                   "tubes, CAD-like body "
                   "or cube.\n\nexamples:\n  mshape tree -o tree.stl\n  mshape tree --outlets 147 --triangles "
                   "90000 -o airways.stl\n"
+                  "  mshape body --patches 850 --triangles 1000000 -o gear.msh\n"
                   "  mshape tube --aspect 100 --noise 0.1 | mclean | mtopo > tube.ply",
                   add_options, body, {.reads = false});
 }

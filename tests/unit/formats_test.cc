@@ -160,7 +160,8 @@ TEST(Formats, BinaryPlyKeepsEveryBit) {
 TEST(Formats, BinaryStlIsSinglePrecision) {
   const Stream stl = read_any(write_as(two_patches(), "a.stl", false), "a.stl");
   ASSERT_EQ(stl.surface.tris.size(), 4u);
-  EXPECT_EQ(stl.surface.points.size(), 12u);
+  EXPECT_EQ(stl.surface.points.size(), 8u);
+  EXPECT_EQ(stl.surface.tris[1], (Tri{0, 2, 3}));
   EXPECT_EQ(stl.surface.points[2].z, 0.1f);
   Stream large = two_patches();
   large.surface.points[1].x = 1e300;

@@ -111,6 +111,7 @@ TEST(Levels, ATubeTakesALevelForAboutFourDiametersAndNothingIsFlipped) {
   FilledDisk disk = fill_holes(tube(40, 24));
   EXPECT_EQ(disk.rim.size(), 24u);
   EXPECT_EQ(disk.tris.size() - disk.part_tris, 24u);
+  EXPECT_EQ(disk.opposite, opposite_halfedges(disk.tris, disk.points.size()));
   std::vector<Level> levels = laplace_levels(disk, 1e-10, 10);
   EXPECT_GE(levels.size(), 7u);
   EXPECT_LE(levels.size(), 12u);

@@ -96,6 +96,14 @@ TEST(shape, tree_has_its_outlets_cut_flat) {
   }
 }
 
+TEST(shape, tree_has_the_aspect_asked_for) {
+  for (double aspect : {17.0, 28.0}) {
+    const Topology t = topology_of(branching_tree(0, 9, 0.8, 8000, 1, aspect));
+    EXPECT_EQ(t.loops, 9);
+    EXPECT_NEAR(t.eta_cyl, aspect, 0.05 * aspect);
+  }
+}
+
 TEST(shape, tree_depends_on_its_seed_only) {
   const Mesh a = branching_tree(2, 0, 0.8, 2000, 1), b = branching_tree(2, 0, 0.8, 2000, 1);
   const Mesh c = branching_tree(2, 0, 0.8, 2000, 2);
