@@ -33,10 +33,8 @@ struct Sorting {
   }
 };
 
-/// The vertex number of a corner "v", "v/vt", "v//vn" or "v/vt/vn", from 0 on.
-int corner(Text& text, std::string_view word, std::size_t n_vertices) {
-  long long v;
-  if (!parse_integer(word.substr(0, word.find('/')), v)) text.fail(quoted(word) + " where a corner is due");
+/// The vertex number of a corner, from 0 on.
+int corner(const Text& text, long long v, std::size_t n_vertices) {
   if (v == 0) text.fail("vertex 0, but vertices are counted from 1");
   if (v < -static_cast<long long>(n_vertices))
     text.fail("a face uses vertex " + std::to_string(v) + ", but there are " + std::to_string(n_vertices) +
@@ -80,12 +78,21 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
       }
     } else if (w == "f") {
       const std::size_t first = polygons.corners.size();
-      while (!(w = text.word()).empty()) {
-        if (w == "\\" && text.line_ends()) {
+      for (;;) {
+        // "v", "v/vt", "v//vn" or "v/vt/vn"
+        int small;
+        long long number;
+        if (text.leading_integer(small)) {
+          number = small;
+        } else if (w = text.word(); w.empty()) {
+          break;
+        } else if (w == "\\" && text.line_ends()) {
           text.need_line("the rest of a face");
           continue;
+        } else if (!parse_integer(w.substr(0, w.find('/')), number)) {
+          text.fail(quoted(w) + " where a corner is due");
         }
-        const int v = corner(text, w, points.size());
+        const int v = corner(text, number, points.size());
         if (v > largest) {
           largest = v;
           largest_line = text.line();

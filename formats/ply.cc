@@ -213,7 +213,7 @@ class PlyReader {
     for (std::size_t r = 0; r < e.rows; ++r) {
       for (Property& p : e.properties) {
         if (p.count) {
-          const int n = whole(value(*p.count, e, r), e, "a list of length", r);
+          const int n = integer(*p.count, e, r, "a list of length");
           if (n < 0) fail("a list of length " + std::to_string(n));
           if (p.role == Role::corners)
             corners(static_cast<std::size_t>(n), *p.type, e, r);
@@ -233,11 +233,11 @@ class PlyReader {
             std::get<std::vector<std::uint8_t>>(p.values)[r] =
                 static_cast<std::uint8_t>(whole(v, e, p.name.c_str(), r, 255) & 255);
         } else {
-          const double v = value(*p.type, e, r);
           if (p.role == Role::patch) {
-            polygons_.patch.push_back(whole(v, e, "patch", r));
+            polygons_.patch.push_back(integer(*p.type, e, r, "patch"));
             continue;
           }
+          const double v = value(*p.type, e, r);
           if (!std::isfinite(v)) fail("vertex " + std::to_string(r) + " holds a number that is not finite");
           Vec3& q = stream_.surface.points[r];
           (p.role == Role::x ? q.x : p.role == Role::y ? q.y : q.z) = v;
@@ -267,7 +267,7 @@ class PlyReader {
       fail("face " + std::to_string(row) + " has " + std::to_string(n) + " corners, the limit is " +
            std::to_string(max_corners));
     for (std::size_t i = 0; i < n; ++i) {
-      const int v = whole(value(type, e, row), e, "vertex", row);
+      const int v = integer(type, e, row, "vertex");
       if (v < 0) fail("face " + std::to_string(row) + " uses vertex " + std::to_string(v));
       note(v, row);
       polygons_.corners.push_back(v);
@@ -281,7 +281,7 @@ class PlyReader {
     int a = -1, b = -1;
     bool turned = false;
     for (std::size_t i = 0; i < n; ++i) {
-      const int v = whole(value(type, e, row), e, "vertex", row);
+      const int v = integer(type, e, row, "vertex");
       if (v < -1) fail("strip " + std::to_string(row) + " uses vertex " + std::to_string(v));
       note(v, row);
       if (a >= 0 && v >= 0) {
@@ -346,6 +346,14 @@ class PlyReader {
     at_ += type.bytes;
     if (swap_) std::reverse(buffer, buffer + type.bytes);
     return type.value(buffer);
+  }
+
+  /// The next value, which must be whole: nearly always it is written as an int.
+  int integer(const Type& type, const Element& e, std::size_t row, const char* what) {
+    int small;
+    if (ascii_ && text_.peek().find('/') == std::string_view::npos && text_.leading_integer(small))
+      return small;
+    return whole(value(type, e, row), e, what, row);
   }
 
   void skip(std::size_t n, const Type& type, const Element& e, std::size_t row) {

@@ -123,6 +123,16 @@ int Text::integer(const char* what) {
   return static_cast<int>(value);
 }
 
+bool Text::leading_integer(int& value) {
+  const char *at = left_.data(), *const end = at + left_.size();
+  while (at < end && is_blank(*at)) ++at;
+  auto [stop, error] = std::from_chars(at, end, value);
+  if (error != std::errc() || (stop < end && !is_blank(*stop) && *stop != '/')) return false;
+  while (stop < end && !is_blank(*stop)) ++stop;
+  left_.remove_prefix(stop - left_.data());
+  return true;
+}
+
 long long Text::wide(const char* what) {
   const std::string_view w = word();
   long long value;

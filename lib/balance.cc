@@ -117,7 +117,8 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
     for (int t = begin; t < end; ++t) reach(tris[t][0], 0, -1);
     int last = -1;  // of the path: the first vertex with a neighbour on the other side
     while (!queue.empty() && last < 0) {
-      const auto [d, v] = queue.top();
+      const double d = queue.top().first;
+      const int v = queue.top().second;
       queue.pop();
       if (d > distance[v]) continue;
       auto visit = [&](int w) {
@@ -188,7 +189,7 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
           square = d;
           nearest[k] = (int)s;
         }
-      distance[k] = 0.5 * std::log(std::max(square, 1e-300));
+      distance[k] = 0.5 * std::log(std::clamp(square, 1e-300, 1e300));  // at no stop if it has no place
       const int v = level.vertex[k], ring = (int)std::floor(distance[k] / width);
       if (v >= n) continue;
       first[nearest[k]] = std::min(first[nearest[k]], ring);
@@ -211,6 +212,9 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
       branches.between[v] = at - ring;
     }
   }
+  for (int& ring : branches.ring)  // what no level has is a branch of its own
+    if (ring < 0) ring = branches.rings;
+  branches.rings += 2;
   std::vector<double> length(n, 0), sum(n);
   std::vector<int> count(n, 0);
   for (int h = 0; h < 3 * disk.part_tris; ++h) {

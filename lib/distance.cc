@@ -408,7 +408,8 @@ double curve_distance(const Mesh& a, const Mesh& b) {
   if (a.tris.empty() && b.tris.empty()) return 0;
   if (a.tris.empty() || b.tris.empty()) return infinity;
   double worst = 0;
-  for (auto [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+  for (bool swapped : {false, true}) {
+    const Mesh *from = swapped ? &b : &a, *to = swapped ? &a : &b;
     const Bvh from_tree(*from), tree(*to);
     const int n = (int)from->tris.size();
 #pragma omp parallel for schedule(dynamic) reduction(max : worst) if (n > chunk)

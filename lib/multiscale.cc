@@ -14,6 +14,7 @@
 #include "lib/cut.h"
 #include "lib/cut_line.h"
 #include "lib/error.h"
+#include "lib/forecast.h"
 #include "lib/levels.h"
 #include "lib/maxcut.h"
 #include "lib/regions.h"
@@ -328,6 +329,26 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
   return n;
 }
 
+/// The parts whose aspect ratio is admissible but whose conformal map would be more uneven than that of a
+/// tube of the largest aspect ratio, exp(4 eta): limbs that the longest loop makes look short by passing
+/// them.
+std::vector<char> uneven_parts(const Surface& surface, const std::vector<int>& label,
+                               const std::vector<Topology>& is, double max_aspect) {
+  const int n = is.size();
+  std::vector<char> uneven(n, 0);
+  auto short_one = [&](const Topology& t) { return t.eta_geo <= max_aspect; };
+  if (std::none_of(is.begin(), is.end(), short_one)) return uneven;
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
+  const Regions regions = find_regions(surface, opposite, label, n);
+  const Forecaster forecaster(surface, opposite);
+  constexpr double margin = 10;
+  for (int p = 0; p < n; p++)
+    if (short_one(is[p]) && regions.region[p].maps_to_the_plane())
+      uneven[p] =
+          forecaster.of(label, p, p, regions.border[p]).unevenness > margin * std::exp(4 * max_aspect);
+  return uneven;
+}
+
 std::string name(int part) { return "part " + std::to_string(part); }
 
 }  // namespace
@@ -342,12 +363,14 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   };
   std::vector<Task> tasks;
   std::vector<Topology> is = topology_of_parts(surface, given, n_parts);
+  std::vector<char> uneven(n_parts, 0);
+  if (options.method == CutMethod::multiscale) uneven = uneven_parts(surface, given, is, options.max_aspect);
   for (int p = n_parts - 1; p >= 0; p--) {
     if (is[p].components != 1 || is[p].genus != 0 || is[p].loops < 1)
       throw NotAdmissible(name(p) + " has " + std::to_string(is[p].components) + " components, genus " +
                           std::to_string(is[p].genus) + " and " + std::to_string(is[p].loops) +
                           " boundary loops where 1, 0 and at least 1 are needed; run mpartition first");
-    if (is[p].eta_geo > options.max_aspect) tasks.push_back({p, 0});
+    if (is[p].eta_geo > options.max_aspect || uneven[p]) tasks.push_back({p, 0});
   }
   while (!tasks.empty()) {
     const Task task = tasks.back();
@@ -394,8 +417,12 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       throw GoalMissed(message);
     };
     Halves made;
-    if (!expected.valid || !(made = split(surface, field, active, expected.loops)).loops)
-      fail("cannot be cut into 2 connected halves");
+    const bool must = is[task.part].eta_geo > options.max_aspect;
+    if (!expected.valid || !(made = split(surface, field, active, expected.loops)).loops) {
+      if (must) fail("cannot be cut into 2 connected halves");
+      if (cuts) cuts->pop_back();
+      continue;
+    }
     for (const Topology& half : made.is)
       if (options.method == CutMethod::maxcut && half.eta_geo > options.max_aspect)
         fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +
@@ -408,7 +435,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     is.resize(n_parts + 1);
     for (int s : {0, 1}) {
       const int half = s ? n_parts : task.part;
-      was_cut[half] = 1;
+      was_cut[half] = must;  // else the union is admissible, but for what it was cut
       is[half] = made.is[s];
       if (is[half].eta_geo > options.max_aspect) tasks.push_back({half, task.depth + 1});
     }

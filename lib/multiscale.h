@@ -42,7 +42,8 @@ struct MultiscaleCut {
   CutMaps maps = {};    ///< with keep_maps
 };
 
-/// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, and
+/// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, or whose
+/// conformal map would be more uneven than that of a tube of this ratio (lib/forecast.h), and
 /// renumbers parts 0..n-1: halves keep the place of their part in the order. Each result is edge-connected,
 /// vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1. Triangles are split along the cut
 /// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves are joined

@@ -28,6 +28,11 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
   return few;
 }
 
+/// sigma1/sigma2 (p99) of maps that cost the mesher more than some steps of optimisation cost here, and the
+/// triangles of a part up to which that is so; larger parts are cut, which costs less than either.
+constexpr double poor = 4;
+constexpr std::size_t small = 4000;
+
 /// The element at the fraction q of the order.
 double quantile(std::vector<double>& values, double q) {
   auto at = values.begin() + (std::ptrdiff_t)(q * (double)(values.size() - 1));
@@ -126,9 +131,9 @@ class Search {
                        std::to_string(part_.tris.size()) + " triangles of the convex map inverted or flat");
     measure_distortion(part_, uv, report_);
     // what is valid and poor costs the mesher more than a few steps here
-    constexpr double poor = 4;
     constexpr int steps_if_poor = 20;
-    bool mend = !options_.strict && (report_.used != options_.map || options_.map == MapKind::conformal) &&
+    bool mend = part_.tris.size() <= small && !options_.strict &&
+                (report_.used != options_.map || options_.map == MapKind::conformal) &&
                 report_.anisotropy_p99 > poor;
     if (int steps = std::max(options_.optimize, mend ? steps_if_poor : 0); steps > 0) lower(uv, steps);
     return uv;
@@ -189,9 +194,11 @@ class Search {
     return boundary_first_->map(polygon);
   }
 
-  /// Repairs a map whose borders are simple; true if it is then one-to-one.
+  /// Repairs a map whose outer border is simple; true if it is then one-to-one.
   bool repaired(std::vector<Vec2>& uv) {
-    if (!border_is_simple(part_.tris, disk_.opposite, uv)) return false;
+    std::vector<Vec2> polygon;
+    for (int h : disk_.loops[0]) polygon.push_back(uv[origin(part_.tris, h)]);
+    if (!polygon_is_simple(polygon)) return false;
     constexpr int sweeps = 10;
     auto stars = [&](std::vector<Vec2>& at) {
       return repair_stars(part_.tris, disk_.opposite, sweeps, at) == 0 && valid_map(at);
@@ -347,7 +354,9 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       if (!options.strict && round < most_rounds) {
         if (!missed && uneven > too_uneven && round < limb_rounds)
           n_parts = cut_along_limbs(surface, p, n_parts);
-        if (n_parts == n && uneven > unresolved) {
+        bool stretched = !missed && round < limb_rounds && reports[p].used != options.map &&
+                         charts[p].mesh.tris.size() > small && reports[p].anisotropy_p99 > poor;
+        if (n_parts == n && (uneven > unresolved || stretched)) {
           // places that should be apart, and halves of the part; the latter first if the former has not
           // helped
           std::vector<std::array<int, 2>> choice[2] = {reports[p].apart, {}};

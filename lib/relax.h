@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 struct RelaxOptions {
-  int sweeps = 6;
+  int sweeps = 4;
   double target_triangles = 0;  ///< 0: what the size field asks for
   bool keep_border = false;     ///< no new vertex on the border
 };

@@ -303,7 +303,12 @@ bool Relaxer::unravel(int h, int depth, int gained) {
       found = edges[k] != flipped && edges[k] != m_.opp[flipped] && unravel(edges[k], depth - 1, gained);
   }
   if (!found) {
-    m_.flip(flipped);
+    // flips that were undone have left the edges in place but not their numbers
+    int back = -1;
+    m_.star(four[2], [&](int e) {
+      if (m_.to(e) == four[3]) back = e;
+    });
+    m_.flip(back);
     return false;
   }
   for (int v : four) edited(v);

@@ -2,6 +2,7 @@
 // The few places that need more than sweeps: tips that the mesh cuts off, the worst triangles, intersections.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lib/bvh.h"
 #include "lib/intersect.h"
@@ -104,9 +105,12 @@ double Relaxer::quality(int t) const {
   return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
 }
 
-/// What is to be made small: counts the worst most, and nothing that is good with a margin.
+/// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside
+/// vertices whose valence is not 5, 6 or 7.
 double Relaxer::badness() const {
+  constexpr double irregular = 1e-3;
   double sum = 0;
+  for (int v = 0; v < (int)m_.out.size(); ++v) sum += irregular * irregularity(v);
   for (int t = 0; t < (int)m_.tris.size(); ++t) {
     if (m_.dead(t)) continue;
     const double lack = std::max(0.0, 1.05 - quality(t));
@@ -253,27 +257,26 @@ std::vector<Relaxer::Edit> Relaxer::edits_round(int t, bool wide) const {
   return edits;
 }
 
-/// Tries the edits round t, each on a copy of the neighbourhood and settled there, and adopts the best if it
-/// is better than what is. `thorough`: also pairs of edits, the second where the best of the first leave
-/// their worst.
-bool Relaxer::mend(int t, bool thorough) {
-  const std::vector<int> triangles = triangles_round(t, thorough ? 3 : 2), vertices = vertices_of(triangles);
+/// Tries the edits round the first of these triangles, each on a copy of the neighbourhood and settled there,
+/// and gives the best if it is better than what is. `thorough`: also pairs of edits, the second where the
+/// best of the first leave their worst.
+std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool thorough) const {
   struct Trial {
     double badness;
     Relaxer state;
   };
   auto try_all = [](const Relaxer& from, const std::vector<Edit>& edits) {
-    std::vector<Trial> trials(edits.size(), {0, from});
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < (int)edits.size(); ++i) {
-      trials[i].state.try_edit(edits[i]);
-      trials[i].badness = trials[i].state.badness();
+    std::vector<Trial> trials;
+    for (const Edit& e : edits) {
+      trials.push_back({0, from});
+      trials.back().state.try_edit(e);
+      trials.back().badness = trials.back().state.badness();
     }
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Trial& a, const Trial& b) { return a.badness < b.badness; });
     return trials;
   };
-  const Relaxer before = patch(triangles, vertices);
+  const Relaxer before = patch(triangles, vertices_of(triangles));
   const double good_enough = 0.9 * before.badness();
   std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
   Trial best = trials.front();
@@ -282,9 +285,40 @@ bool Relaxer::mend(int t, bool thorough) {
     const Trial second = try_all(from, from.edits_round(from.worst(), false)).front();
     if (second.badness < best.badness) best = second;
   }
-  if (best.badness > good_enough) return false;
-  adopt(best.state, triangles, vertices);
-  return true;
+  if (best.badness > good_enough) return {};
+  return std::move(best.state);
+}
+
+/// Mends at each of these triangles, as long as it is wanted; returns how many changes that took.
+/// Neighbourhoods that do not overlap are looked at together, in parallel; the rest wait for the next batch.
+template <class Wanted>
+int Relaxer::mend_each(std::vector<int> triangles, bool thorough, Wanted wanted) {
+  struct Place {
+    std::vector<int> round;
+    std::optional<Relaxer> mended;
+  };
+  int changes = 0;
+  while (!triangles.empty()) {
+    std::vector<Place> batch;
+    std::vector<int> rest;
+    std::vector<char> taken(m_.tris.size());
+    for (int t : triangles) {
+      if (m_.dead(t) || !wanted(t)) continue;
+      std::vector<int> round = triangles_round(t, thorough ? 3 : 2);
+      if (std::any_of(round.begin(), round.end(), [&](int s) { return taken[s]; })) {
+        rest.push_back(t);
+        continue;
+      }
+      for (int s : round) taken[s] = 1;
+      batch.push_back({std::move(round), {}});
+    }
+#pragma omp parallel for schedule(dynamic) if (batch.size() > 1)
+    for (int i = 0; i < (int)batch.size(); ++i) batch[i].mended = mended(batch[i].round, thorough);
+    for (Place& p : batch)
+      if (p.mended) adopt(*p.mended, p.round, vertices_of(p.round)), ++changes;
+    triangles.swap(rest);
+  }
+  return changes;
 }
 
 int Relaxer::worst() const {
@@ -294,7 +328,14 @@ int Relaxer::worst() const {
   return least.second;
 }
 
-/// Mends the triangles that are not good enough, the worst first.
+/// By how much the valence of an inside vertex is off 5, 6 or 7.
+int Relaxer::irregularity(int v) const {
+  const bool inside = m_.out[v] >= 0 && (held_[v] == loose || held_[v] == anchored);
+  return inside ? std::max(0, std::abs(excess(v)) - 1) : 0;
+}
+
+/// Mends the triangles that are not good enough, the worst first, then vertices of a valence that is none of
+/// 5, 6, 7.
 void Relaxer::mend_worst() {
   for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
@@ -302,10 +343,16 @@ void Relaxer::mend_worst() {
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
-    int mended = 0;
-    for (auto [q, t] : bad)
-      if (!m_.dead(t) && quality(t) < 1) mended += mend(t, round > 0);
-    if (bad.empty() || (round > 0 && mended == 0)) return;
+    std::vector<int> triangles, irregular;
+    for (auto [q, t] : bad) triangles.push_back(t);
+    int changes = mend_each(triangles, round > 0, [this](int t) { return quality(t) < 1; });
+    for (int v = 0; v < (int)m_.out.size(); ++v)
+      if (irregularity(v)) irregular.push_back(m_.out[v] / 3);
+    changes += mend_each(irregular, false, [&](int t) {
+      const Tri& v = m_.tris[t];
+      return irregularity(v[0]) + irregularity(v[1]) + irregularity(v[2]) > 0;
+    });
+    if ((triangles.empty() && irregular.empty()) || (round > 0 && changes == 0)) return;
   }
 }
 

@@ -4,6 +4,7 @@
 // it.
 #pragma once
 #include <initializer_list>
+#include <optional>
 
 #include "lib/edit_mesh.h"
 #include "lib/relax.h"
@@ -137,6 +138,7 @@ class Relaxer {
   void reach_tips();
   bool reach(const Place& tip, int t, double far_enough);
   double quality(int t) const;
+  int irregularity(int v) const;
   double badness() const;
   std::vector<int> triangles_round(int t, int rings) const;
   std::vector<int> vertices_of(const std::vector<int>& triangles) const;
@@ -147,7 +149,9 @@ class Relaxer {
   void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
   int worst() const;
   std::vector<Edit> edits_round(int t, bool wide) const;
-  bool mend(int t, bool thorough);
+  std::optional<Relaxer> mended(const std::vector<int>& triangles, bool thorough) const;
+  template <class Wanted>
+  int mend_each(std::vector<int> triangles, bool thorough, Wanted wanted);
   void mend_worst();
   void separate();
 

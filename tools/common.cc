@@ -200,9 +200,10 @@ struct Help : CLI::Formatter {
     if (type == "TEXT" && check.starts_with('{') && check.ends_with('}')) {
       std::string words = check.substr(1, check.size() - 2);
       std::replace(words.begin(), words.end(), ',', '|');
-      return ' ' + words;
+      return words.insert(0, " ");
     }
-    return type == "INT" || type == "UINT" ? " N" : type == "FLOAT" ? " X" : ' ' + type;
+    std::string shown = " ";
+    return shown += type == "INT" || type == "UINT" ? "N" : type == "FLOAT" ? "X" : type;
   }
 };
 
@@ -282,7 +283,11 @@ void Io::write(Stream& stream) {
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
-  if (output != "-") return write_beside(output, produce);
+  if (output != "-") {
+    write_beside(output, produce);
+    finished_ = output;
+    return;
+  }
   written_ = true;
   produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
 }
@@ -363,7 +368,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   app.add_flag("-v,--verbose", io.verbose, "say more");
   app.add_option("--json", io.json, "write the report to this file")->type_name("FILE");
   app.set_version_flag("--version", std::string(program) + " " MESHPIPE_VERSION " (mply 1.0)");
-  app.get_option("--version")->group(common_group);
+  app.get_option("--version")->description("the version, and that of the stream")->group(common_group);
   app.set_help_flag("-h,--help", "this text");
   app.get_option("--help")->group(common_group);
 

@@ -10,10 +10,8 @@ using namespace meshpipe;
 
 namespace {
 
-struct Options {
-  std::string weld, keep = "all", sheets = "split", culprits;
-  int fill_holes = 0;
-  bool drop_nonorientable = false;
+struct Options : CleanOptions {
+  std::string within, keep = "all", sheets = "split", culprits;
 };
 
 /// A length, or a part of the bounding box's diagonal in percent.
@@ -95,11 +93,12 @@ int main(int argc, char** argv) {
   Options o;
   return run_tool(
       argc, argv, "mclean",
-      "Make a triangle soup an oriented manifold, and tell every repair."
-      "\n\nExamples:\n  mclean scan.stl -o clean.ply\n  mclean --weld 0.001% --keep-components 1 scan.stl | "
-      "mtopo > /dev/null\n  mclean --drop-nonorientable --culprits bad.ply scan.stl -o clean.ply",
+      "Make a triangle soup an oriented manifold, and tell every repair.\n\n"
+      "examples:\n  mclean tree.stl -o clean.ply\n"
+      "  mclean --weld 0.0001% --keep-components 1 tree.stl | mtopo > topo.ply\n"
+      "  mclean --drop-nonorientable --culprits bad.ply tree.stl -o clean.ply",
       [&](CLI::App& app) {
-        app.add_option("--weld", o.weld,
+        app.add_option("--weld", o.within,
                        "merge vertices this close, after the equal ones: a length, or with % a part of the "
                        "bounding box's diagonal")
             ->type_name("TOL");
@@ -118,20 +117,18 @@ int main(int argc, char** argv) {
             ->group("Reports");
       },
       [&](Io& io) {
-        CleanOptions options{.drop_nonorientable = o.drop_nonorientable,
-                             .keep_components = count_or_all(o.keep),
-                             .fill_holes = o.fill_holes,
-                             .keep_sheets = o.sheets == "keep"};
+        o.keep_components = count_or_all(o.keep);
+        o.keep_sheets = o.sheets == "keep";
         if (!o.culprits.empty()) Io::expect_writable(o.culprits, true);
         Stream stream = io.read();
-        if (!o.weld.empty()) options.weld = tolerance(o.weld, stream.surface);
+        if (!o.within.empty()) o.weld = tolerance(o.within, stream.surface);
         Mesh input;
         if (!o.culprits.empty()) input = stream.surface;
         // lines of a foreign file, by their place: vertices are about to be renumbered
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
         CleanReport report;
         try {
-          clean(stream.surface, options, report);
+          clean(stream.surface, o, report);
         } catch (const NotAdmissible&) {
           write_culprits(io, o.culprits, report, input);
           throw;
@@ -149,7 +146,7 @@ int main(int argc, char** argv) {
             stream.surface.vertex.erase(column);
         }
         stream.input_triangles = (int)stream.surface.tris.size();
-        tell(io, report, options, stream.surface);
+        tell(io, report, o, stream.surface);
         io.write(stream);
       });
 }

@@ -56,9 +56,8 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mfeature",
       "Mark model edges: patch borders and creases."
-      "\n\nExamples:\n  mclean part.stl | mfeature --triangles 20000 -o part.ply\n  mfeature --feature-angle "
-      "40,20 scan.ply -o "
-      "scan-features.ply",
+      "\n\nexamples:\n  mclean tree.stl | mfeature --triangles 20000 -o tree.ply\n"
+      "  mclean tree.stl | mfeature --feature-angle 40,20 -o creases.ply",
       [&](CLI::App& app) {
         app.add_option("--feature-angle", angles,
                        "auto: creases that look designed; A,B: edges above A degrees, and above B where they "

@@ -88,7 +88,10 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mmesh2d",
       "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
-      "example:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d --mesher delaunay --svg pictures "
-      "stages/08-lines.ply -o plane.ply",
+      "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o "
+      "plane.ply\n"
+      "  mclean -q tree.stl | mpartition -q | mmultiscale -q | mparam -q | msize -q --size 0.1 | mlines -q | "
+      "mmesh2d "
+      "--mesher delaunay --svg pictures -o plane.ply",
       options, body);
 }

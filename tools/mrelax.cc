@@ -2,29 +2,83 @@
 // mrelax: optimise a lifted mesh on its reference surface, across interfaces that are not model edges.
 #include "formats/lift_tables.h"
 #include "formats/line_tables.h"
+#include "lib/clean.h"
+#include "lib/intersect.h"
+#include "lib/place.h"
 #include "lib/relax.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
 
+namespace {
+
+struct Options {
+  RelaxOptions relax;
+  std::string reference;
+  bool accept = false;
+};
+
+/// The reference from a file, with what mlines would know of it.
+Surface reference_from(const Stream& file, std::size_t triangles) {
+  Surface s = file.surface;
+  clean(s);
+  if (s.tris.empty() || triangles == 0) throw NotAdmissible("the mesh or its reference has no triangles");
+  if (!s.vertex.has("size"))
+    s.vertex.set("size", std::vector<double>(s.points.size(), std::sqrt(4 / std::sqrt(3.0) * total_area(s) /
+                                                                        (double)triangles)));
+  if (!s.face.has("part")) s.face.set("part", std::vector<int>(s.tris.size()));
+  return s;
+}
+
+/// Pairs of the result that intersect, where the reference itself has fewer: the goal is missed.
+std::string left_over(const RelaxReport& r, const LiftedMesh& mesh, const Surface& reference) {
+  if (r.intersections.empty()) return "";
+  const std::size_t before = self_intersections(reference).size();
+  if (r.intersections.size() <= before) return "";
+  const auto [s, t] = r.intersections.front();
+  const Vec3 p = mesh.points[mesh.tris[s][0]];
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%zu pairs of triangles still intersect (the reference has %zu), the first: %d and %d at "
+                "(%.6g %.6g %.6g)",
+                r.intersections.size(), before, s, t, p.x, p.y, p.z);
+  return text;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  RelaxOptions options;
+  Options o;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--sweeps", options.sweeps, "rounds of flips, moves and count keeping (default 6)")
+    app.add_option("--sweeps", o.relax.sweeps, "rounds of flips, moves and count keeping (default 4)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
+    app.add_option("--reference", o.reference, "relax any mesh on this surface")->type_name("FILE");
+    app.add_flag("--accept", o.accept, "write the mesh even when triangles still intersect");
   };
   auto body = [&](Io& io) {
     Stream stream = io.read();
-    LiftedMesh mesh = read_lifted(stream);
-    const Surface reference = read_reference(stream);
-    const Lines lines = read_lines(stream);
+    LiftedMesh mesh;
+    Surface reference;
     std::vector<int> kinds;
-    for (const Line& l : lines.lines) {
-      kinds.push_back(l.kind);
-      options.keep_border = options.keep_border || l.kept;
+    std::vector<char> corners;
+    if (o.reference.empty()) {
+      mesh = read_lifted(stream);
+      reference = read_reference(stream);
+      const Lines lines = read_lines(stream);
+      for (const Line& l : lines.lines) {
+        kinds.push_back(l.kind);
+        o.relax.keep_border = o.relax.keep_border || l.kept;
+      }
+      corners = line_corners(reference, lines);
+    } else {
+      clean(stream.surface);
+      reference = reference_from(io.read(o.reference), stream.surface.tris.size());
+      mesh = place_on(stream.surface, reference);
+      corners = model_corners(reference);
+      write_reference(stream, reference);
     }
-    const RelaxReport r = relax(mesh, reference, kinds, line_corners(reference, lines), options);
+    const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
     write_lifted(stream, mesh);
     char text[200];
     std::snprintf(text, sizeof text,
@@ -37,14 +91,20 @@ int main(int argc, char** argv) {
     io.report["splits"] = r.splits;
     io.report["collapses"] = r.collapses;
     io.report["flips"] = r.flips;
-    io.report["intersections"] = r.intersections.size();
+    io.report["moves"] = r.moves;
+    io.report["intersections"] = r.intersections;
+    const std::string missed = left_over(r, mesh, reference);
+    if (!missed.empty() && !o.accept) throw GoalMissed(missed);
+    if (!missed.empty()) io.say("accepted: " + missed);
     io.write(stream);
   };
   return run_tool(
       argc, argv, "mrelax",
-      "Optimise a lifted mesh on the surface it came from: flip, collapse, split and move vertices over that "
-      "surface, across every interface that is not a model edge.\n\n"
-      "example:\n  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply "
-      "-o relaxed.ply",
+      "Optimise a lifted mesh on the surface it came from: flip, collapse, split and move vertices over "
+      "that surface, across every interface that is not a model edge.\n\n"
+      "examples:\n"
+      "  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o "
+      "relaxed.ply\n"
+      "  mrelax --reference tree.stl tree-mesh.stl -o better.ply",
       add_options, body);
 }

@@ -78,10 +78,9 @@ int main(int argc, char** argv) {
   std::string required, tsv_file;
   return run_tool(
       argc, argv, "mtopo",
-      "Tell the topology and the aspect ratios of every component, and of every part."
-      "\n\nExamples:\n  mclean scan.stl | mtopo -o scan.ply\n  mtopo --require closed --tsv scan.tsv "
-      "scan.ply > "
-      "/dev/null",
+      "Tell the topology and the aspect ratios of every component, and of every part.\n\n"
+      "examples:\n  mclean tree.stl | mtopo -o topo.ply\n"
+      "  mclean -q --fill-holes 200 tree.stl | mtopo --require closed --tsv topo.tsv > closed.ply",
       [&](CLI::App& app) {
         app.add_option("--require", required,
                        "fail with 4 unless the surface is a manifold, all parts are closed, or disks (genus "

@@ -39,7 +39,7 @@ def gmsh(stl, work, timeout):
     geo = os.path.join(work, "surface.geo")
     with open(geo, "w") as f:
         f.write(GEO.format(stl))
-    done = common.run(["gmsh", geo, "-0", "-nopopup", "-nt", "1", "-o", os.path.join(work, "unrolled.geo")], timeout)
+    done = common.run(["gmsh", geo, "-0", "-nopopup", "-nt", "1", "-o", os.path.join(work, "surface.geo_unrolled")], timeout)
     patches = re.search(r"Found (\d+) model surfaces", done.text)
     split = re.search(r"Done classifying surfaces \(Wall [^,]*, CPU ([\d.e+-]+)s", done.text)
     create = re.search(r"Done creating geometry of discrete surfaces \(Wall [^,]*, CPU ([\d.e+-]+)s", done.text)
@@ -106,7 +106,7 @@ def main(words):
                      f"{row['seconds']:.2f}"]
             if beside:
                 stl = os.path.join(work, "surface.stl")
-                made = common.run(f"mconvert -q --strip {os.path.join(work, 'clean.ply')} -o {stl}", args.timeout)
+                made = common.run(f"mconvert -q {os.path.join(work, 'clean.ply')} -o {stl}", args.timeout)
                 figures = None if made.status else gmsh(stl, work, args.timeout)
                 if figures:
                     row["gmsh"] = dict(zip(("patches", "split", "create"), figures))

@@ -5,6 +5,7 @@
 
 #include "formats/formats.h"
 #include "formats/inria.h"
+#include "formats/size_field.h"
 #include "lib/error.h"
 
 using namespace meshpipe;
@@ -16,6 +17,13 @@ using namespace meshpipe;
   stream.surface.vertex.rows = 4;
   read_sol(stream, bytes, where);
   return stream;
+}
+
+/// A table of sizes is no mesh.
+[[maybe_unused]] static Stream read_size_file(std::string_view bytes, const std::string& where) {
+  for (double h : read_size_table(bytes, where).size)
+    if (!(h > 0)) __builtin_trap();
+  return {};
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -125,6 +125,31 @@ TEST(Clean, SplitsThreeSheetsOnOneEdge) {
   expect_manifold(s);
 }
 
+TEST(Clean, KeepsSheetsJoinedOnRequest) {
+  // the same three sheets on the edge 0-1: two of them of one patch
+  Surface s =
+      surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  s.face.set<int>("patch", {7, 8, 7});
+  const std::vector<Tri> before = s.tris;
+  CleanReport r = clean(s, {.keep_sheets = true});
+  EXPECT_EQ(r.nonmanifold_edges, 1);
+  EXPECT_EQ(r.copies, 0);
+  EXPECT_EQ(r.components, 3);
+  EXPECT_FALSE(r.nothing);
+  EXPECT_EQ(s.tris, before);
+  EXPECT_EQ(s.points.size(), 5u);
+  EXPECT_EQ(s.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{1, 1, 1}));
+  EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(r.sheet_patches, (std::vector<std::array<int, 2>>{{9, 7}}));
+  EXPECT_THROW(opposite_halfedges(s.tris, 5), NotAdmissible);
+  Mesh apart = sheets_apart(s);
+  EXPECT_EQ(apart.points.size(), 9u);
+  EXPECT_EQ(topology_of(apart).components, 3);
+  // kept once, it is clean
+  EXPECT_TRUE(clean(s, {.keep_sheets = true}).nothing);
+  EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
+}
+
 TEST(Clean, TwoTetrahedraOnOneEdgeStayClosed) {
   std::vector<Vec3> p = tetra_points;
   p.push_back({0, -1, 0});
@@ -324,6 +349,10 @@ TEST(Clean, AnySoupBecomesAnOrientedManifoldAndStaysIt) {
     }
     ++admitted;
     expect_manifold(s);
+    Surface kept = surface(p, tris);
+    options.keep_sheets = true;
+    clean(kept, options);
+    EXPECT_TRUE(clean(kept, {.keep_sheets = true}).nothing) << "seed " << seed;
     const std::vector<Tri> before = s.tris;
     EXPECT_TRUE(clean(s).nothing) << "seed " << seed;
     EXPECT_EQ(s.tris, before);

@@ -151,4 +151,36 @@ TEST(EditMesh, ATetrahedronCannotCollapse) {
     for (int gone : {m.from(h), m.to(h)}) EXPECT_FALSE(m.can_collapse(h, gone));
 }
 
+//   c          c
+//  / \        /|\.      the border edge a-b is split; both halves are border
+// a---b  ->  a-m-b
+TEST(EditMesh, SplitsABorderEdge) {
+  EditMesh m({{0, 1, 2}}, 3, {});
+  const int v = m.split(0);
+  EXPECT_EQ(v, 3);
+  EXPECT_EQ(m.live, 2);
+  EXPECT_EQ(m.tris[0], (Tri{0, 3, 2}));
+  EXPECT_EQ(m.tris[1], (Tri{3, 1, 2}));
+  EXPECT_TRUE(m.on_border(3));
+  EXPECT_EQ(m.valence(3), 3);
+  EXPECT_EQ(m.valence(2), 3);
+  EXPECT_EQ(m.opp[1], 5);
+  EXPECT_EQ(m.hard[0] + m.hard[3] + m.hard[4] + m.hard[2], 4);
+  EXPECT_EQ(m.hard[1] + m.hard[5], 0);
+}
+
+//    c
+//   / \.
+//  a===b     a model edge: both halves stay one, the spokes are none
+//   \ /
+//    d
+TEST(EditMesh, HalvesOfAModelEdgeAreModelEdges) {
+  EditMesh m({{0, 1, 2}, {1, 0, 3}}, 4, {1, 1});
+  const int v = m.split(0);
+  int model = 0, spokes = 0;
+  m.star(v, [&](int h) { (m.hard[h] ? model : spokes) += 1; });
+  EXPECT_EQ(model, 2);
+  EXPECT_EQ(spokes, 2);
+}
+
 }  // namespace

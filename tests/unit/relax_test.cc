@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lib/feature.h"
+#include "lib/place.h"
 #include "lib/shape.h"
 #include "lib/topology.h"
 
@@ -118,6 +119,96 @@ TEST(Relax, ModelEdgesOfACubeStay) {
   EXPECT_EQ(corners, 8);
   // no triangle leaves its face of the cube: the area is exact
   EXPECT_NEAR(total_area(m), total_area(s), 1e-9);
+}
+
+TEST(Relax, DislocationsGo) {
+  const Surface s = sized(torus(0.4, 20000), 8000);
+  LiftedMesh m = lifted_of(s);
+  relax(m, s, {});
+  std::vector<int> valence(m.points.size());
+  for (const Tri& t : m.tris)
+    for (int v : t) ++valence[v];  // closed: as many triangles as edges
+  const auto regular = std::count(valence.begin(), valence.end(), 6);
+  EXPECT_GT((double)regular, 0.85 * (double)valence.size());
+  for (int v : valence) EXPECT_TRUE(v >= 5 && v <= 7) << v;
+}
+
+//        tip           A pyramid steeper than the size: smoothing alone would round its tip off.
+//        /|\.
+//       / | \.
+//   ___/__|__\___
+TEST(Relax, TipsAreReached) {
+  Mesh plate;
+  const int n = 40;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const double x = i - n / 2, y = j - n / 2, r = std::max(std::abs(x), std::abs(y));
+      plate.points.push_back({x, y, std::max(0.0, 6 - r)});
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      plate.tris.push_back({a, b, d}), plate.tris.push_back({a, d, c});
+    }
+  const Surface s = sized(plate, 700);
+  LiftedMesh m = lifted_of(s);
+  relax(m, s, {});
+  double nearest = 1e300;
+  for (Vec3 p : m.points) nearest = std::min(nearest, norm(p - Vec3{0, 0, 6}));
+  EXPECT_LT(nearest, 1e-9);
+  expect_on_surface(m, s);
+}
+
+TEST(Relax, NoTriangleIsLeftBadOnASmoothSurface) {
+  Surface s = sized(sphere(6000), 3000);
+  add_slivers(s, 0.25, 3);
+  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  LiftedMesh m = lifted_of(s);
+  const RelaxReport r = relax(m, s, {});
+  EXPECT_GE(r.kappa_min, 0.75);
+  EXPECT_GT(r.kappa_mean, 0.985);
+}
+
+TEST(Relax, CornersOfABorderStayAndItsOtherVerticesSlide) {
+  Mesh square;
+  const int n = 20;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) square.points.push_back({(double)i, (double)j, 0});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      square.tris.push_back({a, b, d}), square.tris.push_back({a, d, c});
+    }
+  const Surface s = sized(square, 500);
+  std::vector<char> corner(s.points.size());
+  for (int v : {0, n, n * (n + 1), (n + 1) * (n + 1) - 1}) corner[v] = 1;
+  LiftedMesh m = lifted_of(s);
+  relax(m, s, {}, corner);
+  EXPECT_NEAR(total_area(m), n * n, 1e-9);
+  EXPECT_NEAR((double)m.tris.size(), 500, 15);
+}
+
+TEST(PlaceOn, BordersGoToBordersAndTheRestToTheSurface) {
+  Mesh coarse = tube(4, 10, false), fine = tube(4, 24, false);
+  ASSERT_FALSE(coarse.tris.empty());
+  for (Vec3& p : coarse.points) p = 1.01 * p;
+  Surface mesh, reference;
+  static_cast<Mesh&>(mesh) = coarse;
+  static_cast<Mesh&>(reference) = fine;
+  mesh.face.rows = mesh.tris.size(), reference.face.rows = reference.tris.size();
+  mesh.vertex.rows = mesh.points.size(), reference.vertex.rows = reference.points.size();
+  LiftedMesh m = place_on(mesh, reference);
+  expect_on_surface(m, reference);
+  const auto opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const auto ref_opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    if (opposite[h] >= 0) continue;
+    const Place& p = m.place[origin(mesh.tris, h)];
+    const double b[3] = {p.b0, p.b1, p.b2};
+    bool on_border = false;
+    for (int i = 0; i < 3; ++i) on_border |= ref_opposite[3 * p.face + i] < 0 && b[(i + 2) % 3] == 0;
+    EXPECT_TRUE(on_border) << origin(mesh.tris, h);
+  }
 }
 
 }  // namespace
