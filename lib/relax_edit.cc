@@ -219,7 +219,7 @@ bool Relaxer::may_flip(int h) const {
   if (dot(m0, n0 + n1) <= 0 || dot(m1, n0 + n1) <= 0 || dot(m0, m1) < std::min(dot(n0, n1), 0.9) - 1e-12)
     return false;
   return !folds(std::min(agrees(a, b, c), agrees(b, a, d)), std::min(agrees(a, d, c), agrees(b, c, d))) &&
-         !m_.joined(c, d);
+         !(held_[c] == frozen ? m_.joined(d, c) : m_.joined(c, d));  // the rim may meet itself in a vertex
 }
 
 double Relaxer::worst_now(int h) const {

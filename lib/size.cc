@@ -15,7 +15,6 @@ namespace meshpipe {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double most_triangles = 715827882;  ///< half-edges are numbered by int
 
 std::string number(double x) {
   char text[32];
@@ -225,6 +224,17 @@ double count_for_size(const Mesh& mesh, const std::vector<double>& size) {
   return 2 / std::sqrt(3.0) * n;
 }
 
+void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit) {
+  const double smallest = *std::min_element(size.begin(), size.end());
+  if (!(smallest > 0)) return;
+  const double triangles = count_for_size(mesh, size);
+  if (triangles <= limit) return;
+  char why[120];
+  std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, but memory holds about %.2g", smallest,
+                triangles, limit);
+  throw GoalMissed(why);
+}
+
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
   const std::size_t n = mesh.points.size();
   std::vector<int> start(n + 1, 0), neighbour(6 * mesh.tris.size());
@@ -285,12 +295,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   report.smallest = *least;
   report.largest = *most;
-  if (!(report.triangles < most_triangles)) {
-    char why[120];
-    std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, the limit is %.0f", report.smallest,
-                  report.triangles, most_triangles);
-    throw NotAdmissible(why);
-  }
+  refuse_more_triangles(surface, size, options.most_triangles);
   surface.vertex.set("size", std::move(size));
   return report;
 }

@@ -15,6 +15,10 @@ double size_for_count(double area, double n);
 /// triangle's corners. size[v] > 0.
 double count_for_size(const Mesh& mesh, const std::vector<double>& size);
 
+/// Throws GoalMissed, with both numbers, if a field asks for more triangles than `limit`. Sizes
+/// that are not positive are not its business.
+void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit);
+
 /// Lowers sizes until they grow by at most `slope` per unit of length along every edge (Borouchaki, Hecht and
 /// Frey 1998), by one sweep from small to large.
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size);
@@ -29,7 +33,8 @@ struct SizeOptions {
   /// A size by the point and the largest absolute curvature there; infinite: none asked for.
   std::function<double(Vec3, double)> at;
   double min = 0, max = 0;
-  double gradation = 0.3;  ///< growth per unit of length
+  double gradation = 0.3;             ///< growth per unit of length
+  double most_triangles = 715827882;  ///< half-edges are numbered by int
 };
 
 struct SizeReport {
@@ -46,7 +51,7 @@ struct SizeReport {
 /// uniform length is added to the sources so that the field asks for that many; if the sources ask for more
 /// already, they are multiplied by one factor instead. Where sources alone leave the size open it is a tenth
 /// of the diagonal. A uniform field is not graded. Curvature is that of face_curvature.
-/// Throws NotAdmissible if the surface has no area or a field asks for more triangles than can be numbered,
+/// Throws NotAdmissible if the surface has no area, GoalMissed if the field asks for too many triangles,
 /// BadInput if a value of a source is not positive.
 SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split = true);
 

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <omp.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -328,6 +329,17 @@ void Io::say(const std::string& line) const {
 
 void Io::detail(const std::string& line) const {
   if (verbose) say(line);
+}
+
+double most_triangles() {
+  // the largest programs of the chain take 300 bytes a triangle, and two of them hold theirs at a time
+  constexpr double bytes = 600, numbered = 715827882;  // half-edges are numbered by int
+  double memory =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    memory = std::min(memory, static_cast<double>(limit.rlim_cur));
+  return std::min(numbered, memory / bytes);
 }
 
 int run_tool(int argc, char** argv, const char* program, const char* summary,

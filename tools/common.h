@@ -60,6 +60,9 @@ struct Usage {
   bool writes_mesh = true;  ///< -o is a mesh, its format by extension
 };
 
+/// How many triangles the machine's memory holds while a pipeline of these programs works on them.
+double most_triangles();
+
 /// The whole main of a program: parses the common options and those that `options` adds, runs `body`, and
 /// turns exceptions into one line on standard error and the documented exit status. `summary` ends with the
 /// examples --help shows ("\n  mclean ..."). Options of `options` that change the result are recorded in the

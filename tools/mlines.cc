@@ -3,6 +3,7 @@
 // field.
 #include "formats/line_tables.h"
 #include "formats/model_edges.h"
+#include "lib/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -11,6 +12,9 @@ int main(int argc, char** argv) {
   bool keep_boundary = false;
   auto body = [&](Io& io) {
     Stream stream = io.read();
+    const Table& vertex = stream.surface.vertex;
+    if (vertex.has("size"))
+      refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;

@@ -10,6 +10,7 @@
 #include "formats/plane_tables.h"
 #include "lib/parallel.h"
 #include "lib/progress.h"
+#include "lib/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
     if (!stream.surface.vertex.has("size"))
       throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
     const auto& size = stream.surface.vertex.get<double>("size");
+    refuse_more_triangles(stream.surface, size, most_triangles());
 
     const std::clock_t start = std::clock();
     const int n = static_cast<int>(charts.size());

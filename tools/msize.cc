@@ -124,6 +124,7 @@ int main(int argc, char** argv) {
     Table* chart = nullptr;
     for (Table& t : stream.tables)
       if (t.name == "chart_vertex") chart = &t;
+    o.most_triangles = most_triangles();
     const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
     if (r.added > 0) {  // what points to faces is not true any more
       for (const char* table : {"line", "line_use", "line_vertex", "chart_point", "chart_face"})

@@ -243,7 +243,12 @@ TEST(Size, RefusesTooManyTriangles) {
   Surface s = surface_of(sphere(100));
   SizeOptions o;
   o.size = 1e-6;
-  EXPECT_THROW(set_size(s, nullptr, o), NotAdmissible);
+  EXPECT_THROW(set_size(s, nullptr, o), GoalMissed);
+  o.size = 0.1;
+  o.most_triangles = 2000;  // the unit sphere has 2900 triangles of this size
+  EXPECT_THROW(set_size(s, nullptr, o), GoalMissed);
+  o.most_triangles = 4000;
+  EXPECT_NO_THROW(set_size(s, nullptr, o));
 }
 
 TEST(Expression, ValuesAndFailures) {
