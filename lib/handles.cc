@@ -66,7 +66,8 @@ Paths paths_from(const Work& w, int root) {
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   queue.push({p.distance[root] = 0, root});
   while (!queue.empty()) {
-    const auto [d, v] = queue.top();
+    const double d = queue.top().first;
+    const int v = queue.top().second;
     queue.pop();
     if (d > p.distance[v]) continue;
     auto reach = [&](int u, int h) {
