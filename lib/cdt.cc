@@ -209,10 +209,10 @@ int Cdt::half_edge(int a, int b) const {
   return found;
 }
 
-Cdt::Cdt(std::vector<Vec2> input, const std::vector<Segment>& segments) : points(std::move(input)) {
+Cdt::Cdt(std::vector<Vec2> input, const std::vector<FixedEdge>& segments) : points(std::move(input)) {
   int n = (int)points.size();
   insert_all(n);
-  for (const Segment& s : segments) recover(s.a, s.b, s.border ? border_segment : inner_segment);
+  for (const FixedEdge& s : segments) recover(s.a, s.b, s.border ? border_segment : inner_segment);
   make_delaunay();
   carve(n);
 }

@@ -11,7 +11,7 @@
 namespace meshpipe {
 
 /// A straight edge that must be in the triangulation; `border` segments bound the region.
-struct Segment {
+struct FixedEdge {
   int a, b;
   bool border;
 };
@@ -32,7 +32,7 @@ class Cdt {
   /// Constrained Delaunay triangulation of the region that the border segments bound (odd parity from
   /// outside). Throws GoalMissed naming a point if two points coincide, segments cross or touch, or the
   /// borders are not closed.
-  Cdt(std::vector<Vec2> points, const std::vector<Segment>& segments);
+  Cdt(std::vector<Vec2> points, const std::vector<FixedEdge>& segments);
 
   int origin(int h) const { return tris[h / 3][h % 3]; }
   int target(int h) const { return tris[h / 3][(h + 1) % 3]; }

@@ -16,7 +16,7 @@ constexpr int smoothing_sweeps = 4;
 // The points and segments that the lines of a part make in its chart.
 struct Drawing {
   std::vector<int> row;  // of Lines::points, ascending
-  std::vector<Segment> segments;
+  std::vector<FixedEdge> segments;
 };
 
 Drawing draw(const Lines& lines, int part) {
@@ -57,7 +57,7 @@ Drawing draw(const Lines& lines, int part) {
   auto number = [&](int row) {
     return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin());
   };
-  for (Segment& s : d.segments) s = {number(s.a), number(s.b), s.border};
+  for (FixedEdge& s : d.segments) s = {number(s.a), number(s.b), s.border};
   return d;
 }
 

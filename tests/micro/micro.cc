@@ -84,7 +84,7 @@ std::vector<Vec2> scattered(int n) {
   return points;
 }
 
-const std::vector<Segment> square{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
+const std::vector<FixedEdge> square{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
 
 void insert(benchmark::State& state) {
   const std::vector<Vec2> points = scattered((int)state.range(0) / 2);

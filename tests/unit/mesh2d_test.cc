@@ -183,9 +183,9 @@ double count_of(double area, double h) { return area / (std::sqrt(3.0) / 4 * h *
 //  0-------1
 TEST(Cdt, KeepsSegmentsAndRefusesCrossings) {
   std::vector<Vec2> corners{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  std::vector<Segment> frame{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
-  auto with = [&](std::vector<Vec2> p, std::vector<Segment> more) {
-    std::vector<Segment> s = frame;
+  std::vector<FixedEdge> frame{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
+  auto with = [&](std::vector<Vec2> p, std::vector<FixedEdge> more) {
+    std::vector<FixedEdge> s = frame;
     s.insert(s.end(), more.begin(), more.end());
     return Cdt(p, s);
   };
@@ -205,7 +205,7 @@ TEST(Cdt, KeepsSegmentsAndRefusesCrossings) {
 // A comb whose long teeth force many flips; the hole of a frame is left out.
 TEST(Cdt, RecoversLongSegmentsAndCarvesHoles) {
   std::vector<Vec2> p;
-  std::vector<Segment> s;
+  std::vector<FixedEdge> s;
   int teeth = 40;
   for (int i = 0; i < teeth; ++i) {
     p.push_back({(double)i, 0.0});
@@ -220,7 +220,7 @@ TEST(Cdt, RecoversLongSegmentsAndCarvesHoles) {
   for (const Tri& t : comb.tris) EXPECT_EQ(orient2d(p[t[0]], p[t[1]], p[t[2]]), 1);
 
   std::vector<Vec2> q{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {1, 1}, {3, 1}, {3, 3}, {1, 3}};
-  std::vector<Segment> frame;
+  std::vector<FixedEdge> frame;
   for (int k : {0, 4})
     for (int i = 0; i < 4; ++i) frame.push_back({k + i, k + (i + 1) % 4, true});
   Cdt hole(q, frame);
@@ -237,7 +237,7 @@ TEST(Cdt, RecoversLongSegmentsAndCarvesHoles) {
 //   1---2
 TEST(Cdt, CollapsesInnerVerticesOntoOthers) {
   std::vector<Vec2> p{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  std::vector<Segment> frame{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
+  std::vector<FixedEdge> frame{{0, 1, true}, {1, 2, true}, {2, 3, true}, {3, 0, true}};
   for (int i = 0; i < 60; ++i) p.push_back({0.05 + 0.9 * std::fmod(0.618 * i, 1), 0.05 + 0.9 * i / 60});
   Cdt cdt(p, frame);
   for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h)
