@@ -334,7 +334,7 @@ class PlyReader {
     if (ascii_) {
       while (text_.line_ends())
         if (!text_.next_line()) fail(ends(e, row));
-      if (may_be_nan && text_.peek().find_first_of("nN") != std::string_view::npos) {
+      if (may_be_nan && text_.at_nan()) {
         text_.word();
         return std::numeric_limits<double>::quiet_NaN();
       }
@@ -351,8 +351,7 @@ class PlyReader {
   /// The next value, which must be whole: nearly always it is written as an int.
   int integer(const Type& type, const Element& e, std::size_t row, const char* what) {
     int small;
-    if (ascii_ && text_.peek().find('/') == std::string_view::npos && text_.leading_integer(small))
-      return small;
+    if (ascii_ && text_.leading_integer(small, false)) return small;
     return whole(value(type, e, row), e, what, row);
   }
 

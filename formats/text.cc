@@ -123,11 +123,18 @@ int Text::integer(const char* what) {
   return static_cast<int>(value);
 }
 
-bool Text::leading_integer(int& value) {
+bool Text::at_nan() const {
+  const char *at = left_.data(), *const end = at + left_.size();
+  while (at < end && is_blank(*at)) ++at;
+  if (at < end && (*at == '-' || *at == '+')) ++at;
+  return at < end && (*at == 'n' || *at == 'N');
+}
+
+bool Text::leading_integer(int& value, bool slash) {
   const char *at = left_.data(), *const end = at + left_.size();
   while (at < end && is_blank(*at)) ++at;
   auto [stop, error] = std::from_chars(at, end, value);
-  if (error != std::errc() || (stop < end && !is_blank(*stop) && *stop != '/')) return false;
+  if (error != std::errc() || (stop < end && !is_blank(*stop) && !(slash && *stop == '/'))) return false;
   while (stop < end && !is_blank(*stop)) ++stop;
   left_.remove_prefix(stop - left_.data());
   return true;

@@ -34,9 +34,11 @@ class Text {
   int next_integer(const char* what);
   /// The next word of the line as a whole number, which may be beyond int.
   long long wide(const char* what);
-  /// The next word of the line if it is an int, alone or before a '/', with what follows that; false for any
-  /// other, which is left.
-  bool leading_integer(int& value);
+  /// The next word of the line if it is an int, alone or (with `slash`) before a "/", with what follows that;
+  /// false for any other, which is left.
+  bool leading_integer(int& value, bool slash = true);
+  /// Is the next word NaN, of either sign?
+  bool at_nan() const;
   /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
   void skip(std::size_t n);
   /// The next word again.
