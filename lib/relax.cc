@@ -102,7 +102,7 @@ RelaxReport Relaxer::run() {
     smooth(2);
     add_progress(0.9 / options_.sweeps);
   }
-  reach_tips();
+  for (int round = 0; round < 2; ++round) reach_tips();
   mend_worst();
   separate();
   return finish();
