@@ -121,32 +121,30 @@ int main(int argc, char** argv) {
         o.keep_sheets = o.sheets == "keep";
         if (!o.culprits.empty()) Io::expect_writable(o.culprits, true);
         Stream stream = io.read();
-        if (!o.within.empty()) o.weld = tolerance(o.within, stream.surface);
-        Mesh input;
-        if (!o.culprits.empty()) input = stream.surface;
+        Surface& s = stream.surface;
+        if (!o.within.empty()) o.weld = tolerance(o.within, s);
+        const Mesh input = o.culprits.empty() ? Mesh{} : s;
         // lines of a foreign file, by their place: vertices are about to be renumbered
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
         CleanReport report;
         try {
-          clean(stream.surface, o, report);
+          clean(s, o, report);
         } catch (const NotAdmissible&) {
           write_culprits(io, o.culprits, report, input);
           throw;
         }
         write_culprits(io, o.culprits, report, input);
         name_sheets(stream, report);
-        if (!stream.surface.face.has("patch"))
-          stream.surface.face.set("patch", std::vector<int>(stream.surface.tris.size(), 1));
+        if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
           stream.tables.clear();
           write_model_edges(stream, lines);
-          for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
-          for (const char* column : {"ref_face", "b1", "b2", "kind", "line"})
-            stream.surface.vertex.erase(column);
+          for (const char* column : {"part", "origin"}) s.face.erase(column);
+          for (const char* column : {"ref_face", "b1", "b2", "kind", "line"}) s.vertex.erase(column);
         }
-        stream.input_triangles = (int)stream.surface.tris.size();
-        tell(io, report, o, stream.surface);
+        stream.input_triangles = (int)s.tris.size();
+        tell(io, report, o, s);
         io.write(stream);
       });
 }

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
     app.add_option("--svg", pictures, "draw each chart in this directory, its mesh beside its map")
+        ->type_name("DIR")
         ->group("Reports");
   };
   auto body = [&](Io& io) {
