@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <condition_variable>
 #include <csignal>
@@ -28,19 +29,26 @@ namespace {
 
 constexpr const char* common_group = "Common options";
 
-/// The file that is being written and has its name not yet: a program that is stopped removes it.
+/// The file that is being written and has its name not yet: a program that is stopped removes it. While it
+/// is being made its name is not known: a signal then waits in `making`, whichever thread it came to.
 char temporary_file[4096];
-volatile std::sig_atomic_t temporary_exists = 0;
+std::atomic<bool> temporary_exists = false;
+constexpr int not_making = -1, nothing_waits = 0;
+std::atomic<int> making = not_making;
 
 extern "C" void remove_temporary(int signal) {
+  int none = nothing_waits;
+  if (making.compare_exchange_strong(none, signal)) return;
   if (temporary_exists) ::unlink(temporary_file);
-  ::raise(signal);  // the handler was for one time: now it ends the program
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);  // ends the program when this handler has returned
 }
 
 void handle_signals() {
   struct sigaction action {};
   action.sa_handler = remove_temporary;
-  action.sa_flags = SA_RESETHAND | SA_NODEFER;
+  action.sa_flags = SA_RESTART;
+  ::sigfillset(&action.sa_mask);  // a second signal must not end the program before the file is gone
   for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction now {};
     if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL)
@@ -55,16 +63,13 @@ int make_temporary(std::string& name) {
     errno = ENAMETOOLONG;
     return -1;
   }
-  sigset_t ours, before;
-  ::sigemptyset(&ours);
-  for (int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&ours, signal);
-  ::sigprocmask(SIG_BLOCK, &ours, &before);
+  making = nothing_waits;
   const int fd = ::mkstemp(name.data());
   if (fd >= 0) {
     std::strcpy(temporary_file, name.c_str());
-    temporary_exists = 1;
+    temporary_exists = true;
   }
-  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (const int signal = making.exchange(not_making); signal != nothing_waits) remove_temporary(signal);
   return fd;
 }
 
@@ -163,11 +168,11 @@ void write_beside(const std::string& path, const std::function<void(const Sink&)
     if (closed != 0) throw CannotWrite(path + ": " + reason());
     if (!temporary.empty() && ::rename(temporary.c_str(), path.c_str()) != 0)
       throw CannotWrite(path + ": " + reason());
-    temporary_exists = 0;
+    temporary_exists = false;
   } catch (...) {
     if (fd >= 0) ::close(fd);
     if (!temporary.empty()) ::unlink(temporary.c_str());
-    temporary_exists = 0;
+    temporary_exists = false;
     throw;
   }
 }
