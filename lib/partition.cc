@@ -39,10 +39,12 @@ struct Labelling {
   bool operator<(const Labelling& o) const { return std::tie(burden, cost) < std::tie(o.burden, o.cost); }
 };
 
+constexpr double sharp = 40 * 3.14159265358979 / 180;  // an edge that is a crease, marked or not
+
 /// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
 std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
                              const std::vector<std::uint8_t>& model) {
-  constexpr double model_factor = 0.2, sharp_factor = 0.4, sharp = 40 * 3.14159265358979 / 180;
+  constexpr double model_factor = 0.2, sharp_factor = 0.4;
   std::vector<double> length(opposite.size(), 0);
   double sum = 0;
   std::size_t n = 0;
@@ -492,35 +494,50 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
 
 Interfaces measure_interfaces(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  const std::vector<Tri>& tris = surface.tris;
+  const std::vector<Vec3>& points = surface.points;
+  const std::vector<int> opposite = opposite_halfedges(tris, (int)points.size());
   Interfaces r;
   const bool has_model = surface.face.has("model");
-  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end, or -1 across a model edge)
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] > h && part[h / 3] != part[opposite[h] / 3]) {
-      int a = origin(surface.tris, h), b = target(surface.tris, h);
-      r.length += norm(surface.points[b] - surface.points[a]);
-      const bool model = has_model && surface.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1;
-      ends.push_back({a, model ? -1 : b});
-      ends.push_back({b, model ? -1 : a});
-    }
-  if (ends.empty()) return r;
-  r.length /= diagonal(surface);
-  std::sort(ends.begin(), ends.end());
+  auto is_interface = [&](int h) { return opposite[h] >= 0 && part[h / 3] != part[opposite[h] / 3]; };
+  auto normal = [&](int t) {
+    return area_vector(points[tris[t][0]], points[tris[t][1]], points[tris[t][2]]);
+  };
+  auto is_crease = [&](int h) {
+    return (has_model && surface.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1) ||
+           angle(normal(h / 3), normal(opposite[h] / 3)) > sharp;
+  };
+  std::vector<int> count(points.size(), 0), leaving(points.size(), -1);
+  std::vector<char> crease(points.size(), 0);
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    if (!is_interface(h)) continue;
+    const int a = origin(tris, h), b = target(tris, h);
+    ++count[a];
+    leaving[a] = h;
+    if (opposite[h] < h) continue;
+    r.length += norm(points[b] - points[a]);
+    if (is_crease(h)) crease[a] = crease[b] = 1;
+  }
+  if (r.length > 0) r.length /= diagonal(surface);
+  constexpr double pi = 3.14159265358979323846;
   std::vector<double> turning;
-  for (std::size_t i = 0, j; i < ends.size(); i = j) {
-    for (j = i + 1; j < ends.size() && ends[j].first == ends[i].first;) ++j;
-    const Vec3 p = surface.points[ends[i].first];
-    if (j - i == 2 && ends[i].second >= 0)
-      turning.push_back(angle(p - surface.points[ends[i].second], surface.points[ends[i + 1].second] - p));
-    if (j - i > 2) ++r.junctions;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (count[v] > 2) ++r.junctions;
+    if (count[v] != 2 || crease[v]) continue;
+    double sides[2] = {0, 0};
+    int side = 0, h = leaving[v];
+    do {
+      sides[side] += angle(points[target(tris, h)] - points[v], points[origin(tris, prev(h))] - points[v]);
+      h = opposite[prev(h)];
+      if (h >= 0 && is_interface(h)) side = 1;
+    } while (h >= 0 && h != leaving[v]);
+    if (h >= 0) turning.push_back(pi * std::abs(sides[0] - sides[1]) / (sides[0] + sides[1]));
   }
   if (turning.empty()) return r;
   auto quantile = turning.begin() + (std::ptrdiff_t)(turning.size() * 9 / 10);
   std::nth_element(turning.begin(), quantile, turning.end());
-  constexpr double degrees = 180 / 3.14159265358979323846;
-  r.turning_angle = *quantile * degrees;
-  r.largest_angle = *std::max_element(quantile, turning.end()) * degrees;
+  r.turning_angle = *quantile * 180 / pi;
+  r.largest_angle = *std::max_element(quantile, turning.end()) * 180 / pi;
   return r;
 }
 
