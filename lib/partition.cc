@@ -488,7 +488,11 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
       l = best_labelling(c, options);
     }
     const int bound = bound_of((int)c.mesh.tris.size(), options);
-    if (l.parts > 0 && bound > 0) bound_faces(c, l, bound, options.seed);
+    if (l.parts > 0 && bound > 0) {
+      Labelling bounded = l;
+      bound_faces(c, bounded, bound, options.seed);
+      if (bounded.parts > 0 || options.max_faces > 0) l = std::move(bounded);
+    }
     if (l.parts == 0)
       throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
                        " triangles and genus " + std::to_string(c.whole.genus()) +
