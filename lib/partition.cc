@@ -73,20 +73,24 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
   return weight;
 }
 
+/// What the parts of a cut have about as much of.
+enum class Balance { area, triangles };
+
 /// Cuts the triangles of a label into k parts by METIS, along borders of cells: the first part keeps the
 /// label, the others get next, next + 1, ... False if METIS leaves them together.
 bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, double imbalance, int seed,
-               int next) {
+               int next, Balance balance = Balance::area) {
   std::vector<int> node(c.cells.n, -1);
-  std::vector<double> area(c.cells.n, 0);
+  std::vector<double> load(c.cells.n, 0);
   int n = 0;
   double total = 0;
   for (std::size_t t = 0; t < label.size(); ++t)
     if (label[t] == mine) {
       const int cell = c.cells.of[t];
       if (node[cell] < 0) node[cell] = n++;
-      area[cell] += c.area[t];
-      total += c.area[t];
+      const double own = balance == Balance::area ? c.area[t] : 1;
+      load[cell] += own;
+      total += own;
     }
   struct Link {
     int a, b, weight;
@@ -114,7 +118,7 @@ bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, dou
   g.vertex_weight.assign(n, 1);
   for (int cell = 0; cell < c.cells.n; ++cell)
     if (node[cell] >= 0 && total > 0)
-      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * area[cell] * n / total), 1.0, 1000.0);
+      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * load[cell] * n / total), 1.0, 1000.0);
   const std::vector<int> part = partition_graph(g, k, imbalance, seed);
   for (std::size_t t = 0; t < label.size(); ++t)
     if (label[t] == mine)
@@ -230,10 +234,11 @@ void bisect(const Component& c, std::vector<int>& label, int mine, int new_label
 }
 
 /// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
-/// parts of the wrong topology bisected. Returns the parts, or 0 regions if it does not get there.
-Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
+/// parts of the wrong topology bisected. `fragment`: the share of the area that a part has to have at first.
+/// Returns the parts, or 0 regions if it does not get there.
+Regions make_admissible(const Component& c, std::vector<int>& label, int seed, double fragment = 0.01) {
   const int n_faces = (int)c.mesh.tris.size();
-  double min_area = 0.01 * c.whole.area;
+  double min_area = fragment * c.whole.area;
   int min_faces = std::min(20, n_faces / 10);
   auto regions_of_pieces = [&] {
     const int n = separate_pieces(c.opposite, label);
@@ -437,20 +442,31 @@ Component make_component(const Surface& surface, SubMesh sub) {
 }
 
 /// Cuts parts of too many triangles, with some room for those that smoothing adds.
-void bound_faces(const Component& c, Labelling& l, const PartitionOptions& options) {
-  const int limit = std::max(1, (int)(0.9 * options.max_faces));
+void bound_faces(const Component& c, Labelling& l, int max_faces, int seed) {
+  const int limit = std::max(1, (int)(0.9 * max_faces));
   for (int round = 0; round < 60; ++round) {
     bool again = false;
     std::vector<int> faces(l.parts, 0);
     for (int x : l.label) ++faces[x];
     int n = l.parts;
-    for (int p = 0; p < (int)faces.size(); ++p)
-      if (faces[p] > limit) bisect(c, l.label, p, n++, options.seed), again = true;
+    for (int p = 0; p < (int)faces.size(); ++p) {
+      if (faces[p] <= limit) continue;
+      const int k = (int)std::ceil(1.25 * faces[p] / limit);  // none is much larger than the others
+      if (!cut_label(c, l.label, p, k, 0.1, seed, n, Balance::triangles)) bisect(c, l.label, p, n, seed);
+      n += k - 1;
+      again = true;
+    }
     if (!again) return;
-    l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
+    l.parts = (int)make_admissible(c, l.label, seed, 0).region.size();
     if (l.parts == 0) return;
   }
   l.parts = 0;
+}
+
+/// The bound on a component's parts: solves stay near linear, and there is work for all threads.
+int bound_of(int faces, const PartitionOptions& options) {
+  constexpr int large = 300000, bound = 100000;
+  return options.max_faces > 0 ? options.max_faces : faces > large ? bound : 0;
 }
 
 }  // namespace
@@ -473,7 +489,12 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     } else {
       l = best_labelling(c, options);
     }
-    if (l.parts > 0 && options.max_faces > 0) bound_faces(c, l, options);
+    const int bound = bound_of((int)c.mesh.tris.size(), options);
+    if (l.parts > 0 && bound > 0) {
+      Labelling bounded = l;
+      bound_faces(c, bounded, bound, options.seed);
+      if (bounded.parts > 0 || options.max_faces > 0) l = std::move(bounded);
+    }
     if (l.parts == 0)
       throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
                        " triangles and genus " + std::to_string(c.whole.genus()) +

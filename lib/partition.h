@@ -12,7 +12,8 @@ struct PartitionOptions {
   bool homology = false;  ///< cuts along handles are tried as well (lib/handles.h); else only if METIS's
                           ///< labellings come to more than genus + 2 charts
   int seed = 1;
-  int max_faces = 0;  ///< bound on the triangles of a part; 0: none
+  int max_faces = 0;  ///< bound on the triangles of a part; 0: 100 000 for a component of more than 300 000,
+                      ///< so that solves stay near linear, else none
   double snap = 0.1;  ///< of cut_by_scalar_field
 };
 
