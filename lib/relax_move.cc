@@ -8,7 +8,7 @@
 
 namespace meshpipe {
 namespace {
-constexpr double size_weight = 0.025;
+constexpr double size_weight = 0.012;
 constexpr double no_step = 3e-3;     ///< a step below this share of the size is none
 constexpr int worth_threads = 2000;  ///< vertices of a colour
 }  // namespace
