@@ -132,8 +132,12 @@ double Relaxer::quality(int t) const {
   const auto [a, b, c] = m_.tris[t];
   if (agrees(a, b, c) < 0) return 0;
   const Vec3 p = at(a), q = at(b), r = at(c);
-  const double least = std::min({angle(q - p, r - p), angle(r - q, p - q), angle(p - r, q - r)});
-  return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
+  const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
+  // the least angle is opposite to the shortest side
+  const double least = qr <= pq && qr <= rp ? angle(q - p, r - p)
+                       : rp <= pq           ? angle(r - q, p - q)
+                                            : angle(p - r, q - r);
+  return std::min(k / good_kappa, least / good_angle);
 }
 
 /// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside

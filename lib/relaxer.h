@@ -107,6 +107,7 @@ class Relaxer {
   signed char free_color(int v) const;
   void edited(int v);
   void list_by_color();
+  bool advance(int v, int now);
   void smooth(int sweeps);
 
   // relax_edit.cc
