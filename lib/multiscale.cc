@@ -273,10 +273,14 @@ struct Halves {
 
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight but for
 /// where it follows creases. A line that is snapped to vertices may touch itself there: then it is snapped
-/// less, until the halves have no more loops than expected.
+/// less, until the halves have no more loops than expected; on a few coarse triangles it may be pulled off
+/// the part, so that at last it is left as it is.
 Halves split(const Surface& surface, const Part& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
-  constexpr int sweeps = 30;
+  struct Pull {
+    double snap;
+    int sweeps;
+  };
   const std::vector<Tri>& tris = part.mesh.tris;
   const LevelLine level = zero_level(part.mesh, field);
   std::vector<Hold> hold(field.size(), Hold::moves);
@@ -286,7 +290,7 @@ Halves split(const Surface& surface, const Part& part, const std::vector<double>
       hold[u] = hold[v] = Hold::joins;
   }
   Halves best;
-  for (double snap : {0.1, 0.03, 0.01, 0.}) {
+  for (auto [snap, sweeps] : {Pull{0.1, 30}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;
