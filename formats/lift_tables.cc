@@ -105,6 +105,7 @@ void write_lifted(Stream& stream, const LiftedMesh& mesh) {
   s.face.set("part", mesh.part);
   s.face.set("model", mesh.model);
   stream.surface = std::move(s);
+  stream.erase("mid_vertex");
 }
 
 Surface read_reference(const Stream& stream) {
@@ -126,7 +127,8 @@ Surface read_reference(const Stream& stream) {
   s.vertex.rows = vertex.rows;
   if (vertex.has("size")) s.vertex.set("size", vertex.get<double>("size"));
   for (const char* name : {"patch", "part", "origin"}) s.face.set(name, face.get<int>(name));
-  s.face.set("model", face.get<std::uint8_t>("model"));
+  for (const char* name : {"model", "curved"})
+    if (face.has(name)) s.face.set(name, face.get<std::uint8_t>(name));
   return s;
 }
 
@@ -159,6 +161,7 @@ void write_reference(Stream& stream, const Surface& reference) {
   face.set("part", copy_or<int>(reference.face, "part", zero));
   face.set("origin", copy_or<int>(reference.face, "origin", self));
   face.set("model", copy_or<std::uint8_t>(reference.face, "model", std::vector<std::uint8_t>(n, 0)));
+  if (reference.face.has("curved")) face.set("curved", reference.face.get<std::uint8_t>("curved"));
   stream.set(std::move(face));
 }
 

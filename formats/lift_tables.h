@@ -11,11 +11,12 @@ namespace meshpipe {
 /// checked. Throws NotAdmissible if mlift has not run, BadInput naming the row that is wrong.
 LiftedMesh read_lifted(const Stream& stream);
 
-/// Replaces `vertex` and `face` by the mesh and its columns; tables stay. The input's own vertex data, which
-/// the reference keeps, is interpolated. Precondition: write_reference.
+/// Replaces `vertex` and `face` by the mesh and its columns; tables stay but for mid_vertex. The input's own
+/// vertex data, which the reference keeps, is interpolated. Precondition: write_reference.
 void write_lifted(Stream& stream, const LiftedMesh& mesh);
 
-/// The surface that the mesh was lifted to: face columns patch, part, origin and model.
+/// The surface that the mesh was lifted to: face columns patch, part, origin and model,
+/// and `curved` if vertices lie on the smooth surface above it (lib/curved.h).
 /// Throws NotAdmissible if mlift has not run.
 Surface read_reference(const Stream& stream);
 

@@ -7,6 +7,7 @@
 #include "formats/model_lines.h"
 #include "formats/msh.h"
 #include "formats/polygons.h"
+#include "formats/second_order.h"
 #include "formats/text.h"
 #include "lib/error.h"
 
@@ -99,6 +100,21 @@ void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift,
     sink.out += "$PhysicalNames\n" + (std::to_string(n_named) + '\n') + named + "$EndPhysicalNames\n";
 }
 
+int triangle_type(const SecondOrder& second) { return second ? 9 : 2; }
+int line_type(const SecondOrder& second) { return second ? 8 : 1; }
+
+template <class Visit>
+void for_each_node(const Tri& t, const SecondOrder& second, const Visit& visit) {
+  for (int v : t) visit(v);
+  for (int i = 0; second && i < 3; ++i) visit(second.node(t[i], t[(i + 1) % 3]));
+}
+template <class Visit>
+void for_each_node(const LineEdge& e, const SecondOrder& second, const Visit& visit) {
+  visit(e.a);
+  visit(e.b);
+  if (second) visit(second.node(e.a, e.b));
+}
+
 /// Data of all triangles; elements of curves have zeros, since readers want data for all elements or none.
 void data(Rows& sink, const char* section, const Table& table, const Curves& curves) {
   const std::size_t more = table.name == "face" ? curves.edges.size() : 0;
@@ -129,7 +145,8 @@ void data(Rows& sink, const char* section, const Table& table, const Curves& cur
 }  // namespace
 
 std::string write_msh2(const Stream& stream, bool ascii) {
-  const Surface& s = stream.surface;
+  const SecondOrder second(stream);
+  const Surface& s = second.surface();
   const std::vector<int> patch = patches_of(stream);
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
@@ -148,23 +165,27 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   sink.end("Nodes");
   sink.out += "$Elements\n";
   sink.line(s.tris.size() + curves.edges.size());
-  if (!ascii && !s.tris.empty())
-    for (long long v : {2LL, static_cast<long long>(s.tris.size()), 2LL}) sink.integer(v);
+  // text has the type and the number of labels in each row, binary once
+  auto begin = [&](int type, std::size_t n) {
+    if (!ascii && n > 0)
+      for (long long v : {static_cast<long long>(type), static_cast<long long>(n), 2LL}) sink.integer(v);
+  };
+  auto element = [&](std::size_t number, int type, long long label) {
+    sink.integer(static_cast<long long>(number) + 1);
+    if (ascii) sink.out += std::to_string(type) + " 2 ";
+    sink.integer(label);
+    sink.integer(label);
+  };
+  begin(triangle_type(second), s.tris.size());
   for (std::size_t t = 0; t < s.tris.size(); ++t) {
-    sink.integer(static_cast<long long>(t) + 1);
-    if (ascii) sink.out += "2 2 ";
-    for (long long v :
-         {patch[t] + shift, patch[t] + shift, s.tris[t][0] + 1LL, s.tris[t][1] + 1LL, s.tris[t][2] + 1LL})
-      sink.integer(v);
+    element(t, triangle_type(second), patch[t] + shift);
+    for_each_node(s.tris[t], second, [&](int v) { sink.integer(v + 1LL); });
     sink.end_row();
   }
-  if (!ascii && !curves.edges.empty())
-    for (long long v : {1LL, static_cast<long long>(curves.edges.size()), 2LL}) sink.integer(v);
+  begin(line_type(second), curves.edges.size());
   for (std::size_t i = 0; i < curves.edges.size(); ++i) {
-    const LineEdge& e = curves.edges[i];
-    sink.integer(static_cast<long long>(s.tris.size() + i) + 1);
-    if (ascii) sink.out += "1 2 ";
-    for (int v : {e.tag, e.tag, e.a + 1, e.b + 1}) sink.integer(v);
+    element(s.tris.size() + i, line_type(second), curves.edges[i].tag);
+    for_each_node(curves.edges[i], second, [&](int v) { sink.integer(v + 1LL); });
     sink.end_row();
   }
   sink.end("Elements");
@@ -174,7 +195,8 @@ std::string write_msh2(const Stream& stream, bool ascii) {
 }
 
 std::string write_msh4(const Stream& stream, bool ascii) {
-  const Surface& s = stream.surface;
+  const SecondOrder second(stream);
+  const Surface& s = second.surface();
   const ByPatch by = by_patch(stream);
   const long long shift = checked_shift(by);
   const Curves curves = curves_of(stream);
@@ -249,23 +271,23 @@ std::string write_msh4(const Stream& stream, bool ascii) {
     sink.wide(v);
   sink.end_row();
   for (std::size_t k = 0; k < by.tags.size(); ++k) {
-    for (long long v : {2LL, surface[k], 2LL}) sink.integer(v);
+    for (long long v : {2LL, surface[k], static_cast<long long>(triangle_type(second))}) sink.integer(v);
     sink.wide(static_cast<long long>(by.first[k + 1] - by.first[k]));
     sink.end_row();
     for (std::size_t i = by.first[k]; i < by.first[k + 1]; ++i) {
       const int t = by.order[i];
       sink.wide(t + 1LL);
-      for (int v : s.tris[t]) sink.wide(v + 1LL);
+      for_each_node(s.tris[t], second, [&](int v) { sink.wide(v + 1LL); });
       sink.end_row();
     }
   }
   for (std::size_t k = 0; k < curves.tags.size(); ++k) {
-    for (int v : {1, curves.tags[k], 1}) sink.integer(v);
+    for (int v : {1, curves.tags[k], line_type(second)}) sink.integer(v);
     sink.wide(static_cast<long long>(curves.first[k + 1] - curves.first[k]));
     sink.end_row();
     for (std::size_t i = curves.first[k]; i < curves.first[k + 1]; ++i) {
       sink.wide(n_tris + static_cast<long long>(i) + 1);
-      for (int v : {curves.edges[i].a, curves.edges[i].b}) sink.wide(v + 1LL);
+      for_each_node(curves.edges[i], second, [&](int v) { sink.wide(v + 1LL); });
       sink.end_row();
     }
   }

@@ -367,6 +367,8 @@ class Reader {
                           {"chart_face", "c", "chart_point", 0},
                           {"vertex", "ref_face", "ref_face", 0},
                           {"vertex", "line", "line", -1},
+                          {"mid_vertex", "a", "vertex", 0},
+                          {"mid_vertex", "b", "vertex", 0},
                           {"ref_face", "a", "ref_vertex", 0},
                           {"ref_face", "b", "ref_vertex", 0},
                           {"ref_face", "c", "ref_vertex", 0},

@@ -9,7 +9,7 @@
 
 namespace meshpipe {
 
-constexpr int vtk_triangle = 5, vtk_strip = 6, vtk_polygon = 7;
+constexpr int vtk_triangle = 5, vtk_strip = 6, vtk_polygon = 7, vtk_quadratic_triangle = 22;
 
 /// A data set as it is read. `place` in its functions is what messages begin with: "FILE:LINE".
 struct VtkData {

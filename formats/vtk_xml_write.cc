@@ -5,6 +5,7 @@
 
 #include "formats/base64.h"
 #include "formats/bytes.h"
+#include "formats/second_order.h"
 #include "formats/text.h"
 #include "formats/vtk_data.h"
 #include "formats/vtk_xml.h"
@@ -112,8 +113,10 @@ class Xml {
 };
 
 std::string write(const Stream& stream, bool ascii, bool polygons) {
-  const Surface& s = stream.surface;
-  const std::size_t n = s.tris.size();
+  const SecondOrder second(stream);
+  const bool curved = second && !polygons;
+  const Surface& s = curved ? second.surface() : stream.surface;
+  const std::size_t n = s.tris.size(), nodes = curved ? 6 : 3;
   static_assert(sizeof(Vec3) == 24 && sizeof(Tri) == 12);
   const std::string type = polygons ? "PolyData" : "UnstructuredGrid", cells = polygons ? "Polys" : "Cells";
   Xml xml(ascii);
@@ -130,12 +133,17 @@ std::string write(const Stream& stream, bool ascii, bool polygons) {
   xml.out += "NumberOf" + cells + "=\"" + std::to_string(n) + "\">\n<Points>\n";
   xml.array("Points", 3, s.points.empty() ? nullptr : &s.points[0].x, 3 * s.points.size());
   xml.out += "</Points>\n<" + cells + ">\n";
-  xml.array("connectivity", 1, n ? s.tris[0].data() : nullptr, 3 * n);
-  std::vector<int> offsets(n);
-  for (std::size_t t = 0; t < n; ++t) offsets[t] = static_cast<int>(3 * t + 3);
+  std::vector<int> all_nodes, offsets;
+  for (const Tri& t : s.tris) {
+    if (!curved) break;
+    all_nodes.insert(all_nodes.end(), t.begin(), t.end());
+    for (int i = 0; i < 3; ++i) all_nodes.push_back(second.node(t[i], t[(i + 1) % 3]));
+  }
+  xml.array("connectivity", 1, curved ? all_nodes.data() : n ? s.tris[0].data() : nullptr, nodes * n);
+  for (std::size_t t = 1; t <= n; ++t) offsets.push_back(static_cast<int>(nodes * t));
   xml.array("offsets", 1, offsets.data(), n);
   if (!polygons) {
-    const std::vector<std::uint8_t> types(n, vtk_triangle);
+    const std::vector<std::uint8_t> types(n, curved ? vtk_quadratic_triangle : vtk_triangle);
     xml.array("types", 1, types.data(), n);
   }
   xml.out += "</" + cells + ">\n";

@@ -266,7 +266,7 @@ bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners)
 
 }  // namespace
 
-Mesh uncut(const Mesh& mesh, const std::vector<int>& origin) {
+Mesh uncut(const Mesh& mesh, const std::vector<int>& origin, std::vector<int>* now) {
   const int n = (int)mesh.tris.size();
   Mesh whole;
   whole.points = mesh.points;
@@ -276,14 +276,17 @@ Mesh uncut(const Mesh& mesh, const std::vector<int>& origin) {
   for (int o : origin) ++start[o + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
   for (int t = 0; t < n; ++t) order[start[origin[t]]++] = t;
+  if (now) now->resize(n);
   for (int first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && origin[order[last]] == origin[order[first]];) ++last;
     Tri corners;
-    if (last - first > 1 && hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners)) {
-      whole.tris.push_back(corners);
-      continue;
+    const bool one =
+        last - first > 1 && hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners);
+    if (one) whole.tris.push_back(corners);
+    for (int i = first; i < last; ++i) {
+      if (!one) whole.tris.push_back(mesh.tris[order[i]]);
+      if (now) (*now)[order[i]] = static_cast<int>(whole.tris.size()) - 1;
     }
-    for (int i = first; i < last; ++i) whole.tris.push_back(mesh.tris[order[i]]);
   }
   return whole;
 }

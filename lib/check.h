@@ -50,7 +50,8 @@ double kappa_off_wedges(const Mesh& mesh, std::span<const int> opposite,
 
 /// The mesh that `mesh` was cut from: triangles of equal `origin` that are pieces of one become that one.
 /// Points stay, some unused. Where pieces make no triangle (their area is not that of its corners), they
-/// stay. Linear time. Precondition: origin.size() == mesh.tris.size(), no origin is negative.
-Mesh uncut(const Mesh& mesh, const std::vector<int>& origin);
+/// stay. Linear time. `now`, if not null: the triangle of the result that each of `mesh` has become or is a
+/// piece of. Precondition: origin.size() == mesh.tris.size(), no origin is negative.
+Mesh uncut(const Mesh& mesh, const std::vector<int>& origin, std::vector<int>* now = nullptr);
 
 }  // namespace meshpipe

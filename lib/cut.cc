@@ -16,19 +16,17 @@ double smallest_angle(Vec3 a, Vec3 b, Vec3 c) {
   return std::min({angle(b - a, c - a), angle(c - b, a - b), angle(a - c, b - c)});
 }
 
-void check_lengths(const Surface& s, const std::vector<double>& field, const std::vector<char>& active) {
+void check_lengths(const Surface& s, std::size_t values, const std::vector<char>& active) {
   auto expect = [](const std::string& what, std::size_t has, std::size_t needs) {
     if (has != needs)
       throw std::logic_error("cut: " + what + " has " + std::to_string(has) + " values for " +
                              std::to_string(needs));
   };
-  expect("field", field.size(), s.points.size());
+  expect("field", values, s.points.size());
   if (!active.empty()) expect("active", active.size(), s.tris.size());
   for (const Column& c : s.vertex.columns)
     expect("vertex column '" + c.name + "'", c.size(), s.points.size());
   for (const Column& c : s.face.columns) expect("face column '" + c.name + "'", c.size(), s.tris.size());
-  for (double f : field)
-    if (!std::isfinite(f)) throw std::logic_error("cut: field is not finite");
 }
 
 /// The signs of the field with vertices close to the level put on it (sign 0).
@@ -130,10 +128,11 @@ struct Crossed {
   bool active;
 };
 
-/// Appends the vertices of the cut edges; cut[h] is the new vertex on half-edge h, or -1.
-std::vector<int> insert_vertices(Surface& s, const std::vector<double>& field,
-                                 const std::vector<char>& active, const std::vector<signed char>& sign,
-                                 double snap) {
+/// Appends the vertices of the cut edges; cut[h] is the new vertex on half-edge h, or -1. `crossing_at` gives
+/// the place on an edge, from its lower vertex.
+template <class CrossingAt>
+std::vector<int> insert_vertices(Surface& s, const std::vector<char>& active,
+                                 const std::vector<signed char>& sign, CrossingAt crossing_at) {
   std::vector<Crossed> crossed;
   for (int h = 0; h < (int)(3 * s.tris.size()); ++h) {
     int a = origin(s.tris, h), b = target(s.tris, h);
@@ -158,7 +157,7 @@ std::vector<int> insert_vertices(Surface& s, const std::vector<double>& field,
       is_active |= crossed[j].active;
     if (is_active) {
       for (std::size_t k = i; k < j; ++k) cut[crossed[k].half_edge] = n + (int)places.size();
-      places.push_back({a, b, std::clamp(crossing(field[a], field[b]), snap, 1 - snap)});
+      places.push_back({a, b, crossing_at(a, b)});
     }
     i = j;
   }
@@ -259,21 +258,16 @@ class Splitter {
   std::vector<int> source_;
 };
 
-}  // namespace
-
-int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
-                        std::vector<int>& side, double snap) {
-  check_lengths(surface, field, active);
-  snap = std::clamp(snap, 0.0, 0.5);
+template <class CrossingAt>
+int cut(Surface& surface, const std::vector<signed char>& sign, const std::vector<char>& active,
+        std::vector<int>& side, CrossingAt crossing_at) {
   const int n_tris = (int)surface.tris.size(), n_points = (int)surface.points.size();
   if (!surface.face.has("origin")) {
     std::vector<int> identity(n_tris);
     std::iota(identity.begin(), identity.end(), 0);
     surface.face.set("origin", std::move(identity));
   }
-  const Signs signs(surface, field, active, snap);
-  const std::vector<signed char>& sign = signs.sign;
-  const std::vector<int> cut = insert_vertices(surface, field, active, sign, snap);
+  const std::vector<int> cut = insert_vertices(surface, active, sign, crossing_at);
 
   side.assign(n_tris, -1);
   Splitter splitter(surface, cut);
@@ -289,6 +283,32 @@ int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, cons
   }
   splitter.copy_columns();
   return (int)surface.points.size() - n_points;
+}
+
+}  // namespace
+
+int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
+                        std::vector<int>& side, double snap) {
+  check_lengths(surface, field.size(), active);
+  for (double f : field)
+    if (!std::isfinite(f)) throw std::logic_error("cut: field is not finite");
+  snap = std::clamp(snap, 0.0, 0.5);
+  const Signs signs(surface, field, active, snap);
+  return cut(surface, signs.sign, active, side,
+             [&](int a, int b) { return std::clamp(crossing(field[a], field[b]), snap, 1 - snap); });
+}
+
+int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
+                   std::vector<int>& side) {
+  check_lengths(surface, line.sign.size(), active);
+  return cut(surface, line.sign, active, side, [&](int a, int b) {
+    const auto place = std::lower_bound(
+        line.crossing.begin(), line.crossing.end(), std::pair(a, b),
+        [](const EdgeCrossing& c, std::pair<int, int> edge) { return std::pair(c.low, c.high) < edge; });
+    if (place == line.crossing.end() || place->low != a || place->high != b)
+      throw std::logic_error("cut: no crossing between " + std::to_string(a) + " and " + std::to_string(b));
+    return place->at;
+  });
 }
 
 }  // namespace meshpipe

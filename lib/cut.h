@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "lib/level_line.h"
 #include "lib/mesh.h"
 
 namespace meshpipe {
@@ -20,5 +21,9 @@ namespace meshpipe {
 /// Returns the number of vertices added. Throws std::logic_error on columns of the wrong length.
 int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
                         std::vector<int>& side, double snap = 0.1);
+
+/// The same along a line as it is: what field < 0 and field >= 0 are there, the signs are here.
+int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
+                   std::vector<int>& side);
 
 }  // namespace meshpipe

@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "lib/curved.h"
 #include "lib/intersect.h"
 #include "lib/progress.h"
 
@@ -62,6 +63,17 @@ void over_edges(const Mesh& mesh, std::vector<double>& distance) {
     }
   for (std::size_t v = 0; v < distance.size(); ++v)
     distance[v] = length[v] > 0 ? distance[v] * count[v] / length[v] : distance[v] > 0 ? 1e300 : 0;
+}
+
+/// Lowers the distances of vertices to those from their places on the smooth surface above the reference.
+void lower_to_curved(const Surface& result, const Surface& reference, std::vector<double>& distance) {
+  const auto& face = result.vertex.get<int>("ref_face");
+  const auto &b1 = result.vertex.get<double>("b1"), &b2 = result.vertex.get<double>("b2");
+  const CurvedSurface smooth(reference);
+  for (std::size_t v = 0; v < distance.size(); ++v) {
+    const Vec3 p = smooth.point({face[v], 1 - b1[v] - b2[v], b1[v], b2[v]});
+    distance[v] = std::min(distance[v], norm(result.points[v] - p));
+  }
 }
 
 bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
@@ -165,6 +177,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.folds = find_folds(result, f.mesh.opposite, reference, reference_tree);
   f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);
   f.off = vertex_distances(result, mesh_tree, reference_tree);
+  if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
   add_progress(0.4);
   over_edges(result, f.off);
   f.farthest = (int)(std::max_element(f.off.begin(), f.off.end()) - f.off.begin());

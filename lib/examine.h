@@ -29,8 +29,8 @@ struct Findings {
 
 /// Everything but the patches. Of the result, vertex column `size` and face column `model` are used if they
 /// are there, of the reference, face columns `model` and `origin`: the mesh that it was cut from is what the
-/// result is compared with. `lines`: those that the result was made with, or null. samples: see
-/// distance_between.
+/// result is compared with; `curved`: vertices with their place (ref_face) may lie on the smooth surface.
+/// `lines`: those that the result was made with, or null. samples: see distance_between.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples);
 
 /// Edges where two triangles turn by more than 150 degrees while the reference, as far away as the edge is

@@ -167,7 +167,7 @@ std::vector<double> across(const Part& part) {
   return distance;
 }
 
-/// The best field over all directions, straightened.
+/// The best field over all directions, balanced.
 CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
   CutMaps cut;
   cut.levels = laplace_levels(part.disk, options.min_area, options.min_set);
@@ -188,12 +188,18 @@ CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
     cut.lines.assign(cut.levels.size(), {});
     drop_fragments(part, cut.field);
   }
-  constexpr int rounds = 8;
   reach_holes(part.disk, part.opposite, cut.field);
-  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, cut.field,
+  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains
+  constexpr int rounds = 8;
+  constexpr double much_longer = 1.5;
+  best_is = assess(part, cut.field);
+  std::vector<double> balanced = cut.field;
+  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, balanced,
                 rounds);
-  drop_fragments(part, cut.field);
-  follow_creases(part.disk, part.crease, cut.field);
+  drop_fragments(part, balanced);
+  const Assessment is = assess(part, balanced);
+  if (!best_is.valid || (is.valid && is.loops <= best_is.loops && is.length < much_longer * best_is.length))
+    cut.field = std::move(balanced);
   return cut;
 }
 
@@ -234,15 +240,28 @@ struct Halves {
   int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
 };
 
-/// Cuts the active triangles along the field. A line that is snapped to vertices may touch itself there: then
-/// it is snapped less, until the halves have no more loops than expected.
-Halves split(const Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
-             int expected_loops) {
+/// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight but for
+/// where it follows creases. A line that is snapped to vertices may touch itself there: then it is snapped
+/// less, until the halves have no more loops than expected.
+Halves split(const Surface& surface, const Part& part, const std::vector<double>& field,
+             const std::vector<char>& active, int expected_loops) {
+  constexpr int sweeps = 30;
+  const std::vector<Tri>& tris = part.mesh.tris;
+  const LevelLine level = zero_level(part.mesh, field);
+  std::vector<Hold> hold(field.size(), Hold::moves);
+  for (std::size_t h = 0; h < part.crease.size(); h++) {
+    const int u = origin(tris, h), v = target(tris, h), apex = target(tris, next(h));
+    if (part.crease[h] && level.sign[u] == level.sign[v] && level.sign[u] != level.sign[apex])
+      hold[u] = hold[v] = Hold::joins;
+  }
   Halves best;
   for (double snap : {0.1, 0.03, 0.01, 0.}) {
+    LevelLine line = level;
+    pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;
     trial.surface = surface;
-    cut_by_scalar_field(trial.surface, field, active, trial.side, snap);
+    cut_along_line(trial.surface, in_whole(line, part.mesh.vertex, surface.points.size()), active,
+                   trial.side);
     trial.loops = loops_of_halves(trial.surface, trial.side, trial.is);
     if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
     best = std::move(trial);
@@ -377,8 +396,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     cut.levels = maps.levels.size();
     const Assessment expected = assess(part, maps.field);
     cut.length = expected.length / diagonal(part.mesh);
-    std::vector<double> field(surface.points.size(), 1);
-    for (std::size_t v = 0; v < maps.field.size(); v++) field[part.mesh.vertex[v]] = maps.field[v];
+    const std::vector<double> field = maps.field;
     if (options.keep_maps) {
       cut.maps = std::move(maps);
       cut.maps.disk = part.disk;
@@ -394,7 +412,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       throw GoalMissed(message);
     };
     Halves made;
-    if (!expected.valid || !(made = split(surface, field, active, expected.loops)).loops)
+    if (!expected.valid || !(made = split(surface, part, field, active, expected.loops)).loops)
       fail("cannot be cut into 2 connected halves");
     for (const Topology& half : made.is)
       if (options.method == CutMethod::maxcut && half.eta_geo > options.max_aspect)

@@ -39,10 +39,12 @@ struct Labelling {
   bool operator<(const Labelling& o) const { return std::tie(burden, cost) < std::tie(o.burden, o.cost); }
 };
 
+constexpr double sharp = 40 * 3.14159265358979 / 180;  // an edge that is a crease, marked or not
+
 /// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
 std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
                              const std::vector<std::uint8_t>& model) {
-  constexpr double model_factor = 0.2, sharp_factor = 0.4, sharp = 40 * 3.14159265358979 / 180;
+  constexpr double model_factor = 0.2, sharp_factor = 0.4;
   std::vector<double> length(opposite.size(), 0);
   double sum = 0;
   std::size_t n = 0;
@@ -71,20 +73,24 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
   return weight;
 }
 
+/// What the parts of a cut have about as much of.
+enum class Balance { area, triangles };
+
 /// Cuts the triangles of a label into k parts by METIS, along borders of cells: the first part keeps the
 /// label, the others get next, next + 1, ... False if METIS leaves them together.
 bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, double imbalance, int seed,
-               int next) {
+               int next, Balance balance = Balance::area) {
   std::vector<int> node(c.cells.n, -1);
-  std::vector<double> area(c.cells.n, 0);
+  std::vector<double> load(c.cells.n, 0);
   int n = 0;
   double total = 0;
   for (std::size_t t = 0; t < label.size(); ++t)
     if (label[t] == mine) {
       const int cell = c.cells.of[t];
       if (node[cell] < 0) node[cell] = n++;
-      area[cell] += c.area[t];
-      total += c.area[t];
+      const double own = balance == Balance::area ? c.area[t] : 1;
+      load[cell] += own;
+      total += own;
     }
   struct Link {
     int a, b, weight;
@@ -112,7 +118,7 @@ bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, dou
   g.vertex_weight.assign(n, 1);
   for (int cell = 0; cell < c.cells.n; ++cell)
     if (node[cell] >= 0 && total > 0)
-      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * area[cell] * n / total), 1.0, 1000.0);
+      g.vertex_weight[node[cell]] = (int)std::clamp(std::round(10 * load[cell] * n / total), 1.0, 1000.0);
   const std::vector<int> part = partition_graph(g, k, imbalance, seed);
   for (std::size_t t = 0; t < label.size(); ++t)
     if (label[t] == mine)
@@ -228,10 +234,11 @@ void bisect(const Component& c, std::vector<int>& label, int mine, int new_label
 }
 
 /// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
-/// parts of the wrong topology bisected. Returns the parts, or 0 regions if it does not get there.
-Regions make_admissible(const Component& c, std::vector<int>& label, int seed) {
+/// parts of the wrong topology bisected. `fragment`: the share of the area that a part has to have at first.
+/// Returns the parts, or 0 regions if it does not get there.
+Regions make_admissible(const Component& c, std::vector<int>& label, int seed, double fragment = 0.01) {
   const int n_faces = (int)c.mesh.tris.size();
-  double min_area = 0.01 * c.whole.area;
+  double min_area = fragment * c.whole.area;
   int min_faces = std::min(20, n_faces / 10);
   auto regions_of_pieces = [&] {
     const int n = separate_pieces(c.opposite, label);
@@ -435,20 +442,31 @@ Component make_component(const Surface& surface, SubMesh sub) {
 }
 
 /// Cuts parts of too many triangles, with some room for those that smoothing adds.
-void bound_faces(const Component& c, Labelling& l, const PartitionOptions& options) {
-  const int limit = std::max(1, (int)(0.9 * options.max_faces));
+void bound_faces(const Component& c, Labelling& l, int max_faces, int seed) {
+  const int limit = std::max(1, (int)(0.9 * max_faces));
   for (int round = 0; round < 60; ++round) {
     bool again = false;
     std::vector<int> faces(l.parts, 0);
     for (int x : l.label) ++faces[x];
     int n = l.parts;
-    for (int p = 0; p < (int)faces.size(); ++p)
-      if (faces[p] > limit) bisect(c, l.label, p, n++, options.seed), again = true;
+    for (int p = 0; p < (int)faces.size(); ++p) {
+      if (faces[p] <= limit) continue;
+      const int k = (int)std::ceil(1.25 * faces[p] / limit);  // none is much larger than the others
+      if (!cut_label(c, l.label, p, k, 0.1, seed, n, Balance::triangles)) bisect(c, l.label, p, n, seed);
+      n += k - 1;
+      again = true;
+    }
     if (!again) return;
-    l.parts = (int)make_admissible(c, l.label, options.seed).region.size();
+    l.parts = (int)make_admissible(c, l.label, seed, 0).region.size();
     if (l.parts == 0) return;
   }
   l.parts = 0;
+}
+
+/// The bound on a component's parts: solves stay near linear, and there is work for all threads.
+int bound_of(int faces, const PartitionOptions& options) {
+  constexpr int large = 300000, bound = 100000;
+  return options.max_faces > 0 ? options.max_faces : faces > large ? bound : 0;
 }
 
 }  // namespace
@@ -471,7 +489,12 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     } else {
       l = best_labelling(c, options);
     }
-    if (l.parts > 0 && options.max_faces > 0) bound_faces(c, l, options);
+    const int bound = bound_of((int)c.mesh.tris.size(), options);
+    if (l.parts > 0 && bound > 0) {
+      Labelling bounded = l;
+      bound_faces(c, bounded, bound, options.seed);
+      if (bounded.parts > 0 || options.max_faces > 0) l = std::move(bounded);
+    }
     if (l.parts == 0)
       throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
                        " triangles and genus " + std::to_string(c.whole.genus()) +
@@ -492,35 +515,50 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
 
 Interfaces measure_interfaces(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  const std::vector<Tri>& tris = surface.tris;
+  const std::vector<Vec3>& points = surface.points;
+  const std::vector<int> opposite = opposite_halfedges(tris, (int)points.size());
   Interfaces r;
   const bool has_model = surface.face.has("model");
-  std::vector<std::pair<int, int>> ends;  // (vertex, the vertex at the other end, or -1 across a model edge)
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] > h && part[h / 3] != part[opposite[h] / 3]) {
-      int a = origin(surface.tris, h), b = target(surface.tris, h);
-      r.length += norm(surface.points[b] - surface.points[a]);
-      const bool model = has_model && surface.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1;
-      ends.push_back({a, model ? -1 : b});
-      ends.push_back({b, model ? -1 : a});
-    }
-  if (ends.empty()) return r;
-  r.length /= diagonal(surface);
-  std::sort(ends.begin(), ends.end());
+  auto is_interface = [&](int h) { return opposite[h] >= 0 && part[h / 3] != part[opposite[h] / 3]; };
+  auto normal = [&](int t) {
+    return area_vector(points[tris[t][0]], points[tris[t][1]], points[tris[t][2]]);
+  };
+  auto is_crease = [&](int h) {
+    return (has_model && surface.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1) ||
+           angle(normal(h / 3), normal(opposite[h] / 3)) > sharp;
+  };
+  std::vector<int> count(points.size(), 0), leaving(points.size(), -1);
+  std::vector<char> crease(points.size(), 0);
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    if (!is_interface(h)) continue;
+    const int a = origin(tris, h), b = target(tris, h);
+    ++count[a];
+    leaving[a] = h;
+    if (opposite[h] < h) continue;
+    r.length += norm(points[b] - points[a]);
+    if (is_crease(h)) crease[a] = crease[b] = 1;
+  }
+  if (r.length > 0) r.length /= diagonal(surface);
+  constexpr double pi = 3.14159265358979323846;
   std::vector<double> turning;
-  for (std::size_t i = 0, j; i < ends.size(); i = j) {
-    for (j = i + 1; j < ends.size() && ends[j].first == ends[i].first;) ++j;
-    const Vec3 p = surface.points[ends[i].first];
-    if (j - i == 2 && ends[i].second >= 0)
-      turning.push_back(angle(p - surface.points[ends[i].second], surface.points[ends[i + 1].second] - p));
-    if (j - i > 2) ++r.junctions;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (count[v] > 2) ++r.junctions;
+    if (count[v] != 2 || crease[v]) continue;
+    double sides[2] = {0, 0};
+    int side = 0, h = leaving[v];
+    do {
+      sides[side] += angle(points[target(tris, h)] - points[v], points[origin(tris, prev(h))] - points[v]);
+      h = opposite[prev(h)];
+      if (h >= 0 && is_interface(h)) side = 1;
+    } while (h >= 0 && h != leaving[v]);
+    if (h >= 0) turning.push_back(pi * std::abs(sides[0] - sides[1]) / (sides[0] + sides[1]));
   }
   if (turning.empty()) return r;
   auto quantile = turning.begin() + (std::ptrdiff_t)(turning.size() * 9 / 10);
   std::nth_element(turning.begin(), quantile, turning.end());
-  constexpr double degrees = 180 / 3.14159265358979323846;
-  r.turning_angle = *quantile * degrees;
-  r.largest_angle = *std::max_element(quantile, turning.end()) * degrees;
+  r.turning_angle = *quantile * 180 / pi;
+  r.largest_angle = *std::max_element(quantile, turning.end()) * 180 / pi;
   return r;
 }
 

@@ -12,7 +12,8 @@ struct PartitionOptions {
   bool homology = false;  ///< cuts along handles are tried as well (lib/handles.h); else only if METIS's
                           ///< labellings come to more than genus + 2 charts
   int seed = 1;
-  int max_faces = 0;  ///< bound on the triangles of a part; 0: none
+  int max_faces = 0;  ///< bound on the triangles of a part; 0: 100 000 for a component of more than 300 000,
+                      ///< so that solves stay near linear, else none
   double snap = 0.1;  ///< of cut_by_scalar_field
 };
 
@@ -31,8 +32,10 @@ std::string part_fault(const Surface& surface);
 /// How long and how straight the interfaces between the parts are.
 struct Interfaces {
   double length = 0;  ///< over the diagonal of the surface's bounding box
-  /// The 90 % quantile and the largest of the angles between successive edges, in degrees; without junctions
-  /// and model edges.
+  /// The 90 % quantile and the largest of the angles by which successive edges turn on the surface (geodesic
+  /// curvature: pi |left - right| / (left + right) by the angles of the triangles on both sides), in degrees;
+  /// without junctions and the vertices of interface edges along creases (model edges, and those sharper than
+  /// 40 degrees).
   double turning_angle = 0, largest_angle = 0;
   int junctions = 0;  ///< vertices with three or more interface edges
 };

@@ -27,12 +27,12 @@ struct Limits {
   int max_faces;
 };
 
-/// How far to diffuse, in mean edge lengths of the curve, and how often.
+/// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight.
 struct Attempt {
   double width;
-  int steps;
+  int steps, sweeps;
 };
-constexpr Attempt attempts[] = {{4, 5}, {3, 1}, {1.5, 1}};
+constexpr Attempt attempts[] = {{4, 5, 30}, {3, 1, 30}, {0, 0, 100}};
 
 /// What happens near the curves that are straightened together: each has a band of triangles of its own.
 struct Bands {
@@ -211,6 +211,33 @@ std::vector<double> diffuse(const Bands& bands, std::vector<double> sign, const 
   return s;
 }
 
+/// The sides of the bands' vertices: +1 or -1, or 0 where triangles of both sides meet.
+std::vector<double> sides(const Bands& bands, const std::vector<double>& sign) {
+  std::vector<double> least(bands.mesh.points.size(), 1), most(least.size(), -1);
+  for (std::size_t k = 0; k < sign.size(); ++k)
+    for (int v : bands.mesh.tris[k]) {
+      least[v] = std::min(least[v], sign[k]);
+      most[v] = std::max(most[v], sign[k]);
+    }
+  for (std::size_t v = 0; v < least.size(); ++v) least[v] = (least[v] + most[v]) / 2;
+  return least;
+}
+
+/// The zero level of the bands' field, pulled straight, as a line of the surface with so many vertices.
+LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, int sweeps,
+                        std::size_t n) {
+  std::vector<Hold> hold;
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    double& f = field[v];
+    if (bands.held[v] != Bands::free) f = bands.held[v];
+    if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
+    hold.push_back(bands.held[v] == Bands::free && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
+  }
+  LevelLine line = zero_level(bands.mesh, field);
+  pull_straight(bands.mesh, opposite_halfedges(bands.mesh.tris, (int)field.size()), line, hold, snap, sweeps);
+  return in_whole(line, bands.mesh.vertex, n);
+}
+
 /// Pieces of a part other than its largest lie inside a band: they change to its other part.
 void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& band,
                          const std::vector<Curve>& curves, std::vector<int>& part, int n_parts) {
@@ -267,18 +294,13 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
     sign.push_back(surface.face.get<int>("part")[t] == curves[bands.curve[t]].a ? 1 : -1);
     time.push_back(scale[bands.curve[t]]);
   }
-  const std::vector<double> level = diffuse(bands, std::move(sign), time, attempt.steps);
-
-  std::vector<double> field(surface.points.size(), 1);
+  const std::vector<double> level =
+      attempt.steps > 0 ? diffuse(bands, std::move(sign), time, attempt.steps) : sides(bands, sign);
+  const LevelLine line = straight_line(bands, level, limits.snap, attempt.sweeps, surface.points.size());
   std::vector<char> active(surface.tris.size(), 0);
-  for (std::size_t i = 0; i < level.size(); ++i) {
-    double f = bands.held[i] != Bands::free ? bands.held[i] : level[i];
-    if (bands.apex[i] != 0 && f != 0) f = bands.apex[i] * std::max(1e-3, bands.apex[i] * f);
-    field[bands.mesh.vertex[i]] = f;
-  }
   for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
     const Tri& v = surface.tris[t];
-    active[t] = field[v[0]] != 0 || field[v[1]] != 0 || field[v[2]] != 0;
+    active[t] = line.sign[v[0]] != 0 || line.sign[v[1]] != 0 || line.sign[v[2]] != 0;
   }
   const Measure before = measure(surface, opposite, bands.curve, curves.size());
 
@@ -286,7 +308,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   constexpr auto band_column = "straighten band";
   s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
-  cut_by_scalar_field(s, field, active, side, limits.snap);
+  cut_along_line(s, line, active, side);
   const std::vector<int> band = s.face.get<int>(band_column);
   s.face.erase(band_column);
   std::vector<int>& part = s.face.get<int>("part");
@@ -311,7 +333,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   std::vector<int> at_fault, near_fault;
   for (int c = 0; c < (int)curves.size(); ++c) {
     if (role[c] != Role::moves) continue;
-    if (now.length[c] >= before.length[c] || now.model_edges[c] < before.model_edges[c])
+    if (now.length[c] > (1 + 1e-9) * before.length[c] || now.model_edges[c] < before.model_edges[c])
       at_fault.push_back(c);
     else if (broken[curves[c].a] || broken[curves[c].b])
       near_fault.push_back(c);
@@ -423,9 +445,7 @@ void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_f
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
     for (const Attempt& attempt : attempts) open = straighten_together(surface, open, attempt, limits);
-    for (const Handle& one : open)
-      if (straighten_together(surface, {one}, attempts[1], limits).size() > 0)
-        straighten_together(surface, {one}, attempts[2], limits);
+    for (const Handle& one : open) straighten_together(surface, {one}, attempts[2], limits);
   }
 }
 

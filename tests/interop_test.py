@@ -233,6 +233,42 @@ def line_checks(mconvert, scratch):
                 check(f"Gmsh, lines of {path}", sorted(e[1] for e in elements), ["1", "1", "2", "2"])
 
 
+def second_order_checks(mconvert, scratch):
+    """Triangles and lines of second order: their nodes, in the order of Gmsh and VTK."""
+    sample = os.path.join(scratch, "second.mply")
+    table = "element mid_vertex 5\nproperty int a\nproperty int b\n" + "".join(f"property double {x}\n" for x in "xyz")
+    nodes = [(0, 1), (0, 2), (0, 3), (1, 2), (2, 3)]
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    rows = "".join(f"{a} {b} {(corners[a][0] + corners[b][0]) / 2} {(corners[a][1] + corners[b][1]) / 2} 0.1\n" for a, b in nodes)
+    with open(sample, "w") as file:
+        file.write(LINES.replace("end_header\n", table + "end_header\n") + rows)
+    number = {frozenset(e): 4 + i for i, e in enumerate(nodes)}
+    due = [[a, b, c] + [number[frozenset(e)] for e in ((a, b), (b, c), (c, a))] for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    lines = [[1, 2, 7], [2, 3, 8]]
+    for encoding in ("ascii", "binary"):
+        for kind in ("msh2", "msh4", "vtu"):
+            path = os.path.join(scratch, f"second-{encoding}.{kind}")
+            subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
+            reads(mconvert, path, [1] * 8, "mconvert: read flat between their nodes: 2 curved elements of second order\n")
+            if meshio:
+                mesh = meshio.read(path, file_format="gmsh" if kind.startswith("msh") else None)
+                found = {c.type: c.data.tolist() for c in mesh.cells}
+                wanted = {"triangle6": due} | ({"line3": lines} if kind != "vtu" else {})
+                check(f"meshio, nodes of {path}", (len(mesh.points), found), (9, wanted))
+            if vtk and kind == "vtu":
+                grid = vtk_read(path)
+                found = [[grid.GetCell(t).GetPointId(i) for i in range(6)] for t in range(grid.GetNumberOfCells())]
+                check(f"VTK, nodes of {path}", ([grid.GetCellType(0)], found), ([22], due))
+            if shutil.which("gmsh") and kind != "vtu":
+                out = os.path.join(scratch, "gmsh.msh2")
+                subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+                with open(out) as file:
+                    text = file.read().split("\n")
+                elements = [e.split() for e in text[text.index("$Elements") + 2:text.index("$EndElements")]]
+                check(f"Gmsh, types of {path}", sorted(e[1] for e in elements), ["8", "8", "9", "9"])
+
+
 def vtk_written(scratch):
     """The sample as VTK itself writes it, in every encoding: pairs of a file and what its data are."""
     points = vtk.vtkPoints()
@@ -306,13 +342,13 @@ def gmsh_written(path, scratch):
         yield out
 
 
-def reads(mconvert, path, due):
-    """What mconvert makes of another program's file: rows of faces, without the vertex numbers."""
+def reads(mconvert, path, due, said=""):
+    """What mconvert makes of another program's file, and says: rows of faces, without the vertex numbers."""
     done = subprocess.run([mconvert, "--surface", "--ascii", path], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           check=False, text=True)
     rows = done.stdout.split("end_header\n")[-1].splitlines()
     patches = sorted(int(r.split()[4]) for r in rows if r.startswith("3 ") and len(r.split()) == 5)
-    check(f"mconvert on {path}", (done.stderr, patches), ("", due))
+    check(f"mconvert on {path}", (done.stderr, patches), (said, due))
 
 
 def intermediates(programs, scratch):
@@ -364,6 +400,7 @@ def main():
             for path in gmsh_written(os.path.join(scratch, "ascii.msh"), scratch):
                 reads(mconvert, path, [1, 1, 5, 5])
         line_checks(mconvert, scratch)
+        second_order_checks(mconvert, scratch)
         colored = os.path.join(scratch, "colored.ply")
         subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
         if vtk:

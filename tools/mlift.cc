@@ -1,21 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mlift: map the plane meshes back to the surface and glue them along the
-// lines.
+// mlift: map the plane meshes back to the surface and glue them along the lines.
 #include "formats/lift_tables.h"
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
+#include "formats/second_order.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
 
+namespace {
+
+struct Options {
+  bool curved = false;
+  int order = 1;
+};
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  Options o;
+  auto add_options = [&](CLI::App& app) {
+    app.add_flag("--curved", o.curved, "vertices on the smooth surface through the input's vertices");
+    app.add_option("--order", o.order, "2: triangles of second order, with nodes within their edges")
+        ->check(CLI::Range(1, 2))
+        ->type_name("N");
+  };
   auto body = [&](Io& io) {
     Stream stream = io.read();
     const std::vector<Chart> charts = read_charts(stream);
-    const LiftedMesh mesh =
-        lift(stream.surface, charts, read_lines(stream), read_plane_meshes(stream, charts));
-    write_reference(stream, stream.surface);
-    write_lifted(stream, mesh);
+    LiftedMesh mesh = lift(stream.surface, charts, read_lines(stream), read_plane_meshes(stream, charts));
+    Surface reference = std::move(stream.surface);
+    reference.face.erase("curved");
+    if (o.curved) reference.face.set("curved", std::vector<std::uint8_t>(reference.tris.size(), 1));
+    write_reference(stream, reference);
+    const std::string exceptions = write_on_reference(stream, mesh, reference, o.order == 2);
+    if (!exceptions.empty()) io.say(exceptions);
     for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
     io.say(std::to_string(mesh.points.size()) + " vertices, " + std::to_string(mesh.tris.size()) +
            " triangles");
@@ -27,8 +46,10 @@ int main(int argc, char** argv) {
       argc, argv, "mlift",
       "Map the plane meshes of the charts back to the surface and glue them "
       "along the lines.\n\n"
-      "example:\n  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mlift "
-      "stages/09-mesh2d.ply -o "
-      "lifted.vtu",
-      [](CLI::App&) {}, body);
+      "examples:\n"
+      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mlift stages/09-mesh2d.ply -o lifted.vtu\n"
+      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mlift --curved --order 2 stages/09-mesh2d.ply "
+      "-o "
+      "second-order.vtu",
+      add_options, body);
 }

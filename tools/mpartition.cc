@@ -13,10 +13,13 @@ int main(int argc, char** argv) {
     app.add_option("--seed", options.seed, "seed of the partitioner (default 1)")
         ->check(CLI::Range(0, 1000000000))
         ->type_name("N");
-    app.add_option("--max-faces", options.max_faces, "no part has more triangles than this")
+    app.add_option(
+           "--max-faces", options.max_faces,
+           "no part has more triangles than this (default 100000 on surfaces of more than 300000, else none)")
         ->check(CLI::Range(100, 2147483647))
         ->type_name("N");
-    app.add_option("--method", method, "metis (default), or homology: cuts along handles too, if they give fewer parts")
+    app.add_option("--method", method,
+                   "metis (default), or homology: cuts along handles too, if they give fewer parts")
         ->check(CLI::IsMember({"metis", "homology"}))
         ->type_name("NAME");
   };

@@ -2,6 +2,7 @@
 // mrelax: optimise a lifted mesh on its reference surface, across interfaces that are not model edges.
 #include "formats/lift_tables.h"
 #include "formats/line_tables.h"
+#include "formats/second_order.h"
 #include "lib/clean.h"
 #include "lib/intersect.h"
 #include "lib/place.h"
@@ -79,7 +80,9 @@ int main(int argc, char** argv) {
       write_reference(stream, reference);
     }
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
-    write_lifted(stream, mesh);
+    const bool second_order = stream.find("mid_vertex") != nullptr;
+    const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);
+    if (!exceptions.empty()) io.say(exceptions);
     char text[200];
     std::snprintf(text, sizeof text,
                   "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)",

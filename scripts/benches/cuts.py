@@ -5,9 +5,10 @@ usage: scripts/bench cuts [options] [FILE ...]
 
 Without files, surfaces made by mshape are used. A row holds the surface's genus G, boundary loops N_B and geodesic aspect
 ratio (0: closed); the parts after mpartition, after mmultiscale and after mparam; the interfaces' length over the diagonal
-and their turning angle (90 % quantile and largest) after mmultiscale; the CPU seconds of mpartition and mmultiscale
-together, on one thread, best of --runs. Beside it, where Gmsh is there and succeeds: the patches that it makes of the
-surface so that they can be parametrised, by its log, and its CPU seconds of splitting and of creating the geometry.
+and their turning angle on the surface, away from creases (90 % quantile and largest), after mmultiscale; the CPU seconds
+of mpartition and mmultiscale together, on one thread, best of --runs. Beside it, where Gmsh is there and succeeds: the
+patches that it makes of the surface so that they can be parametrised, by its log, and its CPU seconds of splitting and of
+creating the geometry.
 
   --runs N                 runs of mpartition and mmultiscale (default 3)
   --timeout S              seconds for one run of any program (default 120)

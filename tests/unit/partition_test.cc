@@ -262,6 +262,17 @@ TEST(Partition, BoundsTheTrianglesOfAPart) {
   EXPECT_LE(*std::max_element(count.begin(), count.end()), 500);
 }
 
+TEST(Partition, BoundsThemEachBelowAHundredthOfTheSurface) {
+  Surface s = torus(80, 30);
+  PartitionOptions options;
+  options.max_faces = 55;
+  const int n = partition_to_disks(s, options);
+  EXPECT_EQ(part_fault(s), "");
+  std::vector<int> count(n, 0);
+  for (int p : s.face.get<int>("part")) ++count[p];
+  EXPECT_LE(*std::max_element(count.begin(), count.end()), 55);
+}
+
 TEST(Partition, GivesTheSameForTheSameSeed) {
   Surface a = slab(2, 3), b = a;
   partition_to_disks(a);
