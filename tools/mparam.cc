@@ -76,6 +76,7 @@ nlohmann::ordered_json record_of(const ParamReport& r, int part, std::size_t tri
           {"flips_after", r.flips_after},
           {"border_was_simple", r.border_was_simple},
           {"steps", r.steps},
+          {"anisotropy_mean", r.anisotropy_mean},
           {"anisotropy_median", r.anisotropy_median},
           {"anisotropy_p99", r.anisotropy_p99},
           {"anisotropy_max", r.anisotropy_max},

@@ -335,3 +335,29 @@ TEST(Param, OptimisationLowersDistortionAndStaysOneToOne) {
   EXPECT_LT(after.anisotropy_max, 1.1);  // the least is an isometry
   EXPECT_LT(after.area_scale, 1.1);
 }
+
+// A prism of needles, open at both ends, with nothing between its two rings: in a ring of the plane the
+// needles would be sheared beyond use.
+TEST(Param, ACoarseTubeIsCutOpen) {
+  auto prism = grid(
+      64, 1, true,
+      [](double s, double t) {
+        double a = 2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), 6 * t};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = prism;
+  s.vertex.rows = s.points.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  std::vector<ParamReport> reports;
+  Surface strict = s;
+  ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
+  EXPECT_GT(reports[0].anisotropy_mean, 4);
+  auto charts = map_surface(s, 1, {}, reports);
+  EXPECT_EQ(charts.size(), 2u);
+  for (std::size_t p = 0; p < charts.size(); ++p) {
+    EXPECT_LT(reports[p].anisotropy_mean, 1.1);
+    EXPECT_TRUE(one_to_one(charts[p].mesh, charts[p].uv));
+  }
+}
