@@ -68,7 +68,8 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 /// (p99 / p1) is cut along its limbs: the plane mesher copes with any scale, but a limb that shrinks that
 /// much does so by a factor over every few elements, and loses its shape. So is a part with sigma1/sigma2
 /// above 4 in the mean over its area, or else in two: the coarse tubes and rings of CAD, with nothing between
-/// their ends to follow a ring in the plane, have such maps, and lie flat once they are open. Ears of
+/// their ends to follow a ring in the plane, have such maps, and lie flat once they are open. Before all
+/// that, such parts are cut at the model edges inside them, where a cut costs the mesh nothing. Ears of
 /// parts that go to a circle, triangles with two edges on the longest loop, are split through their third
 /// edge, since a circle flattens them. Both append vertices and split triangles, and rewrite face column
 /// `part`; with `strict` there is neither. reports has one entry a part.
