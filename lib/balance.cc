@@ -242,17 +242,6 @@ Branches find_branches(const FilledDisk& disk, const std::vector<Level>& levels)
   return branches;
 }
 
-void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field) {
-  constexpr double snapped = 0.005;  // of an edge: less than any snap but 0
-  for (std::size_t h = 0; h < crease.size(); ++h) {
-    if (!crease[h]) continue;
-    const int u = origin(disk.tris, h), v = target(disk.tris, h), apex = target(disk.tris, next(h));
-    if ((field[u] > 0) != (field[v] > 0) || (field[u] > 0) == (field[apex] > 0)) continue;
-    for (int w : {u, v})
-      field[w] = std::copysign(std::min(std::abs(field[w]), snapped * std::abs(field[apex])), field[w]);
-  }
-}
-
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
                    const std::vector<char>& crease, std::vector<double>& field, int rounds) {
   const int n = disk.part_vertices;

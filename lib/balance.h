@@ -37,8 +37,4 @@ void reach_holes(const FilledDisk& disk, const std::vector<int>& opposite, std::
 void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, const Branches& branches,
                    const std::vector<char>& crease, std::vector<double>& field, int rounds);
 
-/// Where the zero level passes beside a crease, within a triangle, moves it onto the crease as closely as
-/// cut_by_scalar_field snaps: no region that thin is left between the two. Signs stay.
-void follow_creases(const FilledDisk& disk, const std::vector<char>& crease, std::vector<double>& field);
-
 }  // namespace meshpipe

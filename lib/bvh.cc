@@ -173,8 +173,10 @@ Box Bvh::build(Item* items, int first, int count, int node) {
   }
   const bool tasks = count > task_size;
   for (int k = 0; k < 4; ++k) {
-    if (part[k] > 1) {
-#pragma omp task shared(box) if (tasks)
+    if (part[k] > 1 && tasks) {
+#pragma omp task shared(box)
+      box[k] = build(items, start[k], part[k], child[k]);
+    } else if (part[k] > 1) {  // a task that is done at once would still cost more than a small tree
       box[k] = build(items, start[k], part[k], child[k]);
     } else if (part[k] == 1) {
       const int t = items[start[k]].tri;
@@ -183,7 +185,9 @@ Box Bvh::build(Item* items, int first, int count, int node) {
       child[k] = -1 - t;
     }
   }
+  if (tasks) {
 #pragma omp taskwait
+  }
   Box all = none;
   for (int k = 0; k < 4; ++k) {
     set_child(node, k, child[k], box[k]);

@@ -167,7 +167,7 @@ std::vector<double> across(const Part& part) {
   return distance;
 }
 
-/// The best field over all directions, straightened.
+/// The best field over all directions, balanced.
 CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
   CutMaps cut;
   cut.levels = laplace_levels(part.disk, options.min_area, options.min_set);
@@ -188,12 +188,18 @@ CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
     cut.lines.assign(cut.levels.size(), {});
     drop_fragments(part, cut.field);
   }
-  constexpr int rounds = 8;
   reach_holes(part.disk, part.opposite, cut.field);
-  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, cut.field,
+  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains
+  constexpr int rounds = 8;
+  constexpr double much_longer = 1.5;
+  best_is = assess(part, cut.field);
+  std::vector<double> balanced = cut.field;
+  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, balanced,
                 rounds);
-  drop_fragments(part, cut.field);
-  follow_creases(part.disk, part.crease, cut.field);
+  drop_fragments(part, balanced);
+  const Assessment is = assess(part, balanced);
+  if (!best_is.valid || (is.valid && is.loops <= best_is.loops && is.length < much_longer * best_is.length))
+    cut.field = std::move(balanced);
   return cut;
 }
 

@@ -8,6 +8,7 @@
 
 #include "lib/progress.h"
 #include "lib/relaxer.h"
+#include "lib/size.h"
 
 namespace meshpipe {
 
@@ -81,7 +82,9 @@ Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& 
 }
 
 RelaxReport Relaxer::run() {
-  const double target = options_.target_triangles > 0 ? options_.target_triangles : wanted_triangles();
+  const double target = options_.target_triangles > 0 ? options_.target_triangles
+                        : ground_->sizes              ? count_for_size(ground_->surface, *ground_->sizes)
+                                                      : m_.live;
   for (int i = 0; i < 3; ++i) {
     collapse_short_segments();
     split_long(1.4, 1e9);
@@ -102,8 +105,13 @@ RelaxReport Relaxer::run() {
     smooth(2);
     add_progress(0.9 / options_.sweeps);
   }
-  for (int round = 0; round < 2; ++round) reach_tips();
-  mend_worst();
+  // what is mended is farther from some tips, what reaches them needs mending
+  constexpr int rounds = 4;
+  std::vector<Place> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
+  for (int round = 0; round < rounds; ++round) {
+    reach_tips(tips);
+    mend_worst();
+  }
   separate();
   return finish();
 }
@@ -114,20 +122,6 @@ void Relaxer::put(int v, const Place& place, Vec3 p, Vec3 facing) {
   points_[v] = p;
   facing_[v] = facing;
   if (ground_->sizes) lifted_.size[v] = ground_->size(place);
-}
-
-/// Triangles the size field asks for on the reference: the integral of dA / (sqrt(3)/4 h^2).
-double Relaxer::wanted_triangles() const {
-  if (!ground_->sizes) return (double)m_.live;
-  const std::vector<double>& size = *ground_->sizes;
-  const std::vector<Vec3>& p = ground_->surface.points;
-  double n = 0;
-  for (const Tri& t : ground_->surface.tris) {
-    const double h = (size[t[0]] + size[t[1]] + size[t[2]]) / 3;
-    const Vec3 area = area_vector(p[t[0]], p[t[1]], p[t[2]]);
-    n += 0.5 * norm(area) / (sqrt3 / 4 * h * h);
-  }
-  return n;
 }
 
 /// Splits the longest or collapses the shortest edges until the count is within half a percent of the target.

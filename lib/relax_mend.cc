@@ -7,44 +7,71 @@
 #include "lib/bvh.h"
 #include "lib/intersect.h"
 #include "lib/relaxer.h"
+#include "lib/size.h"
 
 namespace meshpipe {
 
 // --- tips ---
 
-/// Tips and ridges that the mesh cuts off are where it is farthest from the reference. For the vertices of
-/// the reference that lie farther than a tenth of the size, the farthest first, a mesh vertex goes there and
-/// stays.
-void Relaxer::reach_tips() {
+/// The places of the reference that a mesh with edges of length h is likely to cut off: its vertices, and
+/// where it bends, points on its edges at most h / 3 apart.
+std::vector<Place> Ground::likely_tips(double h) const {
+  constexpr double bends = 0.985;  // 10 degrees
+  const std::vector<Vec3>& p = surface.points;
+  std::vector<Place> tips(p.size());
+  for (int t = 0; t < (int)surface.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      tips[surface.tris[t][i]] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+  std::erase_if(tips, [](const Place& tip) { return tip.face < 0; });  // of no triangle
+  for (int t = 0; t < (int)surface.tris.size(); ++t) {
+    const Tri& v = surface.tris[t];
+    for (int i = 0; i < 3; ++i) {
+      const int a = v[i], b = v[(i + 1) % 3],
+                pieces = (int)std::min(50.0, std::ceil(3 * norm(p[b] - p[a]) / h));
+      if (a > b || pieces < 2) continue;
+      const Vec3 n = normalized(area_vector(p[v[0]], p[v[1]], p[v[2]]));
+      if (dot(n, normalized(normals[a])) > bends && dot(n, normalized(normals[b])) > bends) continue;
+      for (int k = 1; k < pieces; ++k) {
+        double at[3] = {0, 0, 0};
+        at[(i + 1) % 3] = (double)k / pieces, at[i] = 1 - at[(i + 1) % 3];
+        tips.push_back({t, at[0], at[1], at[2]});
+      }
+    }
+  }
+  return tips;
+}
+
+/// Tips and ridges that the mesh cuts off are where it is farthest from the reference. Where they are farther
+/// than a tenth of the size, the farthest first, a mesh vertex goes there and stays. Forgets the `tips` that
+/// the mesh is near to.
+void Relaxer::reach_tips(std::vector<Place>& tips) {
   std::vector<int> number;
   const Mesh now = compact(number);
   if (now.tris.empty()) return;
   const Bvh tree(now);
-  const Surface& s = ground_->surface;
-  const int n = (int)s.points.size();
+  const double h = size_for_count(total_area(now), now.tris.size());
+  const int n = (int)tips.size();
   std::vector<Bvh::Hit> hit(n);
 #pragma omp parallel for schedule(static) if (n > 10000)
-  for (int v = 0; v < n; ++v) hit[v] = tree.nearest(s.points[v]);
-  const double h = std::sqrt(4 / sqrt3 * total_area(now) / (double)now.tris.size());
+  for (int i = 0; i < n; ++i) hit[i] = tree.nearest(ground_->walk.point(tips[i]));
   double farthest = 0;
-  for (int v = 0; v < n; ++v) farthest = std::max(farthest, hit[v].distance);
-  const double far_enough = std::max(0.1 * h, 0.5 * farthest);
+  for (int i = 0; i < n; ++i) farthest = std::max(farthest, hit[i].distance);
+  const double far_enough = std::max(0.1 * h, 0.7 * farthest);
   std::vector<std::pair<double, int>> far;
-  for (int v = 0; v < n; ++v)
-    if (hit[v].distance > far_enough) far.push_back({-hit[v].distance, v});
+  for (int i = 0; i < n; ++i)
+    if (hit[i].distance > 0.4 * far_enough) far.push_back({-hit[i].distance, i});
   std::sort(far.begin(), far.end());
-  std::vector<Place> place(n);
-  for (int t = 0; t < (int)s.tris.size(); ++t)
-    for (int i = 0; i < 3; ++i)
-      place[s.tris[t][i]] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
   int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
-  for (auto [minus_distance, v] : far) {
-    if (left == 0) break;
+  std::vector<Place> kept;
+  for (auto [minus_distance, i] : far) {
+    kept.push_back(tips[i]);
+    if (-minus_distance <= far_enough || left == 0) continue;
     int alive = -1;
-    for (int w : now.tris[hit[v].place.face])
+    for (int w : now.tris[hit[i].place.face])
       if (m_.out[w] >= 0) alive = m_.out[w] / 3;
-    if (alive >= 0 && reach(place[v], alive, far_enough)) --left;
+    if (alive >= 0 && reach(tips[i], alive, far_enough)) --left;
   }
+  tips.swap(kept);
   smooth(3);
   flip_to_shape();
   smooth(2);
@@ -71,6 +98,7 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
   const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
   const Relaxer before = patch(triangles, vertices);
   const Vec3 facing = facing_at(tip);
+  const double near_enough = std::max(before.farthest(), least / size_at(m_.tris[t][0]));
   double best = before.badness() + spoils;
   Relaxer chosen = before;
   bool found = false;
@@ -88,7 +116,8 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
     after.held_[v] = anchored;
     after.listed_ = false;
     after.settle();
-    if (const double bad = after.badness(); bad < best && after.least_agreeing() > 0)
+    if (const double bad = after.badness();
+        bad < best && after.least_agreeing() > 0 && after.farthest() < near_enough)
       best = bad, chosen = after, found = true;
   }
   if (found) adopt(chosen, triangles, vertices);
@@ -103,8 +132,12 @@ double Relaxer::quality(int t) const {
   const auto [a, b, c] = m_.tris[t];
   if (agrees(a, b, c) < 0) return 0;
   const Vec3 p = at(a), q = at(b), r = at(c);
-  const double least = std::min({angle(q - p, r - p), angle(r - q, p - q), angle(p - r, q - r)});
-  return std::min(kappa(p, q, r) / good_kappa, least / good_angle);
+  const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
+  // the least angle is opposite to the shortest side
+  const double least = qr <= pq && qr <= rp ? angle(q - p, r - p)
+                       : rp <= pq           ? angle(r - q, p - q)
+                                            : angle(p - r, q - r);
+  return std::min(k / good_kappa, least / good_angle);
 }
 
 /// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside
@@ -205,6 +238,23 @@ double Relaxer::least_agreeing() const {
   for (int t = 0; t < (int)m_.tris.size(); ++t)
     if (!m_.dead(t)) least = std::min(least, agrees(m_.tris[t][0], m_.tris[t][1], m_.tris[t][2]));
   return least;
+}
+
+/// How far the middles of edges and triangles are from the reference, at most, in units of the size.
+double Relaxer::farthest() const {
+  double most = 0;
+  auto look = [&](int v, Vec3 p) {
+    const Place& from = lifted_.place[v];
+    most = std::max(most, norm(ground_->walk.point(ground_->walk.closest(from, p)) - p) / size_at(v));
+  };
+  for (int t = 0; t < (int)m_.tris.size(); ++t) {
+    if (m_.dead(t)) continue;
+    const auto [a, b, c] = m_.tris[t];
+    look(a, (1.0 / 3) * (at(a) + at(b) + at(c)));
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (m_.opp[h] < h) look(m_.from(h), 0.5 * (at(m_.from(h)) + at(m_.to(h))));
+  }
+  return most;
 }
 
 /// Does here what was done to a patch.

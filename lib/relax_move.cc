@@ -8,7 +8,7 @@
 
 namespace meshpipe {
 namespace {
-constexpr double size_weight = 0.025;
+constexpr double size_weight = 0.012;
 constexpr double no_step = 3e-3;     ///< a step below this share of the size is none
 constexpr int worth_threads = 2000;  ///< vertices of a colour
 }  // namespace
@@ -187,6 +187,15 @@ void Relaxer::list_by_color() {
   listed_ = true;
 }
 
+/// One of a colour: moves it unless it is held or nothing round it has changed since.
+bool Relaxer::advance(int v, int now) {
+  if (settled(v)) return false;
+  tried_[v] = now;
+  if (!(held_[v] == slides ? slide(v) : move(v))) return false;
+  changed_[v] = now;
+  return true;
+}
+
 /// Every vertex once a sweep, colour by colour: the vertices of a colour do not see each other, so that they
 /// can move at the same time and the result does not depend on who comes first.
 void Relaxer::smooth(int sweeps) {
@@ -195,14 +204,11 @@ void Relaxer::smooth(int sweeps) {
     int moves = 0;
     for (int c = 0; c < 64 && color_start_[c] < color_start_[64]; ++c) {
       const int now = ++clock_, first = color_start_[c], last = color_start_[c + 1];
-#pragma omp parallel for schedule(static) reduction(+ : moves) if (last - first > worth_threads)
-      for (int k = first; k < last; ++k) {
-        const int v = by_color_[k];
-        if (settled(v)) continue;
-        tried_[v] = now;
-        if (!(held_[v] == slides ? slide(v) : move(v))) continue;
-        changed_[v] = now;
-        ++moves;
+      if (last - first > worth_threads) {
+#pragma omp parallel for schedule(static) reduction(+ : moves)
+        for (int k = first; k < last; ++k) moves += advance(by_color_[k], now);
+      } else {  // not even a team of one: patches of a hundred triangles are smoothed hundreds of times
+        for (int k = first; k < last; ++k) moves += advance(by_color_[k], now);
       }
     }
     report_.moves += moves;

@@ -50,6 +50,7 @@ struct Ground {
   /// Smooth unit normal at a place.
   Vec3 normal(const Place& p) const;
   double size(const Place& p) const;
+  std::vector<Place> likely_tips(double h) const;
 
   const Surface& surface;
   const std::vector<double>* sizes;  ///< null if the surface has none
@@ -94,7 +95,6 @@ class Relaxer {
   Mesh compact(std::vector<int>& number) const;
 
   // relax.cc
-  double wanted_triangles() const;
   void meet_count(double target);
   RelaxReport finish();
 
@@ -107,6 +107,7 @@ class Relaxer {
   signed char free_color(int v) const;
   void edited(int v);
   void list_by_color();
+  bool advance(int v, int now);
   void smooth(int sweeps);
 
   // relax_edit.cc
@@ -135,7 +136,7 @@ class Relaxer {
   void remove_dislocations(int depth);
 
   // relax_mend.cc
-  void reach_tips();
+  void reach_tips(std::vector<Place>& tips);
   bool reach(const Place& tip, int t, double far_enough);
   double quality(int t) const;
   int irregularity(int v) const;
@@ -145,6 +146,7 @@ class Relaxer {
   Relaxer patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const;
   void settle();
   double least_agreeing() const;
+  double farthest() const;
   void try_edit(const Edit& edit);
   void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
   int worst() const;

@@ -29,6 +29,10 @@ namespace {
 
 constexpr const char* common_group = "Common options";
 
+/// Threads that wait must not keep the other programs of a pipe from working. OpenMP reads this before main,
+/// and after this if it is linked as an archive; mremesh sets it for where it is not.
+[[gnu::constructor(101)]] void wait_passively() { ::setenv("OMP_WAIT_POLICY", "passive", 0); }
+
 /// The file that is being written and has its name not yet: a program that is stopped removes it. While it
 /// is being made its name is not known: a signal then waits in `making`, whichever thread it came to.
 char temporary_file[4096];

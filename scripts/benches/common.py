@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the benchmarks share: running programs, generated surfaces, tables."""
 import argparse
+import gzip
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -18,44 +20,71 @@ GENERATED = [
 ]
 
 
+PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
 class Run:
-    """Status, wall and CPU seconds, megabytes (the largest resident size of one process) and the text of a command."""
+    """Status, wall and CPU seconds, megabytes of memory and the text of a command."""
 
     def __init__(self, status, wall, cpu, megabytes, text):
         self.status, self.wall, self.cpu, self.megabytes, self.text = status, wall, cpu, megabytes, text
 
 
-def run(command, timeout=None, output=None):
+def run(command, timeout=None, output=None, watch=False):
     """Runs a command (a string: by the shell, with pipefail), its descendants included in CPU and memory. Its standard
-    output goes to the file `output` if given; otherwise both outputs are in `text`. A timeout gives status -1."""
+    output goes to the file `output` if given; otherwise both outputs are in `text`. A timeout gives status -1. The memory
+    is the largest resident size of one process; with `watch` the largest sum of all that live at a time, which takes some
+    CPU time to look at."""
     words = ["bash", "-c", "set -o pipefail; " + command] if isinstance(command, str) else command
     with tempfile.TemporaryFile() as log:
         sink = open(output, "wb") if output else log
         before = time.perf_counter()
         child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=sink, stderr=log, start_new_session=True)
-        usage, status = wait(child, timeout)
+        usage, status, most = wait(child, timeout, watch)
         wall = time.perf_counter() - before
         if output:
             sink.close()
         log.seek(0)
         text = log.read().decode(errors="replace")
-    return Run(status, wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, text)
+    return Run(status, wall, usage.ru_utime + usage.ru_stime, most / 2**20 if watch else usage.ru_maxrss / 1024, text)
 
 
-def wait(child, timeout):
-    """Resource usage and exit status of `child` and what it has waited for; kills its process group after `timeout`."""
+def wait(child, timeout, watch):
+    """Resource usage and exit status of `child` and what it has waited for, and if watched the most memory of its session;
+    kills its process group after `timeout`."""
     end = time.perf_counter() + timeout if timeout else None
+    most, pause = 0, 0.002
     while True:
-        pid, status, usage = os.wait4(child.pid, os.WNOHANG if end else 0)
+        pid, status, usage = os.wait4(child.pid, os.WNOHANG if end or watch else 0)
         if pid:
             child.returncode = os.waitstatus_to_exitcode(status)
-            return usage, child.returncode
-        if time.perf_counter() > end:
+            return usage, child.returncode, most
+        if end and time.perf_counter() > end:
             os.killpg(child.pid, 9)
             _, _, usage = os.wait4(child.pid, 0)
             child.returncode = -1
-            return usage, -1
-        time.sleep(0.005)
+            return usage, -1, most
+        if watch:
+            most = max(most, resident(child.pid))
+            pause = min(0.05, 1.05 * pause)
+        time.sleep(pause if watch else 0.005)
+
+
+def resident(session):
+    """Bytes of memory of all processes of a session: what is their own, and the largest of what is shared."""
+    own, shared = 0, 0
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{pid}/stat") as f:
+                if int(f.read().rpartition(")")[2].split()[3]) != session:
+                    continue
+            with open(f"/proc/{pid}/statm") as f:
+                pages = f.read().split()
+        except (OSError, IndexError):
+            continue  # it has ended
+        own += int(pages[1]) - int(pages[2])
+        shared = max(shared, int(pages[2]))
+    return (own + shared) * PAGE
 
 
 def median(runs, key):
@@ -92,11 +121,16 @@ def parse(p, words):
 
 
 def surfaces(args, work, generated=None):
-    """(name, path, count) for every given FILE[:TRIANGLES], or for surfaces made by mshape."""
+    """(name, path, count) for every given FILE[:TRIANGLES], or for surfaces made by mshape. FILE may be a .gz."""
     found = []
     for spec in args.files:
         path, _, count = spec.rpartition(":") if spec.rpartition(":")[2].isdigit() else (spec, "", "")
-        found.append((os.path.basename(path).split(".")[0], path, int(count or 0)))
+        name = os.path.basename(path).split(".")[0]
+        if path.endswith(".gz"):
+            packed, path = path, os.path.join(work, os.path.basename(path)[:-3])
+            with gzip.open(packed) as source, open(path, "wb") as target:
+                shutil.copyfileobj(source, target)
+        found.append((name, path, int(count or 0)))
     if not found:
         for name, shape, count in generated or GENERATED:
             path = os.path.join(work, name + ".stl")

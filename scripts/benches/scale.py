@@ -22,45 +22,8 @@ import math
 import os
 import subprocess
 import tempfile
-import time
 
 from benches import common
-
-PAGE = os.sysconf("SC_PAGE_SIZE")
-
-
-def resident(session):
-    """Bytes of memory of all processes of a session: what is their own, and the largest of what is shared."""
-    own, shared = 0, 0
-    for pid in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{pid}/stat") as f:
-                if int(f.read().rpartition(")")[2].split()[3]) != session:
-                    continue
-            with open(f"/proc/{pid}/statm") as f:
-                pages = f.read().split()
-        except (OSError, IndexError):
-            continue  # it has ended
-        own += int(pages[1]) - int(pages[2])
-        shared = max(shared, int(pages[2]))
-    return (own + shared) * PAGE
-
-
-def watched(command):
-    """Status, wall and CPU seconds of a command, and the largest sum of memory of its processes in bytes."""
-    before = time.perf_counter()
-    child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    most, pause = 0, 0.002
-    while True:
-        pid, status, usage = os.wait4(child.pid, os.WNOHANG)
-        if pid:
-            child.returncode = os.waitstatus_to_exitcode(status)
-            break
-        most = max(most, resident(child.pid))
-        time.sleep(pause)
-        pause = min(0.05, 1.05 * pause)
-    return child.returncode, time.perf_counter() - before, usage.ru_utime + usage.ru_stime, most
-
 
 def exponent(pairs):
     """Slope of log y over log x from 10^5 on."""
@@ -92,10 +55,11 @@ def main(words):
             path, out = os.path.join(work, "in.ply"), os.path.join(work, "out.ply")
             subprocess.run(["mshape", *args.shape.split(), "--triangles", str(triangles), "-q", "-o", path], check=True)
             count = round(triangles * args.out)
-            status, wall, cpu, most = watched(["mremesh", "-q", "--triangles", str(count), *threads, path, "-o", out])
-            rows.append({"input_triangles": triangles, "triangles": count, "status": status, "wall": wall, "cpu": cpu,
-                         "megabytes": most / 2**20, "bytes_per_triangle": most / max(triangles, count)})
-            row(triangles, count, status, f"{wall:.2f}", f"{cpu:.2f}", f"{most / 2**20:.0f}", f"{most / max(triangles, count):.0f}")
+            run = common.run(["mremesh", "-q", "--triangles", str(count), *threads, path, "-o", out], watch=True)
+            a_triangle = run.megabytes * 2**20 / max(triangles, count)
+            rows.append({"input_triangles": triangles, "triangles": count, "status": run.status, "wall": run.wall, "cpu": run.cpu,
+                         "megabytes": run.megabytes, "bytes_per_triangle": a_triangle})
+            row(triangles, count, run.status, f"{run.wall:.2f}", f"{run.cpu:.2f}", f"{run.megabytes:.0f}", f"{a_triangle:.0f}")
             if args.stages:
                 for stage, run in common.stages(path, count, work, args.threads)[0]:
                     by_stage.setdefault(stage, []).append((triangles, run.cpu, run.megabytes))

@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whole runs: mremesh and any peer on the same surfaces at the same size.
+"""Whole runs: mremesh and other remeshers on the same surfaces, with as many triangles in the results.
 
 usage: scripts/bench whole [options] [FILE[:TRIANGLES] ...]
 
-Without files, surfaces made by mshape are used. Each program is run whole, file to file, the programs in turn, several
-times; the table shows median wall and CPU seconds and memory, the ratio of wall time to mremesh's, and the figures of the
+Without files, surfaces made by mshape are used. Beside mremesh runs Gmsh, where it is installed, in its own way to remesh
+an STL (ClassifySurfaces, CreateGeometry, Mesh 2), by its frontal mesher and by MeshAdapt; and every --peer. Their edge length
+is searched first, so that they come within 2 % of the triangles mremesh made. Then all run whole, file to file, in turn,
+several times; who takes longer than --slow is not run again after the search. The table shows median wall and CPU seconds,
+their ratios to mremesh's, the memory (the largest sum of what all processes of a run hold at a time), and the figures of the
 result by mcheck or another evaluator.
 
-  --runs N                 runs of each program (default 3)
+  --runs N                 runs of each program (default 5)
   --peer 'NAME=COMMAND'    another remesher: COMMAND with {in} (an OFF file), {out} (an OFF file), {h} (edge length), {n}
+                           (triangles), as in 'CGAL=remesh_cgal {in} {h} 10 {out}'
+  --gmsh COMMAND           Gmsh 4 (default gmsh; left out if it is not there)
+  --no-gmsh                without Gmsh
   --evaluator COMMAND      prints key=value lines, called with INPUT RESULT, in place of mcheck
   --timeout S              seconds for one run (default 600)
+  --slow S                 a program that takes longer is run once (default 30)
   --bin DIR                programs (default build/bin)
   --threads N              for mremesh (default all)
   --json FILE              the same figures as JSON
@@ -18,6 +25,7 @@ result by mcheck or another evaluator.
 import json
 import math
 import os
+import shutil
 import subprocess
 import tempfile
 
@@ -31,12 +39,20 @@ COLUMNS = [
     ("topology_same", "topology", "{}"),
     ("self_intersections", "crossings", "{}"),
 ]
+MESHERS = [("Gmsh frontal", 6), ("Gmsh MeshAdapt", 1)]
+GEO = """Merge "{surface}";
+ClassifySurfaces{{40 * Pi / 180, 1, 1, Pi}};
+CreateGeometry;
+Mesh.MeshSizeFromPoints = 0; Mesh.MeshSizeExtendFromBoundary = 0; Mesh.MeshSizeMin = {size!r}; Mesh.MeshSizeMax = {size!r};
+Mesh.Algorithm = {algorithm}; Mesh.Binary = 1;
+Mesh 2; Save "{result}";
+"""
 
 
 def judge(evaluator, reference, result, work):
     """Figures of a result: by the evaluator, or by mcheck."""
     if evaluator:
-        text = subprocess.run(f"{evaluator} {reference} {result}", shell=True, capture_output=True, text=True).stdout
+        text = subprocess.run(f"{evaluator} '{reference}' '{result}'", shell=True, capture_output=True, text=True).stdout
         figures = dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
         figures["hausdorff"] = figures.get("hausdorff_sym", "nan")
         figures = {k: float(v) if v not in ("NA", "") else math.nan for k, v in figures.items()}
@@ -54,7 +70,7 @@ def judge(evaluator, reference, result, work):
 def reference_of(path, work):
     """The cleaned surface as OFF, its number of triangles and its area."""
     clean, report = os.path.join(work, "reference.off"), os.path.join(work, "topology.json")
-    done = common.run(f"mclean -q '{path}' | mtopo -q --json '{report}' | mconvert - -o '{clean}'")
+    done = common.run(f"mclean -q '{path}' | mtopo -q --json '{report}' | mconvert -q - -o '{clean}'")
     if done.status:
         raise SystemExit(f"{path}: {done.text.strip()}")
     with open(report) as f:
@@ -62,44 +78,123 @@ def reference_of(path, work):
     return clean, sum(p["faces"] for p in parts), sum(p["area"] for p in parts)
 
 
+def triangles_of(path):
+    """Triangles of an OFF file or a binary STL; 0 if it is not there."""
+    if not os.path.exists(path):
+        return 0
+    if path.endswith(".stl"):
+        return (os.path.getsize(path) - 84) // 50
+    with open(path) as f:
+        return int(f.read(1000).split()[2])
+
+
+class Program:
+    """A remesher: `command(h)` makes `result` with edges of length h, which mremesh does not look at."""
+
+    def __init__(self, name, result, command):
+        self.name, self.result, self.command = name, result, command
+        self.runs, self.memory, self.made = [], 0, 0
+
+    def run(self, size, timeout, watch=False):
+        if os.path.exists(self.result):
+            os.remove(self.result)
+        done = common.run(self.command(size), timeout, watch=watch)
+        self.made = triangles_of(self.result)
+        if done.status == 0 and self.made == 0:
+            done.status = "no result"
+        return done
+
+    def search(self, size, count, timeout):
+        """The run that counts for memory, and the edge length whose result has `count` triangles within 2 %, if given."""
+        for _ in range(8):
+            self.size = size
+            first = self.run(size, timeout, watch=True)
+            self.runs, self.memory = [first], first.megabytes
+            if first.status or not count or abs(self.made - count) <= 0.02 * count:
+                break
+            size *= math.sqrt(self.made / count)
+
+
+def gmsh(args, algorithm, surface, work):
+    result, script = os.path.join(work, f"gmsh-{algorithm}.stl"), os.path.join(work, f"{algorithm}.geo")
+
+    def command(size):
+        with open(script, "w") as f:
+            f.write(GEO.format(surface=surface, size=size, algorithm=algorithm, result=result))
+        return [args.gmsh, script, "-", "-nopopup", "-nt", "1"]
+
+    return result, command
+
+
+def programs(args, path, count, clean, work):
+    """mremesh, and who runs beside it."""
+    out = os.path.join(work, "mremesh.off")
+    threads = f"-j {args.threads}" if args.threads else ""
+    found = [Program("mremesh", out, lambda _: f"mremesh -q --triangles {count} '{path}' -o '{out}' {threads}")]
+    for i, peer in enumerate(args.peer):
+        name, words = peer.split("=", 1)
+        result = os.path.join(work, f"peer-{i}.off")
+        found.append(Program(name, result, lambda size, words=words, result=result:
+                             words.format(**{"in": f"'{clean}'", "out": f"'{result}'", "h": repr(size), "n": count})))
+    if not args.no_gmsh and shutil.which(args.gmsh):
+        surface = os.path.join(work, "reference.stl")
+        common.run(["mconvert", "-q", clean, "--binary", "-o", surface])
+        for name, algorithm in MESHERS:
+            found.append(Program(name, *gmsh(args, algorithm, surface, work)))
+    return found
+
+
+def measure(args, found, size):
+    """Searches the edge lengths, then runs all in turn; whoever fails or is slow not again."""
+    ours = found[0]
+    ours.search(size, None, args.timeout)
+    for p in found[1:]:
+        p.search(size, ours.made, args.timeout)
+    again = [p for p in found if p.runs[0].status == 0 and p.runs[0].wall <= args.slow]
+    for p in again:
+        p.runs = []
+    for _ in range(args.runs):
+        for p in again:
+            p.runs.append(p.run(p.size, args.timeout))
+
+
 def main(words):
     p = common.parser(__doc__)
-    p.add_argument("--runs", type=int, default=3)
+    p.add_argument("--runs", type=int, default=5)
     p.add_argument("--peer", action="append", default=[])
+    p.add_argument("--gmsh", default="gmsh")
+    p.add_argument("--no-gmsh", action="store_true")
     p.add_argument("--evaluator")
     p.add_argument("--timeout", type=float, default=600)
+    p.add_argument("--slow", type=float, default=30)
     p.add_argument("--threads", type=int)
     args = common.parse(p, words)
     rows = []
     with tempfile.TemporaryDirectory() as work:
-        row = common.table(["surface", "in", "program", "out", *(c[1] for c in COLUMNS), "s", "ratio", "CPU s", "MB"])
+        row = common.table(["surface", "in", "program", "out", *(c[1] for c in COLUMNS), "s", "ratio", "CPU s", "ratio", "MB", "ratio"])
         for name, path, count in common.surfaces(args, work):
             clean, triangles, area = reference_of(path, work)
             count = count or triangles
-            size = math.sqrt(4 * area / (math.sqrt(3) * count))
-            out = {program: os.path.join(work, program + ".off") for program in ["mremesh", *(p.split("=")[0] for p in args.peer)]}
-            threads = f"-j {args.threads}" if args.threads else ""
-            commands = {"mremesh": f"mremesh -q --triangles {count} '{path}' -o '{out['mremesh']}' {threads}"}
-            for peer in args.peer:
-                program, command = peer.split("=", 1)
-                commands[program] = command.format(**{"in": clean, "out": out[program], "h": size, "n": count})
-            for result in out.values():
-                if os.path.exists(result):
-                    os.remove(result)
-            runs = common.interleaved(commands, args.runs, args.timeout)
-            for program in commands:
-                figures = {"surface": name, "input_triangles": triangles, "program": program, "status": runs[program][0].status}
-                for key in ("wall", "cpu", "megabytes"):
-                    figures[key] = common.median(runs[program], key)
-                figures["ratio"] = figures["wall"] / common.median(runs["mremesh"], "wall")
-                cells, made = ["-"] * len(COLUMNS), "failed, status %d" % figures["status"]
-                if figures["status"] == 0 and os.path.exists(out[program]):
-                    figures.update(judge(args.evaluator, clean, out[program], work))
-                    with open(out[program]) as f:
-                        made = f.read(1000).split()[2]
+            found = programs(args, path, count, clean, work)
+            measure(args, found, math.sqrt(4 * area / (math.sqrt(3) * count)))
+            ours = [common.median(found[0].runs, "wall"), common.median(found[0].runs, "cpu"), found[0].memory]
+            for program in found:
+                cost = [common.median(program.runs, "wall"), common.median(program.runs, "cpu"), program.memory]
+                ratio = [a / b for a, b in zip(cost, ours)]
+                status = next((r.status for r in program.runs if r.status), 0)
+                figures = {"surface": name, "input_triangles": triangles, "program": program.name, "status": status,
+                           "edge_length": program.size, "triangles": program.made, "runs": len(program.runs)}
+                for key, a, b in zip(("wall", "cpu", "megabytes"), cost, ratio):
+                    figures[key], figures[key + "_ratio"] = a, b
+                cells, made = ["-"] * len(COLUMNS), f"failed: {status if isinstance(status, str) else 'status %d' % status}"
+                if status == -1:
+                    made = f"longer than {args.timeout:.0f} s"
+                if status == 0:
+                    figures.update(judge(args.evaluator, clean, program.result, work))
+                    made = program.made
                     cells = [form.format(figures.get(key, math.nan)) for key, _, form in COLUMNS]
-                row(name, triangles, program, made, *cells, f"{figures['wall']:.2f}", f"{figures['ratio']:.2f}",
-                    f"{figures['cpu']:.2f}", f"{figures['megabytes']:.0f}")
+                row(name, triangles, program.name, made, *cells, f"{cost[0]:.2f}", f"{ratio[0]:.2f}", f"{cost[1]:.2f}",
+                    f"{ratio[1]:.2f}", f"{cost[2]:.0f}", f"{ratio[2]:.2f}")
                 rows.append(figures)
     common.save(args, rows)
     return 0

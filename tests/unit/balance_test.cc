@@ -156,30 +156,6 @@ TEST(Multiscale, CreasesAttractTheCut) {
   EXPECT_LT(total / 2, 82);
 }
 
-TEST(Balance, ACutBesideACreaseMovesOntoIt) {
-  //  6---7---8      the crease is the middle row; the cut runs between it and the lower row
-  //  | / | / |
-  //  3===4===5
-  //  | / | / |
-  //  0---1---2
-  const Mesh m = square(3);
-  FilledDisk disk;
-  static_cast<Mesh&>(disk) = m;
-  disk.part_vertices = 9;
-  disk.part_tris = 8;
-  std::vector<char> crease(24, 0);
-  for (int h = 0; h < 24; ++h)
-    if (origin(m.tris, h) / 3 == 1 && target(m.tris, h) / 3 == 1) crease[h] = 1;
-  std::vector<double> field{-1, -1, -1, 1, 1, 1, 2, 2, 2};
-  follow_creases(disk, crease, field);
-  for (int v : {3, 4, 5}) {
-    EXPECT_GT(field[v], 0);
-    EXPECT_LT(field[v], 0.01);
-  }
-  EXPECT_EQ(field[0], -1);
-  EXPECT_EQ(field[8], 2);
-}
-
 TEST(Multiscale, AThinRingIsCutIntoTwoFlatRings) {
   Surface s = surface_of(torus(0.2, 4000));
   const int n_parts = partition_to_disks(s);
