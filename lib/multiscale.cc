@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "lib/balance.h"
+#include "lib/coarsen.h"
 #include "lib/cut.h"
 #include "lib/cut_line.h"
 #include "lib/error.h"
@@ -34,24 +35,20 @@ struct Assessment {
   double smaller_share = 0;  ///< of the area
 };
 
-/// A part of genus 0 with what all candidates share.
+/// A part of genus 0.
 struct Part {
-  SubMesh mesh;
+  Mesh mesh;
+  std::vector<int> vertex;  ///< its vertices in the whole
   std::vector<int> opposite;
   std::vector<char> crease;  ///< of half-edges: model edges inside the part; empty if there are none
-  FilledDisk disk;
 };
 
-std::vector<char> creases(const Surface& surface, const Part& part) {
-  std::vector<char> crease;
-  if (!surface.face.has("model")) return crease;
-  const auto& model = surface.face.get<std::uint8_t>("model");
-  for (std::size_t h = 0; h < part.opposite.size(); h++) {
-    if (part.opposite[h] < 0 || !(model[part.mesh.face[h / 3]] >> h % 3 & 1)) continue;
-    crease.resize(part.opposite.size(), 0);
-    crease[h] = 1;
-  }
-  return crease;
+/// Face column `model` of the part; empty if there is none.
+std::vector<std::uint8_t> model_of(const Surface& surface, const SubMesh& part) {
+  std::vector<std::uint8_t> model;
+  if (!surface.face.has("model")) return model;
+  for (int t : part.face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
+  return model;
 }
 
 int root_of(std::vector<int>& parent, int v) {
@@ -137,8 +134,7 @@ bool better(const Assessment& a, const Assessment& b) {
 
 /// The last resort: across the part, half way from its rim to its farthest vertex. It always shortens the
 /// part.
-std::vector<double> across(const Part& part) {
-  const FilledDisk& disk = part.disk;
+std::vector<double> across(const Part& part, const std::vector<int>& rim) {
   std::vector<double> distance(part.mesh.points.size(), 1e300);
   std::vector<int> start(distance.size() + 1, 0), edges(3 * part.mesh.tris.size());
   for (const Tri& t : part.mesh.tris)
@@ -148,7 +144,7 @@ std::vector<double> across(const Part& part) {
   for (std::size_t h = 0; h < edges.size(); h++) edges[fill[origin(part.mesh.tris, h)]++] = h;
   using Item = std::pair<double, int>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
-  for (int v : disk.rim) queue.push({distance[v] = 0, v});
+  for (int v : rim) queue.push({distance[v] = 0, v});
   double farthest = 0;
   while (!queue.empty()) {
     auto [d, v] = queue.top();
@@ -168,50 +164,97 @@ std::vector<double> across(const Part& part) {
 }
 
 /// The best field over all directions, balanced.
-CutMaps best_cut(const Part& part, const MultiscaleOptions& options) {
+CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options) {
   CutMaps cut;
-  cut.levels = laplace_levels(part.disk, options.min_area, options.min_set);
-  Assessment best_is;
+  cut.disk = fill_holes(part.mesh);
+  const FilledDisk& disk = cut.disk;
+  cut.levels = laplace_levels(disk, options.min_area, options.min_set);
+  struct Candidate {
+    Assessment is;
+    std::vector<double> field;
+    std::vector<std::vector<Vec2>> lines;
+  };
+  std::vector<Candidate> candidates;
   for (int i = 0; i < options.directions; i++) {
-    auto lines = cut_lines(part.disk, cut.levels, std::numbers::pi * i / options.directions);
-    std::vector<double> field = cut_line_field(part.disk, cut.levels, lines);
-    drop_fragments(part, field);
-    Assessment is = assess(part, field);
-    if (cut.field.empty() || better(is, best_is)) {
-      cut.field = std::move(field);
-      cut.lines = std::move(lines);
-      best_is = is;
-    }
+    Candidate c;
+    c.lines = cut_lines(disk, cut.levels, std::numbers::pi * i / options.directions);
+    c.field = cut_line_field(disk, cut.levels, c.lines);
+    drop_fragments(part, c.field);
+    c.is = assess(part, c.field);
+    candidates.push_back(std::move(c));
   }
-  if (!best_is.valid || best_is.smaller_share < least_share) {
-    cut.field = across(part);
-    cut.lines.assign(cut.levels.size(), {});
-    drop_fragments(part, cut.field);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return better(a.is, b.is); });
+  if (const Assessment& best = candidates[0].is; !best.valid || best.smaller_share < least_share) {
+    candidates.resize(1);
+    candidates[0].field = across(part, disk.rim);
+    candidates[0].lines.assign(cut.levels.size(), {});
+    drop_fragments(part, candidates[0].field);
   }
-  reach_holes(part.disk, part.opposite, cut.field);
-  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains
+  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains: then
+  // another direction may do better
   constexpr int rounds = 8;
   constexpr double much_longer = 1.5;
-  best_is = assess(part, cut.field);
-  std::vector<double> balanced = cut.field;
-  balance_sides(part.disk, part.opposite, find_branches(part.disk, cut.levels), part.crease, balanced,
-                rounds);
-  drop_fragments(part, balanced);
-  const Assessment is = assess(part, balanced);
-  if (!best_is.valid || (is.valid && is.loops <= best_is.loops && is.length < much_longer * best_is.length))
-    cut.field = std::move(balanced);
+  const Branches branches = find_branches(disk, cut.levels);
+  for (Candidate& c : candidates) {
+    if (!cut.field.empty() && !c.is.valid) break;
+    reach_holes(disk, part.opposite, c.field);
+    if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
+    const Assessment before = assess(part, c.field);
+    balance_sides(disk, part.opposite, branches, part.crease, c.field, rounds);
+    drop_fragments(part, c.field);
+    const Assessment after = assess(part, c.field);
+    if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
+    cut.field = std::move(c.field);
+    cut.lines = std::move(c.lines);
+    break;
+  }
+  return cut;
+}
+
+/// A part of a mesh with all that its cut is found with.
+Part make_part(Mesh mesh, const std::vector<std::uint8_t>& model) {
+  Part part;
+  part.opposite = opposite_halfedges(mesh.tris, mesh.points.size());
+  for (std::size_t h = 0; h < 3 * model.size(); h++) {
+    if (part.opposite[h] < 0 || !(model[h / 3] >> h % 3 & 1)) continue;
+    part.crease.resize(part.opposite.size(), 0);
+    part.crease[h] = 1;
+  }
+  part.mesh = std::move(mesh);
+  return part;
+}
+
+/// The best cut of a part, and its field there. That of a large part is looked for on a coarse model: the
+/// sides that its vertices give to those that have become them are as many and as connected.
+CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const MultiscaleOptions& options,
+                 std::vector<double>& field) {
+  constexpr int enough = 12000, at_most = 6;  // triangles; of them for one
+  constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
+  const double n = part.mesh.tris.size();
+  Coarse coarse;
+  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most));
+  if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
+    CutMaps cut = best_cut_of(part, options);
+    field = cut.field;
+    return cut;
+  }
+  CutMaps cut = best_cut_of(make_part(coarse, coarse.model), options);
+  field.clear();
+  for (int v : coarse.of) field.push_back(cut.field[v]);
   return cut;
 }
 
 /// The single-level cut, as it comes; says how much of the part its map cannot tell apart.
-CutMaps single_cut(const Part& part, MultiscaleCut& says) {
-  MaxCut one = max_cut(part.disk);
+CutMaps single_cut(const Part& part, MultiscaleCut& says, std::vector<double>& field) {
+  CutMaps cut;
+  cut.disk = fill_holes(part.mesh);
+  MaxCut one = max_cut(cut.disk);
   says.too_small = one.too_small;
   says.turned_over = one.turned_over;
-  CutMaps cut;
   cut.levels.push_back(std::move(one.level));
   cut.lines.push_back(std::move(one.line));
-  cut.field = std::move(one.field);
+  cut.field = field = std::move(one.field);
   return cut;
 }
 
@@ -242,26 +285,34 @@ struct Halves {
 
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight but for
 /// where it follows creases. A line that is snapped to vertices may touch itself there: then it is snapped
-/// less, until the halves have no more loops than expected.
+/// less, until the halves have no more loops than expected; on a few coarse triangles it may be pulled off
+/// the part, so that at last it is left as it is.
 Halves split(const Surface& surface, const Part& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
-  constexpr int sweeps = 30;
+  struct Pull {
+    double snap;
+    int sweeps;
+  };
   const std::vector<Tri>& tris = part.mesh.tris;
   const LevelLine level = zero_level(part.mesh, field);
   std::vector<Hold> hold(field.size(), Hold::moves);
   for (std::size_t h = 0; h < part.crease.size(); h++) {
     const int u = origin(tris, h), v = target(tris, h), apex = target(tris, next(h));
-    if (part.crease[h] && level.sign[u] == level.sign[v] && level.sign[u] != level.sign[apex])
+    if (!part.crease[h] || level.sign[u] != level.sign[v] || level.sign[u] == level.sign[apex]) continue;
+    // a triangle may reach far from its crease
+    auto reach = [&](int w) {
+      return field[w] / (field[w] - field[apex]) * norm(part.mesh.points[apex] - part.mesh.points[w]);
+    };
+    if (std::max(reach(u), reach(v)) < norm(part.mesh.points[v] - part.mesh.points[u]))
       hold[u] = hold[v] = Hold::joins;
   }
   Halves best;
-  for (double snap : {0.1, 0.03, 0.01, 0.}) {
+  for (auto [snap, sweeps] : {Pull{0.1, 30}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;
     trial.surface = surface;
-    cut_along_line(trial.surface, in_whole(line, part.mesh.vertex, surface.points.size()), active,
-                   trial.side);
+    cut_along_line(trial.surface, in_whole(line, part.vertex, surface.points.size()), active, trial.side);
     trial.loops = loops_of_halves(trial.surface, trial.side, trial.is);
     if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
     best = std::move(trial);
@@ -382,25 +433,22 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       active[t] = label[t] == task.part;
       mine[t] = active[t] ? 0 : -1;
     }
-    Part part;
-    part.mesh = std::move(split_by_label(surface, mine, 1)[0]);
-    part.opposite = opposite_halfedges(part.mesh.tris, part.mesh.points.size());
-    part.crease = creases(surface, part);
-    part.disk = fill_holes(part.mesh);
+    SubMesh sub = std::move(split_by_label(surface, mine, 1)[0]);
+    const std::vector<std::uint8_t> model = model_of(surface, sub);
+    Part part = make_part(std::move(sub), model);
+    part.vertex = std::move(sub.vertex);
     MultiscaleCut cut;
     cut.part = task.part;
     cut.halves[0] = task.part;
     cut.halves[1] = n_parts;
     cut.eta = is[task.part].eta_geo;
-    CutMaps maps = options.method == CutMethod::maxcut ? single_cut(part, cut) : best_cut(part, options);
+    std::vector<double> field;
+    CutMaps maps = options.method == CutMethod::maxcut ? single_cut(part, cut, field)
+                                                       : best_cut(part, model, options, field);
     cut.levels = maps.levels.size();
-    const Assessment expected = assess(part, maps.field);
+    const Assessment expected = assess(part, field);
     cut.length = expected.length / diagonal(part.mesh);
-    const std::vector<double> field = maps.field;
-    if (options.keep_maps) {
-      cut.maps = std::move(maps);
-      cut.maps.disk = part.disk;
-    }
+    if (options.keep_maps) cut.maps = std::move(maps);
     const int too_small = cut.too_small, turned_over = cut.turned_over;
     if (cuts) cuts->push_back(std::move(cut));
     auto fail = [&](const std::string& why) {

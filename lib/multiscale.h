@@ -21,12 +21,12 @@ struct MultiscaleOptions {
   bool keep_maps = false;   ///< fill MultiscaleCut::maps
 };
 
-/// What a cut was found with, for pictures.
+/// What a cut was found with, for pictures: the part, or a coarse model of a large one (lib/coarsen.h).
 struct CutMaps {
   FilledDisk disk;
   std::vector<Level> levels;
   std::vector<std::vector<Vec2>> lines;  ///< of each level, in its frame
-  std::vector<double> field;             ///< of the part's vertices: its zero level is the cut made
+  std::vector<double> field;             ///< of their vertices: its zero level is the cut, but for detail
 };
 
 /// One cut that was made.

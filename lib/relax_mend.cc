@@ -115,7 +115,7 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
     after.put(v, tip, p, facing);
     after.held_[v] = anchored;
     after.listed_ = false;
-    after.settle();
+    after.settle(2);
     if (const double bad = after.badness();
         bad < best && after.least_agreeing() > 0 && after.farthest() < near_enough)
       best = bad, chosen = after, found = true;
@@ -217,17 +217,18 @@ Relaxer Relaxer::patch(const std::vector<int>& triangles, const std::vector<int>
   return r;
 }
 
-/// Makes a change where it may be made, and settles what is round it.
-void Relaxer::try_edit(const Edit& edit) {
+/// Makes a change if it may be made.
+bool Relaxer::try_edit(const Edit& edit) {
+  const std::size_t before = edits_.size();
   if (edit.kind == Edit::flip && may_flip(edit.h)) flip(edit.h);
   if (edit.kind == Edit::collapse && m_.opp[edit.h] >= 0 && !m_.hard[edit.h])
     collapse(edit.h, edit.gone, 1e9, 2);
   if (edit.kind == Edit::split) split(edit.h);
-  settle();
+  return edits_.size() > before;
 }
 
-void Relaxer::settle() {
-  for (int i = 0; i < 2; ++i) {
+void Relaxer::settle(int times) {
+  for (int i = 0; i < times; ++i) {
     flip_to_shape();
     smooth(3);
   }
@@ -317,28 +318,50 @@ std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool t
     double badness;
     Relaxer state;
   };
-  auto try_all = [](const Relaxer& from, const std::vector<Edit>& edits) {
+  auto sort = [](std::vector<Trial>& trials) {
+    for (Trial& t : trials) t.badness = t.state.badness();
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.badness < b.badness; });
+  };
+  // all settle a little, then the best of them quite
+  auto try_all = [&](const Relaxer& from, const std::vector<Edit>& edits) {
+    constexpr std::size_t promising = 8;
     std::vector<Trial> trials;
     for (const Edit& e : edits) {
       trials.push_back({0, from});
-      trials.back().state.try_edit(e);
-      trials.back().badness = trials.back().state.badness();
+      if (trials.back().state.try_edit(e))
+        trials.back().state.settle(1);
+      else
+        trials.pop_back();
     }
-    std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.badness < b.badness; });
+    sort(trials);
+    if (trials.size() > promising) trials.erase(trials.begin() + promising, trials.end());
+    for (Trial& t : trials) t.state.settle(1);
+    sort(trials);
     return trials;
   };
   const Relaxer before = patch(triangles, vertices_of(triangles));
   const double good_enough = 0.9 * before.badness();
-  std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
+  const std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
+  if (trials.empty()) return {};
   Trial best = trials.front();
-  for (int i = 0; i < 5 && thorough && best.badness > good_enough; ++i) {
+  for (std::size_t i = 0; i < 5 && i < trials.size() && thorough && best.badness > good_enough; ++i) {
     const Relaxer& from = trials[i].state;
-    const Trial second = try_all(from, from.edits_round(from.worst(), false)).front();
-    if (second.badness < best.badness) best = second;
+    for (Trial& second : try_all(from, from.edits_round(from.worst(), false)))
+      if (second.badness < best.badness) best = std::move(second);
   }
   if (best.badness > good_enough) return {};
   return std::move(best.state);
+}
+
+/// Has this been tried at t without success, when all round it was as it is?
+bool Relaxer::in_vain(int t, const std::vector<int>& round, bool thorough) const {
+  if (t >= (int)in_vain_[thorough].size()) return false;
+  const int then = in_vain_[thorough][t];
+  return then > 0 && std::all_of(round.begin(), round.end(), [&](int s) {
+           return std::all_of(m_.tris[s].begin(), m_.tris[s].end(),
+                              [&](int v) { return changed_[v] < then; });
+         });
 }
 
 /// Mends at each of these triangles, as long as it is wanted; returns how many changes that took.
@@ -357,6 +380,7 @@ int Relaxer::mend_each(std::vector<int> triangles, bool thorough, Wanted wanted)
     for (int t : triangles) {
       if (m_.dead(t) || !wanted(t)) continue;
       std::vector<int> round = triangles_round(t, thorough ? 3 : 2);
+      if (in_vain(t, round, thorough)) continue;
       if (std::any_of(round.begin(), round.end(), [&](int s) { return taken[s]; })) {
         rest.push_back(t);
         continue;
@@ -366,8 +390,13 @@ int Relaxer::mend_each(std::vector<int> triangles, bool thorough, Wanted wanted)
     }
 #pragma omp parallel for schedule(dynamic) if (batch.size() > 1)
     for (int i = 0; i < (int)batch.size(); ++i) batch[i].mended = mended(batch[i].round, thorough);
+    ++clock_;
+    in_vain_[thorough].resize(m_.tris.size());
     for (Place& p : batch)
-      if (p.mended) adopt(*p.mended, p.round, vertices_of(p.round)), ++changes;
+      if (p.mended)
+        adopt(*p.mended, p.round, vertices_of(p.round)), ++changes;
+      else
+        in_vain_[thorough][p.round.front()] = clock_;
     triangles.swap(rest);
   }
   return changes;

@@ -144,14 +144,15 @@ class Relaxer {
   std::vector<int> triangles_round(int t, int rings) const;
   std::vector<int> vertices_of(const std::vector<int>& triangles) const;
   Relaxer patch(const std::vector<int>& triangles, const std::vector<int>& vertices) const;
-  void settle();
+  void settle(int times);
   double least_agreeing() const;
   double farthest() const;
-  void try_edit(const Edit& edit);
+  bool try_edit(const Edit& edit);
   void adopt(const Relaxer& mended, std::vector<int> triangles, std::vector<int> vertices);
   int worst() const;
   std::vector<Edit> edits_round(int t, bool wide) const;
   std::optional<Relaxer> mended(const std::vector<int>& triangles, bool thorough) const;
+  bool in_vain(int t, const std::vector<int>& round, bool thorough) const;
   template <class Wanted>
   int mend_each(std::vector<int> triangles, bool thorough, Wanted wanted);
   void mend_worst();
@@ -169,6 +170,7 @@ class Relaxer {
   std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_, changed_;  ///< when a vertex was last tried to move, and when it last changed
   int clock_ = 0;
+  std::vector<int> in_vain_[2];     ///< when mending a triangle was last in vain: as it is done, thoroughly
   int flipped_at_ = 0;              ///< when flip_to_shape last looked
   std::vector<signed char> color_;  ///< no two joined vertices have the same; -1: none, not moved
   std::vector<int> by_color_, color_start_;
