@@ -168,7 +168,7 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   return false;
 }
 
-int cut_at_model_edges(Surface& surface, int part, int n_parts) {
+int cut_along_model_edges(Surface& surface, int part, int n_parts) {
   if (!surface.face.has("model")) return n_parts;
   const auto& model = surface.face.get<std::uint8_t>("model");
   auto& label = surface.face.get<int>("part");

@@ -22,7 +22,7 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
 /// pieces that have no map to the plane are joined to a neighbour. Pieces above the first get the labels
 /// n_parts, n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the edges
 /// enclose nothing, or little more than single triangles.
-int cut_at_model_edges(Surface& surface, int part, int n_parts);
+int cut_along_model_edges(Surface& surface, int part, int n_parts);
 
 /// Cuts `part` by the multiscale partitioner (lib/multiscale.h) although its aspect ratio is admissible:
 /// along its limbs, so that none shrinks to nothing in a chart. Parts above the first get the labels n_parts,
