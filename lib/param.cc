@@ -379,6 +379,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
                          charts[p].mesh.tris.size() >= least_triangles;
         bool limbs = !missed && !whole[p] && round < limb_rounds && uneven > too_uneven;
         if (limbs || stretched) n_parts = cut_along_limbs(surface, p, n_parts);
+        if (n_parts == n && (missed || stretched)) n_parts = cut_along_model_edges(surface, p, n_parts);
         whole[p] = charts[p].uv.empty() && !missed && n_parts == n;
         if (n_parts == n && !whole[p] && (uneven > unresolved || stretched)) {
           // places that should be apart, and halves of the part; the latter first if the former has not
