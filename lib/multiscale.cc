@@ -218,10 +218,11 @@ Part make_part(Mesh mesh, const std::vector<std::uint8_t>& model) {
 CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const MultiscaleOptions& options,
                  std::vector<double>& field) {
   constexpr int enough = 12000, at_most = 6;  // triangles; of them for one
+  constexpr double most_turn = 25 * std::numbers::pi / 180;
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
   const double n = part.mesh.tris.size();
   Coarse coarse;
-  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most));
+  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most), most_turn);
   if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, options);
     field = cut.field;

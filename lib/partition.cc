@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <ctime>
 #include <exception>
 #include <numeric>
 #include <string>
 #include <tuple>
 
 #include "lib/cells.h"
+#include "lib/coarsen.h"
 #include "lib/error.h"
 #include "lib/forecast.h"
 #include "lib/graph.h"
@@ -23,12 +25,14 @@ namespace {
 /// A component of the surface with what its graph is made of: cells joined across edges, weighed by their
 /// length.
 struct Component {
-  SubMesh mesh;
+  Mesh mesh;
+  std::vector<std::uint8_t> model;  // face column, or empty
   std::vector<int> opposite;
   std::vector<double> area;  // of each triangle
   std::vector<int> weight;   // of each half-edge, as in the graph: the cost of a cut along it
   Cells cells;
   Region whole;
+  int of_fine = 0;  // triangles of the component that this is a coarse model of, or 0
 };
 
 /// How a labelling compares: fewer charts in the end first, then the cheaper cut.
@@ -374,13 +378,17 @@ std::vector<int> two_sides(const Component& c, Vec3 axis) {
 }
 
 /// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
-Labelling best_labelling(const Component& c, const PartitionOptions& options) {
+Labelling search(const Component& c, const PartitionOptions& options) {
   const int n = (int)c.mesh.tris.size();
   // Joining neighbours afterwards makes the number of parts asked for uncritical: about G + 2 does best. On
   // a large surface the trials end with a labelling that is good enough
   const int genus = c.whole.genus();
-  const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 12),
-            enough = n > 20000 ? std::max(2, genus + 1) : 2;
+  const int most_trials =
+                getenv("MT") ? atoi(getenv("MT")) : std::clamp(500000 / (n * (1 + genus / 16)), 3, 12),
+            enough = getenv("EN") ? 0
+                     : c.of_fine  ? 2 + genus / 2
+                     : n > 20000  ? std::max(2, genus + 1)
+                                  : 2;
   std::vector<int> ks{genus + 2};
   for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
     ks.push_back(genus + 2 + d);
@@ -410,6 +418,10 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
         failure = std::current_exception();
       }
     if (failure) std::rethrow_exception(failure);
+    if (getenv("TT"))
+      for (Labelling& l : found)
+        fprintf(stderr, "  trial: burden %d parts %d cost %ld, at %.0f ms\n", l.burden, l.parts, (long)l.cost,
+                clock() / 1e3);
     for (Labelling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
   }
@@ -423,22 +435,72 @@ Labelling best_labelling(const Component& c, const PartitionOptions& options) {
   return best;
 }
 
-Component make_component(const Surface& surface, SubMesh sub) {
+/// A component, not weighed yet.
+Component make_component(Mesh mesh, std::vector<std::uint8_t> model, std::vector<int> opposite) {
   Component c;
-  c.mesh = std::move(sub);
-  c.opposite = opposite_halfedges(c.mesh.tris, (int)c.mesh.points.size());
+  c.mesh = std::move(mesh);
+  c.model = std::move(model);
+  c.opposite = std::move(opposite);
   for (const Tri& v : c.mesh.tris)
     c.area.push_back(0.5 * norm(area_vector(c.mesh.points[v[0]], c.mesh.points[v[1]], c.mesh.points[v[2]])));
-  std::vector<std::uint8_t> model;
-  if (surface.face.has("model"))
-    for (int t : c.mesh.face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
-  c.weight = cut_weights(c.mesh, c.opposite, model);
+  return c;
+}
+
+/// What all but the labelling of a component needs; once.
+void weigh(Component& c) {
+  if (!c.weight.empty()) return;
+  c.weight = cut_weights(c.mesh, c.opposite, c.model);
   // METIS takes 0.7 us a node: cells of some triangles do as well on large surfaces, for the interface is
   // straightened afterwards
   const int n = (int)c.mesh.tris.size();
-  c.cells = grow_cells(c.opposite, c.area, std::max(20000, n / 8));
-  c.whole = find_regions(c.mesh, c.opposite, std::vector<int>(c.mesh.tris.size(), 0), 1).region[0];
-  return c;
+  const int least = c.of_fine ? (getenv("LC") ? atoi(getenv("LC")) : 6000) : 20000;
+  c.cells = grow_cells(c.opposite, c.area, std::max(least, n / 8));
+}
+
+/// The labels of a coarse model on the surface: each triangle has that of the nearest one that is left, over
+/// the fewest edges.
+std::vector<int> refine_labels(const Component& c, const Coarse& coarse, const std::vector<int>& of_coarse) {
+  std::vector<int> label(c.mesh.tris.size(), -1), queue = coarse.face;
+  for (std::size_t i = 0; i < coarse.face.size(); ++i) label[coarse.face[i]] = of_coarse[i];
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    for (int h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h)
+      if (const int o = c.opposite[h]; o >= 0 && label[o / 3] < 0) {
+        label[o / 3] = label[queue[i]];
+        queue.push_back(o / 3);
+      }
+  return label;
+}
+
+/// The labelling of a large component is looked for on a coarse model of it.
+Labelling best_labelling(Component& c, const PartitionOptions& options) {
+  constexpr int enough = 12000, most = 30000, at_most = 8;  // triangles; of them for one
+  constexpr double worth = 2;
+  constexpr double most_turn = 60 * 3.14159265358979 / 180;
+  const int n = (int)c.mesh.tris.size();
+  Coarse coarse;
+  if (n > 3 * enough) coarse = coarsen(c.mesh, c.model, std::clamp(n / at_most, enough, most), most_turn);
+  Labelling l;
+  if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
+    Component small =
+        make_component(coarse, coarse.model, opposite_halfedges(coarse.tris, (int)coarse.points.size()));
+    small.whole = c.whole;
+    small.of_fine = n;
+    weigh(small);
+    l = search(small, options);
+  }
+  if (l.parts > 0) {
+    l.label = refine_labels(c, coarse, l.label);
+    std::vector<int> label = l.label;
+    const int pieces = separate_pieces(c.opposite, label);
+    const Regions r = find_regions(c.mesh, c.opposite, label, pieces);
+    if (pieces == l.parts && std::all_of(r.region.begin(), r.region.end(),
+                                         [](const Region& x) { return x.maps_to_the_plane(); })) {
+      l.label = std::move(label);
+      return l;
+    }
+  }
+  weigh(c);
+  return l.parts > 0 ? finish(c, Forecaster(c.mesh, c.opposite), l.label, options.seed) : search(c, options);
 }
 
 /// Cuts parts of too many triangles, with some room for those that smoothing adds.
@@ -477,11 +539,33 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
   std::vector<int> component;
   const int n_components = components(opposite, component);
-  std::vector<int> part(surface.tris.size(), 0);
+  const Regions whole = find_regions(surface, opposite, component, n_components);
+  auto stays_whole = [&](int i) {
+    return whole.region[i].maps_to_the_plane() && bound_of(whole.region[i].faces, options) == 0;
+  };
+  std::vector<int> part(component), number(part.size());
+  for (int& i : part) i = stays_whole(i) ? -1 : i;
+  std::vector<SubMesh> subs = split_by_label(surface, part, n_components);
   int n_parts = 0;
-  std::vector<SubMesh> subs = split_by_label(surface, component, n_components);
+  std::vector<int> first(n_components);
   for (int i = 0; i < n_components; ++i) {
-    Component c = make_component(surface, std::move(subs[i]));
+    first[i] = n_parts;
+    if (stays_whole(i)) {
+      ++n_parts;
+      continue;
+    }
+    const std::vector<int> face = std::move(subs[i].face);
+    std::vector<std::uint8_t> model;
+    if (surface.face.has("model"))
+      for (int t : face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
+    std::vector<int> within(3 * face.size());
+    for (std::size_t t = 0; t < face.size(); ++t) number[face[t]] = (int)t;
+    for (std::size_t h = 0; h < within.size(); ++h) {
+      const int o = opposite[3 * face[h / 3] + h % 3];
+      within[h] = o < 0 ? -1 : 3 * number[o / 3] + o % 3;
+    }
+    Component c = make_component(std::move(subs[i]), std::move(model), std::move(within));
+    c.whole = whole.region[i];
     Labelling l;
     if (c.whole.maps_to_the_plane()) {
       l.label.assign(c.mesh.tris.size(), 0);
@@ -491,6 +575,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     }
     const int bound = bound_of((int)c.mesh.tris.size(), options);
     if (l.parts > 0 && bound > 0) {
+      weigh(c);
       Labelling bounded = l;
       bound_faces(c, bounded, bound, options.seed);
       if (bounded.parts > 0 || options.max_faces > 0) l = std::move(bounded);
@@ -499,15 +584,17 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
       throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
                        " triangles and genus " + std::to_string(c.whole.genus()) +
                        " could not be cut into parts of genus 0");
-    for (std::size_t t = 0; t < l.label.size(); ++t) part[c.mesh.face[t]] = n_parts + l.label[t];
+    for (std::size_t t = 0; t < l.label.size(); ++t) part[face[t]] = l.label[t];
     n_parts += l.parts;
   }
+  for (std::size_t t = 0; t < part.size(); ++t) part[t] = first[component[t]] + std::max(part[t], 0);
   surface.face.set("part", std::move(part));
   if (!surface.face.has("origin")) {
     std::vector<int> identity(surface.tris.size());
     std::iota(identity.begin(), identity.end(), 0);
     surface.face.set("origin", std::move(identity));
   }
+  if (n_parts == n_components) return n_parts;  // each maps to the plane as it is
   straighten_interfaces(surface, n_parts, options.snap, options.max_faces);
   if (std::string fault = part_fault(surface); !fault.empty()) throw GoalMissed(fault);
   return n_parts;

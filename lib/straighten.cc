@@ -276,9 +276,9 @@ Measure measure(const Surface& s, const std::vector<int>& opposite, const std::v
   return m;
 }
 
-/// Straightens the chosen curves at once. If all is well, changes the surface and returns an empty list;
-/// otherwise returns the curves at fault.
-std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposite,
+/// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
+/// returns an empty list; otherwise returns the curves at fault.
+std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
                                 const std::vector<Curve>& curves, const std::vector<Role>& role,
                                 const Attempt& attempt, const Limits& limits) {
   const int n_parts = limits.n_parts, max_faces = limits.max_faces;
@@ -315,7 +315,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  const std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
+  std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
   keep_largest_pieces(s, after, band, curves, part, n_parts);
   std::vector<int> piece = part;
   std::vector<char> broken(n_parts, 0);
@@ -340,7 +340,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   }
   if (at_fault.empty()) at_fault = near_fault;
   if (at_fault.empty() && std::find(broken.begin(), broken.end(), 1) == broken.end())
-    surface = std::move(s);
+    surface = std::move(s), opposite = std::move(after);
   else if (at_fault.empty())  // a bound on the triangles of a third part
     for (int c = 0; c < (int)curves.size(); ++c)
       if (role[c] == Role::moves) at_fault.push_back(c);
@@ -395,9 +395,10 @@ Handle handle_of(const Mesh& m, const Curve& c) {
 }
 
 /// Straightens these curves at once, without those that turn out to be at fault; returns the latter.
-std::vector<Handle> straighten_together(Surface& s, const std::vector<Handle>& handles,
-                                        const Attempt& attempt, const Limits& limits) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+std::vector<Handle> straighten_together(Surface& s, std::vector<int>& opposite,
+                                        const std::vector<Handle>& handles, const Attempt& attempt,
+                                        const Limits& limits) {
+  if (handles.empty()) return {};
   const std::vector<Curve> curves = find_curves(s, opposite);
   std::vector<Role> role(curves.size(), Role::other);
   std::vector<std::pair<int, int>> pairs;
@@ -430,22 +431,21 @@ std::vector<Handle> straighten_together(Surface& s, const std::vector<Handle>& h
 void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
                            const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
-  auto curves_of = [&] {
-    return find_curves(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
-  };
-  const std::vector<PairColour> pairs = colour_pairs(surface, curves_of());
+  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  const std::vector<PairColour> pairs = colour_pairs(surface, find_curves(surface, opposite));
   int n_colours = 0;
   for (const PairColour& p : pairs) n_colours = std::max(n_colours, p.colour + 1);
   for (int colour = 0; colour < n_colours; ++colour) {
     std::vector<Handle> open;
-    for (const Curve& c : curves_of())
+    for (const Curve& c : find_curves(surface, opposite))
       for (const PairColour& p : pairs)
         if (p.a == c.a && p.b == c.b && p.colour == colour && (chosen.empty() || chosen[p.a] || chosen[p.b]))
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
-    for (const Attempt& attempt : attempts) open = straighten_together(surface, open, attempt, limits);
-    for (const Handle& one : open) straighten_together(surface, {one}, attempts[2], limits);
+    for (const Attempt& attempt : attempts)
+      open = straighten_together(surface, opposite, open, attempt, limits);
+    for (const Handle& one : open) straighten_together(surface, opposite, {one}, attempts[2], limits);
   }
 }
 
