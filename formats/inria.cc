@@ -146,9 +146,9 @@ class InriaReader {
   /// 0 at the end of the file, -1 for a section that is not known.
   int next_keyword() {
     if (binary_) {
-      if (at_ + 4 > bytes_.size()) return 0;
+      if (at_ == bytes_.size()) return 0;
       const int keyword = get<int>("a keyword");
-      if (keyword == file_end) return keyword;
+      if (keyword == file_end && at_ == bytes_.size()) return keyword;
       const std::size_t here = at_;
       const std::int64_t next = version_ >= 3 ? get<std::int64_t>("a position") : get<int>("a position");
       if (next != 0 &&
@@ -163,6 +163,8 @@ class InriaReader {
       if (same_word(w, name)) return keyword;
     const char c = w[0];
     if (!(c >= 'A' && c <= 'Z') && !(c >= 'a' && c <= 'z')) fail(quoted(w) + " where a section is due");
+    // a section of another kind has a count at least; what ends with its first letters is cut off
+    if (const std::string name(w); peek().empty()) fail("the file ends after " + quoted(name));
     return -1;
   }
 

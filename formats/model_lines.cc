@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "formats/model_edges.h"
 #include "lib/edges.h"
 
 namespace meshpipe {
@@ -91,6 +92,28 @@ std::vector<LineEdge> edges_of_tables(const Stream& stream) {
   return edges;
 }
 
+/// The edges on the segments of table model_edge, in its order.
+std::vector<LineEdge> edges_of_segments(const Stream& stream) {
+  std::vector<LineEdge> edges;
+  if (stream.find("ref_vertex")) return edges;
+  const Surface& s = stream.surface;
+  const ModelSegments segments = read_model_edges(stream);
+  const std::vector<int> under = segments_under(s, segments);
+  std::vector<std::array<int, 2>> found;  // segment, half-edge
+  for (int h = 0; h < static_cast<int>(under.size()); ++h)
+    if (under[h] >= 0) found.push_back({under[h], h});
+  std::sort(found.begin(), found.end());
+  for (const auto& [i, h] : found) {
+    LineEdge e{origin(s.tris, h), target(s.tris, h), segments.tag[i], segments.ridge[i] != 0,
+               segments.required[i] != 0};
+    const Tri& along = segments.tris[i];
+    if (dot(segments.points[along[1]] - segments.points[along[0]], s.points[e.b] - s.points[e.a]) < 0)
+      std::swap(e.a, e.b);
+    edges.push_back(e);
+  }
+  return edges;
+}
+
 /// Sorted by their ends, the first of each.
 std::vector<LineEdge> sorted_by_ends(std::vector<LineEdge> edges) {
   std::stable_sort(edges.begin(), edges.end(), by_ends);
@@ -109,8 +132,25 @@ class LinesOfVertices {
     line_kind_ = ints(*lines, "kind");
     line_ = ints(stream.surface.vertex, "line");
     kind_ = ints(stream.surface.vertex, "kind");
+    const ModelSegments given = read_model_edges(stream);
+    for (std::size_t i = 0; i < given.tag.size(); ++i)
+      if (given.tag[i] != 0)
+        of_tag_.push_back({0, 0, given.tag[i], given.ridge[i] != 0, given.required[i] != 0});
+    std::stable_sort(of_tag_.begin(), of_tag_.end(), by_tag);
   }
-  /// 0 if there are no lines, or none of them can be told to hold the edge.
+  explicit operator bool() const { return tag_ != nullptr; }
+  /// Sets the label, 0 if there are no lines, or none of them can be told to hold the edge; and what the
+  /// first edge given with this label was.
+  void describe(LineEdge& e, bool border) const {
+    e.tag = tag_of(e, border);
+    const auto at = std::lower_bound(of_tag_.begin(), of_tag_.end(), e, by_tag);
+    if (at == of_tag_.end() || at->tag != e.tag) return;
+    e.ridge = at->ridge;
+    e.required = at->required;
+  }
+
+ private:
+  static bool by_tag(const LineEdge& x, const LineEdge& y) { return x.tag < y.tag; }
   int tag_of(const LineEdge& e, bool border) const {
     if (!tag_ || !line_kind_ || !line_ || !kind_) return 0;
     const int a = (*line_)[e.a], b = (*line_)[e.b];
@@ -121,7 +161,7 @@ class LinesOfVertices {
     return (*tag_)[line];
   }
 
- private:
+  std::vector<LineEdge> of_tag_;  ///< of the file, sorted
   const std::vector<int>*tag_ = nullptr, *line_kind_ = nullptr, *line_ = nullptr, *kind_ = nullptr;
 };
 
@@ -153,9 +193,13 @@ std::vector<LineEdge> model_lines(const Stream& stream) {
   const Surface& s = stream.surface;
   const Column* column = s.face.find("model");
   const Bits* model = column ? std::get_if<Bits>(&column->data) : nullptr;
-  const std::vector<LineEdge> in_tables = edges_of_tables(stream), known = sorted_by_ends(in_tables);
-  std::vector<char> found(known.size(), 0);
+  std::vector<LineEdge> in_tables = edges_of_tables(stream);
+  const bool segments = in_tables.empty();
+  if (segments) in_tables = edges_of_segments(stream);
+  const std::vector<LineEdge> known = sorted_by_ends(in_tables);
   const LinesOfVertices lines(stream);
+  if (!model && known.empty() && !lines) return {};
+  std::vector<char> found(known.size(), 0);
   std::vector<LineEdge> others;
   for_each_edge(s.tris, static_cast<int>(s.points.size()), [&](std::span<const EdgeUse> uses) {
     const int h = half_edge(uses[0]);
@@ -163,12 +207,12 @@ std::vector<LineEdge> model_lines(const Stream& stream) {
     const bool marked = model && std::any_of(uses.begin(), uses.end(), [&](EdgeUse use) {
                           return (*model)[half_edge(use) / 3] >> half_edge(use) % 3 & 1;
                         });
-    if (!marked && uses.size() > 1) return;
     if (const LineEdge* k = find_edge(known, e.a, e.b)) {
-      found[k - known.data()] = marked || k->tag != 0;
+      found[k - known.data()] = marked || segments || (k->tag != 0 && uses.size() == 1);
       return;
     }
-    e.tag = lines.tag_of(e, uses.size() == 1);
+    if (!marked && uses.size() > 1) return;
+    lines.describe(e, uses.size() == 1);
     if (marked || e.tag != 0) others.push_back(e);
   });
   std::vector<LineEdge> edges;

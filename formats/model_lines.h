@@ -23,7 +23,8 @@ void set_model_lines(Stream& stream, const std::vector<LineEdge>& edges);
 
 /// Every model edge of the surface once, and those of its border that have a label: with their labels by the
 /// tables of lines where these are of this surface (as set_model_lines made them, then in their order; or of
-/// a remeshed surface whose vertices know their lines).
+/// a remeshed surface whose vertices know their lines), or else by table model_edge, which holds what was
+/// given past programs that renumber.
 std::vector<LineEdge> model_lines(const Stream& stream);
 
 }  // namespace meshpipe

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <unordered_map>
 
 #include "formats/colors.h"
@@ -32,6 +33,12 @@ struct Sorting {
     return std::any_of(of_face.begin(), of_face.end(), [](int k) { return k != 0; });
   }
 };
+
+/// The number of "patch_NUMBER", positive and as it would be written.
+bool patch_number(std::string_view name, long long& number) {
+  return name.starts_with("patch_") && parse_integer(name.substr(6), number) && number > 0 &&
+         number < std::numeric_limits<int>::max() && name == "patch_" + std::to_string(number);
+}
 
 /// The vertex number of a corner, from 0 on.
 int corner(const Text& text, long long v, std::size_t n_vertices) {
@@ -127,11 +134,24 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
     chosen =
         std::find_if(std::begin(sortings), std::end(sortings), [](Sorting* s) { return s->names_any(); });
   if (chosen == std::end(sortings)) chosen = std::begin(sortings);
-  // names no face has are left out, and tags are given in the order of the faces
+  // names no face has are left out; patch_7, as written for a patch without a name, keeps its number, the others
+  // are numbered in the order of the faces
   std::vector<int> tag((*chosen)->names.size() + 1, 0);
+  std::set<int> taken;
+  for (const int k : (*chosen)->of_face)
+    if (long long number = 0; k != 0 && tag[k] == 0 && patch_number((*chosen)->names[k - 1], number) &&
+                              taken.insert(static_cast<int>(number)).second)
+      tag[k] = static_cast<int>(number);
+  std::vector<char> named(tag.size(), 0);
+  int last = 0;
   for (int& k : (*chosen)->of_face) {
-    if (k != 0 && tag[k] == 0) {
-      tag[k] = static_cast<int>(stream.names.size()) + 1;
+    if (k != 0 && !named[k]) {
+      named[k] = 1;
+      if (tag[k] == 0) {
+        do ++last;
+        while (taken.count(last));
+        tag[k] = last;
+      }
       stream.names.push_back({2, tag[k], (*chosen)->names[k - 1]});
     }
     k = tag[k];

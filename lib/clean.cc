@@ -26,7 +26,10 @@ void take_rows(Table& table, const std::vector<int>& rows) {
   table.rows = rows.size();
 }
 
-void blame(CleanReport& report, int triangle, Fault fault) { report.culprits.push_back({triangle, fault}); }
+/// What fills a hole has no fault of the input's.
+void blame(CleanReport& report, int triangle, Fault fault) {
+  if (triangle >= 0) report.culprits.push_back({triangle, fault});
+}
 
 void sort_culprits(CleanReport& report) {
   std::sort(report.culprits.begin(), report.culprits.end(), [](const Culprit& a, const Culprit& b) {
@@ -72,7 +75,7 @@ void join(Repair& r, CleanReport& report) {
     if (again) {
       for (std::size_t t = 0; t < gone.size(); ++t)
         if (gone[t]) {
-          ++report.duplicate;
+          report.duplicate += r.face[t] >= 0;
           blame(report, r.face[t], Fault::duplicate);
         }
       r.opposite.clear();
@@ -129,8 +132,8 @@ void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone,
       }
     }
     if (conflict >= 0) {
-      report.nonorientable.push_back({r.face[seed], (int)members.size(), r.face[conflict / 3],
-                                      r.face[r.opposite[conflict] / 3],
+      report.nonorientable.push_back({source(r, seed), (int)members.size(), source(r, conflict / 3),
+                                      source(r, r.opposite[conflict] / 3),
                                       lerp(points[r.vertex[origin(r.tris, conflict)]],
                                            points[r.vertex[target(r.tris, conflict)]], 0.5)});
       for (int t : members) {
@@ -281,7 +284,7 @@ bool mark_sheets(Surface& surface, const std::vector<int>& opposite, CleanReport
     if (uses.size() < 2) return;
     for (EdgeUse e : uses) {
       const int h = half_edge(e);
-      if (opposite[h] >= 0) continue;
+      if (uses.size() == 2 && opposite[h] >= 0) continue;
       meets[component[h / 3]] = 1;
       changed = changed || !(model[h / 3] >> h % 3 & 1);
       model[h / 3] |= 1 << h % 3;
@@ -312,6 +315,54 @@ bool mark_sheets(Surface& surface, const std::vector<int>& opposite, CleanReport
   return true;
 }
 
+/// Neighbours, orientation, a copy of the vertex for every fan; components dropped as the options say.
+void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options,
+                    CleanReport& report) {
+  std::vector<char> gone;
+  for (;;) {  // what shares an edge with others no more joins two of them, and those may disagree: once again
+    join(r, report);
+    const std::size_t before = report.nonorientable.size();
+    orient(r, points, gone, report);
+    if (report.nonorientable.size() > before) {
+      if (!options.drop_nonorientable) {
+        sort_culprits(report);
+        const std::size_t more = report.nonorientable.size() - 1;
+        throw NotAdmissible(describe(report.nonorientable[0]) +
+                            (more ? ", and " + std::to_string(more) + " more components" : ""));
+      }
+      r.opposite.clear();
+      drop(r, gone);
+      continue;
+    }
+    split_fans(r, report);
+    if (!options.keep_components || !keep_largest(r, points, options.keep_components, report)) return;
+    unite(r);
+  }
+}
+
+/// All repairs that change neighbours, once. False if that may have left something to repair: where triangles
+/// go or come, copies of an edge or of a triangle on different sheets may have become one, or only two.
+bool make_manifold(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options,
+                   CleanReport& report) {
+  join_and_split(r, points, options, report);
+  FlatCounts flat = remove_flat(r, points);
+  bool changed = !flat.removed.empty();
+  for (int t : flat.removed) {
+    report.degenerate += t >= 0;
+    blame(report, t, Fault::degenerate);
+  }
+  if (options.fill_holes) {
+    const HoleCounts holes = fill_holes(r, points, options.fill_holes);
+    report.holes_filled += holes.filled;
+    report.hole_triangles += holes.triangles;
+    report.holes_left = holes.left;
+    changed = changed || holes.filled;
+    if (holes.filled) flat = remove_flat(r, points);  // where a hole's corners are in line
+  }
+  report.flat = flat.left;
+  return !changed || (r.copied.empty() && !options.fill_holes);
+}
+
 }  // namespace
 
 void drop(Repair& r, const std::vector<char>& gone) {
@@ -338,6 +389,7 @@ void drop(Repair& r, const std::vector<char>& gone) {
 }
 
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
+  expect_measurable(surface);
   report = {};
   const int n = (int)surface.points.size();
   report.input_vertices = n;
@@ -376,47 +428,18 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   std::vector<int>().swap(number);
 
   r.flipped.assign(r.tris.size(), 0);
-  std::vector<char> gone;
-  for (;;) {  // what shares an edge with others no more joins two of them, and those may disagree: once again
-    join(r, report);
-    const std::size_t before = report.nonorientable.size();
-    orient(r, surface.points, gone, report);
-    if (report.nonorientable.size() > before) {
-      if (!options.drop_nonorientable) {
-        sort_culprits(report);
-        const std::size_t more = report.nonorientable.size() - 1;
-        throw NotAdmissible(describe(report.nonorientable[0]) +
-                            (more ? ", and " + std::to_string(more) + " more components" : ""));
-      }
-      r.opposite.clear();
-      drop(r, gone);
-      continue;
-    }
-    split_fans(r, report);
-    if (!options.keep_components || !keep_largest(r, surface.points, options.keep_components, report)) break;
+  constexpr int most_rounds = 50;  // two or three do; that holes filled and sheets split come to an end is not proved
+  for (int round = 1; !make_manifold(r, surface.points, options, report) && round < most_rounds; ++round)
     unite(r);
-  }
   for (std::size_t t = 0; t < r.tris.size(); ++t)
     if (r.flipped[t]) blame(report, r.face[t], Fault::turned);
-  const FlatCounts flat = remove_flat(r, surface.points);
-  report.flat = flat.left;
-  report.degenerate += (int)flat.removed.size();
-  for (int t : flat.removed) blame(report, t, Fault::degenerate);
-  if (options.fill_holes) {
-    const HoleCounts holes = fill_holes(r, surface.points, options.fill_holes);
-    report.holes_filled = holes.filled;
-    report.hole_triangles = holes.triangles;
-    report.holes_left = holes.left;
-  }
   std::vector<int> component;
   report.components = components(r.opposite, component);
   face_outward(r, surface.points, component, report.components);  // last, when holes are filled
   report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
+  for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
   sort_culprits(report);
-  if (r.tris.empty())
-    throw NotAdmissible("no triangle is left of " + std::to_string(report.input_triangles) + ": " +
-                        std::to_string(report.degenerate) + " are degenerate, " +
-                        std::to_string(report.duplicate) + " duplicates");
+  if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));
 
   if (options.keep_sheets) {
     unite(r);

@@ -56,6 +56,9 @@ struct CleanReport {
 /// One line: which component, how large, which triangles, where.
 std::string describe(const Nonorientable& component);
 
+/// One line: of how many triangles none is left, and why.
+std::string describe_nothing_left(const CleanReport& report);
+
 /// A row of the table of what was done: its key in reports, how often, and in words.
 struct RepairRow {
   const char* key;

@@ -13,6 +13,20 @@ std::string describe(const Nonorientable& c) {
          " cannot agree at" + place;
 }
 
+std::string describe_nothing_left(const CleanReport& r) {
+  if (r.input_triangles == 0) return "the input has no triangle";
+  int dropped = 0;
+  for (const Nonorientable& c : r.nonorientable) dropped += c.triangles;
+  std::string what = "no triangle is left of " + std::to_string(r.input_triangles) + ":";
+  const char* between = " ";
+  for (const auto& [count, why] :
+       {std::pair{r.degenerate, " degenerate"}, {r.duplicate, " duplicate"}, {dropped, " not orientable"}}) {
+    if (count) what += between + std::to_string(count) + why;
+    if (count) between = ", ";
+  }
+  return what;
+}
+
 std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
   char within[64];
   std::snprintf(within, sizeof within, "vertices merged with one within %g", options.weld);

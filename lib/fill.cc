@@ -114,7 +114,7 @@ HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most) {
     // half-edge of the mesh that runs from place i to place j, or -1
     std::vector<int> runs(n * n, -1);
     for (int i = 0; i < n; ++i) runs[(i + 1) % n * n + i] = loop[n - 1 - i];
-    const int face = r.face[*std::min_element(loop.begin(), loop.end()) / 3];
+    const int face = ~source(r, *std::min_element(loop.begin(), loop.end()) / 3);
     for (const Tri& t : tris) {
       const int first = 3 * (int)r.tris.size();
       r.tris.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});

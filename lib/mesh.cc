@@ -2,6 +2,8 @@
 #include "lib/mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "lib/error.h"
@@ -88,6 +90,29 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
     }
   }
   return parts;
+}
+
+void expect_measurable(const Mesh& mesh) {
+  constexpr double least = 1e-50, most = 1e50, inf = std::numeric_limits<double>::infinity();
+  double far = 0, lo[3] = {inf, inf, inf}, hi[3] = {-inf, -inf, -inf};
+  for (const Tri& t : mesh.tris)
+    for (int v : t) {
+      const double x[3] = {mesh.points[v].x, mesh.points[v].y, mesh.points[v].z};
+      for (int k = 0; k < 3; ++k) {
+        far = std::max(far, std::abs(x[k]));
+        lo[k] = std::min(lo[k], x[k]);
+        hi[k] = std::max(hi[k], x[k]);
+      }
+    }
+  const double size = mesh.tris.empty() ? 0 : std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
+  char text[128];
+  if (far > most)
+    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g", far, most);
+  else if (size > 0 && size < least)
+    std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g", size, least);
+  else
+    return;
+  throw NotAdmissible(text);
 }
 
 double diagonal(const Mesh& mesh) {

@@ -73,6 +73,9 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
 
 /// Length of the bounding box's diagonal of the points that are used by a triangle.
 double diagonal(const Mesh& mesh);
+/// Throws NotAdmissible naming the size of a surface whose areas and volumes would overflow or vanish: with a
+/// coordinate beyond 1e50, or smaller than 1e-50 in all directions (but not a point).
+void expect_measurable(const Mesh& mesh);
 /// Sum of triangle areas.
 double total_area(const Mesh& mesh);
 /// kappa = 4 sin a sin b sin c / (sin a + sin b + sin c), the paper's eq. (6); 1 equilateral, 0 degenerate.

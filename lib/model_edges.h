@@ -5,9 +5,10 @@
 
 namespace meshpipe {
 
-/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none).
+/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none), and
+/// what files of INRIA say of it (0 or 1).
 struct ModelSegments : Mesh {
-  std::vector<int> tag;
+  std::vector<int> tag, ridge, required;
 };
 
 /// Per half-edge the number of a segment on which it lies, or -1: its ends and its middle are on segments,

@@ -169,34 +169,46 @@ CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options) {
   cut.disk = fill_holes(part.mesh);
   const FilledDisk& disk = cut.disk;
   cut.levels = laplace_levels(disk, options.min_area, options.min_set);
-  Assessment best_is;
+  struct Candidate {
+    Assessment is;
+    std::vector<double> field;
+    std::vector<std::vector<Vec2>> lines;
+  };
+  std::vector<Candidate> candidates;
   for (int i = 0; i < options.directions; i++) {
-    auto lines = cut_lines(disk, cut.levels, std::numbers::pi * i / options.directions);
-    std::vector<double> field = cut_line_field(disk, cut.levels, lines);
-    drop_fragments(part, field);
-    Assessment is = assess(part, field);
-    if (cut.field.empty() || better(is, best_is)) {
-      cut.field = std::move(field);
-      cut.lines = std::move(lines);
-      best_is = is;
-    }
+    Candidate c;
+    c.lines = cut_lines(disk, cut.levels, std::numbers::pi * i / options.directions);
+    c.field = cut_line_field(disk, cut.levels, c.lines);
+    drop_fragments(part, c.field);
+    c.is = assess(part, c.field);
+    candidates.push_back(std::move(c));
   }
-  if (!best_is.valid || best_is.smaller_share < least_share) {
-    cut.field = across(part, disk.rim);
-    cut.lines.assign(cut.levels.size(), {});
-    drop_fragments(part, cut.field);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return better(a.is, b.is); });
+  if (const Assessment& best = candidates[0].is; !best.valid || best.smaller_share < least_share) {
+    candidates.resize(1);
+    candidates[0].field = across(part, disk.rim);
+    candidates[0].lines.assign(cut.levels.size(), {});
+    drop_fragments(part, candidates[0].field);
   }
-  reach_holes(disk, part.opposite, cut.field);
-  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains
+  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains: then
+  // another direction may do better
   constexpr int rounds = 8;
   constexpr double much_longer = 1.5;
-  best_is = assess(part, cut.field);
-  std::vector<double> balanced = cut.field;
-  balance_sides(disk, part.opposite, find_branches(disk, cut.levels), part.crease, balanced, rounds);
-  drop_fragments(part, balanced);
-  const Assessment is = assess(part, balanced);
-  if (!best_is.valid || (is.valid && is.loops <= best_is.loops && is.length < much_longer * best_is.length))
-    cut.field = std::move(balanced);
+  const Branches branches = find_branches(disk, cut.levels);
+  for (Candidate& c : candidates) {
+    if (!cut.field.empty() && !c.is.valid) break;
+    reach_holes(disk, part.opposite, c.field);
+    if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
+    const Assessment before = assess(part, c.field);
+    balance_sides(disk, part.opposite, branches, part.crease, c.field, rounds);
+    drop_fragments(part, c.field);
+    const Assessment after = assess(part, c.field);
+    if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
+    cut.field = std::move(c.field);
+    cut.lines = std::move(c.lines);
+    break;
+  }
   return cut;
 }
 
@@ -274,20 +286,29 @@ struct Halves {
 
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight but for
 /// where it follows creases. A line that is snapped to vertices may touch itself there: then it is snapped
-/// less, until the halves have no more loops than expected.
+/// less, until the halves have no more loops than expected; on a few coarse triangles it may be pulled off
+/// the part, so that at last it is left as it is.
 Halves split(const Surface& surface, const Part& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
-  constexpr int sweeps = 30;
+  struct Pull {
+    double snap;
+    int sweeps;
+  };
   const std::vector<Tri>& tris = part.mesh.tris;
   const LevelLine level = zero_level(part.mesh, field);
   std::vector<Hold> hold(field.size(), Hold::moves);
   for (std::size_t h = 0; h < part.crease.size(); h++) {
     const int u = origin(tris, h), v = target(tris, h), apex = target(tris, next(h));
-    if (part.crease[h] && level.sign[u] == level.sign[v] && level.sign[u] != level.sign[apex])
+    if (!part.crease[h] || level.sign[u] != level.sign[v] || level.sign[u] == level.sign[apex]) continue;
+    // a triangle may reach far from its crease
+    auto reach = [&](int w) {
+      return field[w] / (field[w] - field[apex]) * norm(part.mesh.points[apex] - part.mesh.points[w]);
+    };
+    if (std::max(reach(u), reach(v)) < norm(part.mesh.points[v] - part.mesh.points[u]))
       hold[u] = hold[v] = Hold::joins;
   }
   Halves best;
-  for (double snap : {0.1, 0.03, 0.01, 0.}) {
+  for (auto [snap, sweeps] : {Pull{0.1, 30}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;

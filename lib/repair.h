@@ -10,7 +10,7 @@ namespace meshpipe {
 /// Where each triangle and vertex came from, and neighbours across edges of two triangles.
 struct Repair {
   std::vector<Tri> tris;
-  std::vector<int> face;      ///< triangle of the input
+  std::vector<int> face;      ///< triangle of the input; of one that fills a hole ~ the one it is a copy of
   std::vector<int> vertex;    ///< vertex of the input; copies made by splitting come last
   std::vector<int> copied;    ///< the vertex each of them is a copy of
   std::vector<int> opposite;  ///< half-edges; may run the same way until the surface is oriented
@@ -23,6 +23,9 @@ inline int base(const Repair& r, int v) {
   const int n = (int)(r.vertex.size() - r.copied.size());
   return v < n ? v : r.copied[v - n];
 }
+
+/// The triangle of the input whose columns triangle t has.
+inline int source(const Repair& r, int t) { return r.face[t] < 0 ? ~r.face[t] : r.face[t]; }
 
 /// Leaves out the triangles with gone != 0, the others keep their order; what they bordered on becomes
 /// border.
@@ -43,7 +46,7 @@ bool for_each_spoke(const Repair& r, int h, Visit visit) {
 }
 
 struct FlatCounts {
-  std::vector<int> removed;  ///< input triangles that are gone
+  std::vector<int> removed;  ///< their `face`
   int left = 0;              ///< flat triangles that could not go without opening a crack
 };
 

@@ -27,12 +27,16 @@ struct Limits {
   int max_faces;
 };
 
-/// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight.
+/// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight, and
+/// whether the ends on a border stay at or between their vertices.
 struct Attempt {
   double width;
   int steps, sweeps;
+  bool ends_stay;
 };
-constexpr Attempt attempts[] = {{4, 5, 30}, {3, 1, 30}, {0, 0, 100}};
+constexpr double pi = 3.14159265358979323846;
+constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}};
+constexpr Attempt last_attempt = {0, 0, 100, true};
 
 /// What happens near the curves that are straightened together: each has a band of triangles of its own.
 struct Bands {
@@ -45,6 +49,15 @@ struct Bands {
 
 bool is_model(const Surface& s, int h) {
   return s.face.has("model") && s.face.get<std::uint8_t>("model")[h / 3] >> h % 3 & 1;
+}
+
+/// Model edges, and what is as sharp as one.
+bool is_crease(const Surface& s, const std::vector<int>& opposite, int h) {
+  constexpr double sharp = 40 * pi / 180;
+  auto normal = [&](int t) {
+    return area_vector(s.points[s.tris[t][0]], s.points[s.tris[t][1]], s.points[s.tris[t][2]]);
+  };
+  return is_model(s, h) || angle(normal(h / 3), normal(opposite[h] / 3)) > sharp;
 }
 
 double length_of(const Mesh& m, int h) {
@@ -224,8 +237,9 @@ std::vector<double> sides(const Bands& bands, const std::vector<double>& sign) {
 }
 
 /// The zero level of the bands' field, pulled straight, as a line of the surface with so many vertices.
-LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, int sweeps,
+LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, const Attempt& attempt,
                         std::size_t n) {
+  const std::vector<int> opposite = opposite_halfedges(bands.mesh.tris, (int)field.size());
   std::vector<Hold> hold;
   for (std::size_t v = 0; v < field.size(); ++v) {
     double& f = field[v];
@@ -233,8 +247,10 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
     if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
     hold.push_back(bands.held[v] == Bands::free && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
   }
+  for (int h = 0; attempt.ends_stay && h < (int)opposite.size(); ++h)
+    if (opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
   LevelLine line = zero_level(bands.mesh, field);
-  pull_straight(bands.mesh, opposite_halfedges(bands.mesh.tris, (int)field.size()), line, hold, snap, sweeps);
+  pull_straight(bands.mesh, opposite, line, hold, snap, attempt.sweeps);
   return in_whole(line, bands.mesh.vertex, n);
 }
 
@@ -296,7 +312,7 @@ std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
   }
   const std::vector<double> level =
       attempt.steps > 0 ? diffuse(bands, std::move(sign), time, attempt.steps) : sides(bands, sign);
-  const LevelLine line = straight_line(bands, level, limits.snap, attempt.sweeps, surface.points.size());
+  const LevelLine line = straight_line(bands, level, limits.snap, attempt, surface.points.size());
   std::vector<char> active(surface.tris.size(), 0);
   for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
     const Tri& v = surface.tris[t];
@@ -426,6 +442,81 @@ std::vector<Handle> straighten_together(Surface& s, std::vector<int>& opposite,
   return failed;
 }
 
+/// Triangles with two edges on an interface with one other part change to that, unless along creases: the
+/// interface takes the third edge. Neither part's topology changes.
+void trim_ears(Surface& s, const std::vector<int>& opposite, const std::vector<char>& chosen,
+               const Limits& limits) {
+  std::vector<int>& part = s.face.get<int>("part");
+  std::vector<int> faces(limits.n_parts, 0);
+  for (int p : part) ++faces[p];
+  auto other = [&](int h) { return opposite[h] < 0 ? -1 : part[opposite[h] / 3]; };
+  // h leaves the apex, where all other triangles are the other part's
+  auto is_ear = [&](int h) {
+    const int mine = part[h / 3], theirs = other(h);
+    if (theirs < 0 || theirs == mine || other(prev(h)) != theirs || other(next(h)) != mine) return false;
+    if (!chosen.empty() && !chosen[mine] && !chosen[theirs]) return false;
+    if (limits.max_faces > 0 && faces[theirs] >= limits.max_faces) return false;
+    if (is_crease(s, opposite, h) || is_crease(s, opposite, prev(h))) return false;
+    int g = opposite[prev(h)];
+    while (g >= 0 && g != h && part[g / 3] == theirs) g = opposite[prev(g)];
+    return g == h;
+  };
+  std::vector<int> ears;
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (is_ear(h)) ears.push_back(h);
+  while (!ears.empty()) {
+    const int h = ears.back();
+    ears.pop_back();
+    if (!is_ear(h)) continue;
+    --faces[part[h / 3]];
+    ++faces[other(h)];
+    part[h / 3] = other(h);
+    const int behind = opposite[next(h)];
+    for (int g : {behind, next(behind), prev(behind)})
+      if (is_ear(g)) ears.push_back(g);
+  }
+}
+
+/// The largest angle by which a curve turns on the surface between edges that are no creases.
+double sharpest_turn(const Surface& s, const std::vector<int>& opposite, const Curve& c) {
+  double sharpest = 0;
+  const std::size_t n = c.half_edges.size();
+  const bool closed = target(s.tris, c.half_edges.back()) == origin(s.tris, c.half_edges.front());
+  for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
+    const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
+    if (is_crease(s, opposite, to) || is_crease(s, opposite, from)) continue;
+    const Vec3 p = s.points[origin(s.tris, from)];
+    auto corner = [&](int h) {
+      return angle(s.points[target(s.tris, h)] - p, s.points[origin(s.tris, prev(h))] - p);
+    };
+    double left = 0, right = 0;
+    int h = from;
+    for (; h >= 0 && h != opposite[to]; h = opposite[prev(h)]) left += corner(h);
+    for (; h >= 0 && h != from; h = opposite[prev(h)]) right += corner(h);
+    if (h >= 0) sharpest = std::max(sharpest, pi * std::abs(left - right) / (left + right));
+  }
+  return sharpest;
+}
+
+/// What is still bent: the bands of neighbours may have left no room for it, on fans of large triangles, but
+/// there is some for one curve alone.
+void straighten_corners(Surface& surface, std::vector<int>& opposite, const std::vector<char>& chosen,
+                        const Limits& limits) {
+  constexpr double bent = 0.5;
+  constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
+  trim_ears(surface, opposite, chosen, limits);
+  std::vector<std::pair<double, Handle>> corners;
+  for (const Curve& c : find_curves(surface, opposite))
+    if (chosen.empty() || chosen[c.a] || chosen[c.b])
+      if (const double turn = sharpest_turn(surface, opposite, c); turn > bent)
+        corners.push_back({-turn, handle_of(surface, c)});
+  std::sort(corners.begin(), corners.end());
+  corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
+  for (const auto& [turn, one] : corners)
+    if (!straighten_together(surface, opposite, {one}, attempts[2], limits).empty())
+      straighten_together(surface, opposite, {one}, last_attempt, limits);
+}
+
 }  // namespace
 
 void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
@@ -445,8 +536,9 @@ void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_f
     // all together, those at fault again and more gently, in the end one by one
     for (const Attempt& attempt : attempts)
       open = straighten_together(surface, opposite, open, attempt, limits);
-    for (const Handle& one : open) straighten_together(surface, opposite, {one}, attempts[2], limits);
+    for (const Handle& one : open) straighten_together(surface, opposite, {one}, last_attempt, limits);
   }
+  straighten_corners(surface, opposite, chosen, limits);
 }
 
 }  // namespace meshpipe

@@ -8,8 +8,9 @@
 namespace meshpipe {
 
 /// Moves the interface of each pair of parts (face column `part`, 0..n-1) to the zero level of a diffused
-/// indicator of the two sides (threshold dynamics: motion towards shorter curves), by cut_by_scalar_field;
-/// the two parts' triangles change hands there, all other parts only get split along. Interface edges that
+/// indicator of the two sides (threshold dynamics: motion towards shorter curves), pulled straight
+/// (lib/level_line.h); where that fails, as on triangles much longer than wide, it is only pulled straight.
+/// The two parts' triangles change hands there, all other parts only get split along. Interface edges that
 /// are model edges stay. Where the result would not be admissible (part_fault) or longer, the interface of
 /// that pair stays as it was. Precondition: parts without fault.
 /// With `chosen`, only the interfaces of the parts that it marks.

@@ -140,13 +140,16 @@ double edge_path_depth(const Mesh& mesh, const std::vector<int>& opposite, const
   // a half-edge that leaves the vertex; the border's, if there is one
   std::vector<int> star(mesh.points.size(), -1);
   double width = 0;
+  std::size_t edges = 0;
   for (int t = 0; t < (int)mesh.tris.size(); ++t)
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       const int v = origin(mesh.tris, h);
       if (star[v] < 0 || opposite[h] < 0) star[v] = h;
+      if (opposite[h] > h) continue;  // every edge once
       width += norm(mesh.points[target(mesh.tris, h)] - mesh.points[v]);
+      ++edges;
     }
-  width /= (double)opposite.size();
+  width /= (double)edges;
   std::vector<double> distance(mesh.points.size(), far);
   std::vector<std::vector<int>> buckets(1);
   auto bucket_of = [&](double d) { return (std::size_t)(d / width); };
@@ -196,7 +199,7 @@ Topology measure(const Mesh& mesh, const std::vector<int>& opposite, int pieces,
   int pinched = find_pinched_vertex(mesh.tris, opposite, n);
   if (pinched >= 0)
     throw NotAdmissible("vertex " + std::to_string(number.empty() ? pinched : number[pinched]) +
-                        " joins triangles that share no edge");
+                        " joins triangles that share no edge; run mclean first");
   std::vector<std::vector<int>> loops = boundary_loops(opposite);
   std::vector<char> used(n, 0);
   for (const Tri& tri : mesh.tris)

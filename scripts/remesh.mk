@@ -24,6 +24,9 @@ args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)))
 here := $(dir $(abspath $(lastword $(MAKEFILE_LIST))))
 programs := $(firstword $(dir $(wildcard $(here)mclean $(here)../bin/mclean $(here)../build/bin/mclean)))
 export PATH := $(if $(programs),$(programs):)$(PATH)
+ifeq ($(shell PATH='$(PATH)'; command -v mclean),)
+  $(error the programs of meshpipe are neither in $(here)../build/bin nor on PATH: build them, as scripts/demo does)
+endif
 
 .SUFFIXES:
 .SECONDARY:

@@ -2,6 +2,7 @@
 #include "tools/common.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <omp.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -17,11 +18,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <thread>
 
+#include "formats/losses.h"
 #include "lib/progress.h"
 
 namespace meshpipe {
@@ -152,8 +156,12 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
     sink(write_as(stream, path, text));
 }
 
-/// Writes what `produce` hands to its sink to a file, beside it and renamed.
+/// Writes what `produce` hands to its sink to a file, beside it and renamed; "-" is standard output.
 void write_beside(const std::string& path, const std::function<void(const Sink&)>& produce) {
+  if (path == "-") {
+    produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
+    return;
+  }
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
   // a device or a pipe is written to, not replaced
@@ -179,6 +187,30 @@ void write_beside(const std::string& path, const std::function<void(const Sink&)
     temporary_exists = false;
     throw;
   }
+}
+
+/// Throws CannotWrite if the file cannot be written now, and BadUsage if a `mesh` has no format by its name.
+void expect_writable(const std::string& path, bool mesh) {
+  if (mesh && !is_stream_name(path)) writer_of(path);
+  if (path == "-") return;
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
+  const std::size_t slash = path.rfind('/');
+  const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
+  const std::string& target = exists && !S_ISREG(info.st_mode) ? path : directory;
+  if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + reason());
+}
+
+/// Whether what is written to one of them is lost when the other is written; devices take both.
+bool same_file(const std::string& a, const std::string& b) {
+  if (a == "-" || b == "-") return a == b;
+  std::error_code error;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+  };
+  return place(a) == place(b) &&
+         (!std::filesystem::exists(a, error) || std::filesystem::is_regular_file(a, error));
 }
 
 /// The options given on the command line that change the result, as they are recorded in the stream.
@@ -280,15 +312,21 @@ Stream Io::read(const std::string& path) const {
   return stream;
 }
 
-void Io::write(Stream& stream) {
-  stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
-  bool text = ascii || (stream.ascii && !binary);
+bool Io::text_for(const Stream& stream) const {
   const std::string extension = extension_of(output);
   // only the text of STL has room for patches and their names
-  if (extension == ".stl" && !binary && !stream.names.empty()) text = true;
-  if (!stream.names.empty() && (extension == ".off" || extension == ".gts" || (extension == ".stl" && !text)))
-    say("names of patches are lost: " + std::string(text || extension != ".stl" ? extension : "binary .stl") +
-        " has none");
+  const bool named = extension == ".stl" && !binary && !stream.names.empty();
+  const bool text = ascii || named || (stream.ascii && !binary);
+  if (is_stream_name(output) && program != "mconvert") return text;
+  if (const std::string lost = lost_in(stream, output, text); !lost.empty())
+    say("left out, " + std::string(extension == ".stl" && !text ? "binary " : "") + extension +
+        " has no room for it: " + lost);
+  return text;
+}
+
+void Io::write(Stream& stream) {
+  stream.history.push_back({program, MESHPIPE_VERSION, arguments_});
+  const bool text = text_for(stream);
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
@@ -319,15 +357,16 @@ void Io::write_file(const std::string& path, std::string_view bytes) {
   write_beside(path, [&](const Sink& sink) { sink(bytes); });
 }
 
-void Io::expect_writable(const std::string& path, bool mesh) {
-  if (mesh && !is_stream_name(path)) writer_of(path);
-  struct stat info {};
-  const bool exists = ::stat(path.c_str(), &info) == 0;
-  if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
-  const std::size_t slash = path.rfind('/');
-  const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
-  const std::string& target = exists && !S_ISREG(info.st_mode) ? path : directory;
-  if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + reason());
+void Io::expect_report(const std::string& option, const std::string& path, bool mesh) {
+  for (const auto& [other, file] : files_)
+    if (same_file(path, file)) {
+      throw BadUsage(option + ' ' + path + ": " +
+                     (path != "-"       ? "that is the file of " + other
+                      : other == "-o" ? "standard output is for the result; give -o FILE"
+                                      : "standard output is for " + other));
+    }
+  files_.push_back({option, path});
+  expect_writable(path, mesh);
 }
 
 void Io::say(const std::string& line) const {
@@ -355,6 +394,10 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
              const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,
              Usage usage) {
   handle_signals();
+  if (usage.passes) {
+    ::mallopt(M_MMAP_MAX, 0);
+    ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  }
   Io io;
   io.program = program;
   CLI::App app{summary, program};
@@ -375,7 +418,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       ->type_name("N");
   app.add_flag("-q,--quiet", io.quiet, "say nothing but errors");
   app.add_flag("-v,--verbose", io.verbose, "say more");
-  app.add_option("--json", io.json, "write the report to this file")->type_name("FILE");
+  app.add_option("--json", io.json, "write the report to this file; - is standard output, if -o is not")->type_name("FILE");
   app.set_version_flag("--version", std::string(program) + " " MESHPIPE_VERSION " (mply 1.0)");
   app.get_option("--version")->description("the version, and that of the stream")->group(common_group);
   app.set_help_flag("-h,--help", "this text");
@@ -422,8 +465,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     if (!io.json.empty()) Io::write_file(io.json, io.report.dump(2) + '\n');
   };
   try {
-    if (io.output != "-") Io::expect_writable(io.output, usage.writes_mesh);
-    if (!io.json.empty()) Io::expect_writable(io.json);
+    io.expect_report("-o", io.output, usage.writes_mesh);
+    if (!io.json.empty()) io.expect_report("--json", io.json);
     try {
       const Progress progress(io);
       body(io);

@@ -24,15 +24,18 @@ class Io {
   /// Adds this program to the history and writes the stream to -o FILE (beside it, then renamed) or standard
   /// output.
   void write(Stream& stream);
-  /// Writes another stream to a file of the user's, in the format of its extension.
+  /// Whether -o FILE is to be text; and tells what the format of its extension has no room for.
+  bool text_for(const Stream& stream) const;
+  /// Writes another stream to a file of the user's ("-": standard output), in the format of its extension.
   void write_to(const std::string& path, const Stream& stream) const;
   /// Writes bytes to -o FILE or standard output, the same way.
   void write_bytes(std::string_view bytes) const;
-  /// Writes bytes to another file of the user's, beside it and renamed.
+  /// Writes bytes to another file of the user's, beside it and renamed, or to standard output for "-".
   static void write_file(const std::string& path, std::string_view bytes);
-  /// Throws CannotWrite if write_file would fail now, and BadUsage if write_to would for the extension of a
-  /// `mesh`: before the work, not after it.
-  static void expect_writable(const std::string& path, bool mesh = false);
+  /// Before the work, not after it: throws CannotWrite if write_file would fail now for a further file, and
+  /// BadUsage if write_to would for the extension of a `mesh`, or if the file is that of -o, of --json, or one
+  /// that was expected before (`option` is for the message).
+  void expect_report(const std::string& option, const std::string& path, bool mesh = false);
   /// A line on standard error, after the program's name; not with -q.
   void say(const std::string& line) const;
   /// The same, only with -v.
@@ -50,6 +53,7 @@ class Io {
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
                       const std::function<void(Io&)>&, struct Usage);
   std::string arguments_;
+  std::vector<std::pair<std::string, std::string>> files_;  ///< that are to be written, by their options
   mutable bool written_ = false;  ///< something went to standard output: no failure line after it
   mutable std::string finished_;  ///< the file of -o, once it has its name: removed by a failure after that
 };
@@ -58,6 +62,8 @@ class Io {
 struct Usage {
   bool reads = true;        ///< takes FILE
   bool writes_mesh = true;  ///< -o is a mesh, its format by extension
+  bool passes = false;      ///< a few passes over all its input, in arrays of that size: most of its time would go
+                            ///< into fresh pages, so that freed memory is kept for the next arrays
 };
 
 /// How many triangles the machine's memory holds while a pipeline of these programs works on them.
@@ -67,7 +73,7 @@ double most_triangles();
 /// turns exceptions into one line on standard error and the documented exit status. `summary` ends with the
 /// examples --help shows ("\n  mclean ..."). Options of `options` that change the result are recorded in the
 /// stream; put those that do not in the group "Reports". That -o and --json can be written is seen before
-/// `body` runs; for further files call expect_writable first.
+/// `body` runs; for further files call expect_report first.
 int run_tool(int argc, char** argv, const char* program, const char* summary,
              const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,
              Usage usage = {});

@@ -35,34 +35,36 @@ int count_or_all(const std::string& text) {
   return value;
 }
 
+/// What was found and done, for --json; of a surface that is refused, what was found until then.
+void put(Io& io, const CleanReport& r, const CleanOptions& options) {
+  io.report["input_vertices"] = r.input_vertices;
+  io.report["input_triangles"] = r.input_triangles;
+  io.report["clean"] = r.nothing;
+  for (const auto& [key, count, what] : table_of(r, options)) io.report[key] = count;
+  for (const Nonorientable& c : r.nonorientable)
+    io.report[options.drop_nonorientable ? "dropped_nonorientable" : "refused_nonorientable"].push_back(
+        {{"triangle", c.triangle},
+         {"triangles", c.triangles},
+         {"disagree", {c.a, c.b}},
+         {"place", {c.place.x, c.place.y, c.place.z}}});
+}
+
 void tell(Io& io, const CleanReport& r, const CleanOptions& options, const Surface& surface) {
   const std::string size = std::to_string(surface.points.size()) + " vertices, " +
                            std::to_string(surface.tris.size()) + " triangles, " +
                            std::to_string(r.components) + (r.components == 1 ? " component" : " components");
-  if (r.nothing)
-    io.say("clean: " + size);
-  else
-    io.say(std::to_string(r.input_vertices) + " vertices, " + std::to_string(r.input_triangles) +
-           " triangles -> " + size);
-  io.report["input_vertices"] = r.input_vertices;
-  io.report["input_triangles"] = r.input_triangles;
+  io.say(r.nothing ? "clean: " + size
+                   : std::to_string(r.input_vertices) + " vertices, " + std::to_string(r.input_triangles) +
+                         " triangles -> " + size);
   io.report["vertices"] = surface.points.size();
   io.report["triangles"] = surface.tris.size();
   io.report["components"] = r.components;
-  io.report["clean"] = r.nothing;
   for (const auto& [key, count, what] : table_of(r, options)) {
-    io.report[key] = count;
     char line[160];  // what a clean surface tells of is how it was found
     std::snprintf(line, sizeof line, "%9d %s%s", count, what.c_str(), r.nothing ? " (so in the input)" : "");
     if (count) io.say(line);
   }
-  for (const Nonorientable& c : r.nonorientable) {
-    io.say("dropped: " + describe(c));
-    io.report["dropped_nonorientable"].push_back({{"triangle", c.triangle},
-                                                  {"triangles", c.triangles},
-                                                  {"disagree", {c.a, c.b}},
-                                                  {"place", {c.place.x, c.place.y, c.place.z}}});
-  }
+  for (const Nonorientable& c : r.nonorientable) io.say("dropped: " + describe(c));
 }
 
 /// A patch that became several has its name on each of them.
@@ -104,7 +106,7 @@ int main(int argc, char** argv) {
             ->type_name("TOL");
         app.add_option("--keep-components", o.keep, "keep the N largest components by area (default all)")
             ->type_name("N|all");
-        app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
+        app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges, 3 to 1000")
             ->check(CLI::Range(3, 1000))
             ->type_name("N");
         app.add_flag("--drop-nonorientable", o.drop_nonorientable,
@@ -119,7 +121,7 @@ int main(int argc, char** argv) {
       [&](Io& io) {
         o.keep_components = count_or_all(o.keep);
         o.keep_sheets = o.sheets == "keep";
-        if (!o.culprits.empty()) Io::expect_writable(o.culprits, true);
+        if (!o.culprits.empty()) io.expect_report("--culprits", o.culprits, true);
         Stream stream = io.read();
         Surface& s = stream.surface;
         if (!o.within.empty()) o.weld = tolerance(o.within, s);
@@ -130,9 +132,11 @@ int main(int argc, char** argv) {
         try {
           clean(s, o, report);
         } catch (const NotAdmissible&) {
+          put(io, report, o);
           write_culprits(io, o.culprits, report, input);
           throw;
         }
+        put(io, report, o);
         write_culprits(io, o.culprits, report, input);
         name_sheets(stream, report);
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
@@ -146,5 +150,6 @@ int main(int argc, char** argv) {
         stream.input_triangles = (int)s.tris.size();
         tell(io, report, o, s);
         io.write(stream);
-      });
+      },
+      {.passes = true});
 }

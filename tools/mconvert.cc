@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
         io.report["triangles"] = stream.surface.tris.size();
         if (io.output == "-" || io.output.ends_with(".mply"))
           io.write(stream);
-        else if (const bool ascii = io.ascii || (stream.ascii && !io.binary); o.polydata)
+        else if (const bool ascii = io.text_for(stream); o.polydata)
           io.write_bytes(write_vtk_polydata(stream, ascii));
         else
           io.write_bytes(write_as(stream, io.output, ascii));

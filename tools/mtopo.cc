@@ -92,35 +92,39 @@ int main(int argc, char** argv) {
             ->group("Reports");
       },
       [&](Io& io) {
-        if (!tsv_file.empty()) Io::expect_writable(tsv_file);
+        if (!tsv_file.empty()) io.expect_report("--tsv", tsv_file);
         Stream stream = io.read();
         Surface& s = stream.surface;
+        expect_measurable(s);
+        const bool cleaned = stream.input_triangles > 0;
+        std::vector<int> component;
+        auto components_of = [&](const Mesh& mesh) {
+          const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+          const int n = components(opposite, component);
+          if (n == (int)s.tris.size() && n > 1 && !cleaned)
+            throw NotAdmissible("no two of the " + std::to_string(n) + " triangles share an edge; run mclean first");
+          if (required == "manifold")
+            if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
+              throw NotAdmissible("vertex " + std::to_string(v) +
+                                  " joins triangles that share no edge; run mclean first");
+          return topology_of_components(mesh, opposite, component, n);
+        };
         Mesh apart;
         const Mesh* mesh = &s;
-        std::vector<int> opposite;
+        std::vector<Topology> pieces;
         try {
-          opposite = opposite_halfedges(s.tris, (int)s.points.size());
+          pieces = components_of(s);
         } catch (const NotAdmissible&) {
-          if (required == "manifold" || !s.face.has("model")) throw;
+          if (!cleaned || required == "manifold") throw;
           apart = sheets_apart(s);  // as mclean --sheets keep has left it
           mesh = &apart;
-          opposite = opposite_halfedges(apart.tris, (int)apart.points.size());
+          pieces = components_of(apart);
         }
-        if (required == "manifold")
-          if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
-            throw NotAdmissible("vertex " + std::to_string(v) +
-                                " joins triangles that share no edge; run mclean first");
-        std::vector<int> component;
-        const int n = components(opposite, component);
-        if (n == (int)s.tris.size() && n > 1)
-          throw NotAdmissible("no two of the " + std::to_string(n) +
-                              " triangles share an edge; run mclean first");
         std::string tsv =
             "kind\tid\tvertices\tedges\tfaces\tpieces\tgenus\tloops\tlongest_loop\tarea\teta_cyl\teta_"
             "box\teta_geo\t"
             "verdict\tloop_lengths\n";
         std::string kind = "component";
-        std::vector<Topology> pieces = topology_of_components(*mesh, opposite, component, n);
         tell(io, kind, pieces, tsv);
         if (s.face.has("part")) {
           kind = "part";
@@ -137,5 +141,6 @@ int main(int argc, char** argv) {
             if (!table.has(c.name)) table.columns.push_back(c);
         stream.set(std::move(table));
         io.write(stream);
-      });
+      },
+      {.passes = true});
 }

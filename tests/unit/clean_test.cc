@@ -177,9 +177,20 @@ TEST(Clean, RefusesAMoebiusBand) {
   }
 }
 
-TEST(Clean, RefusesWhatHasNoTriangleLeft) {
-  Surface s = surface(tetra_points, {{0, 0, 1}});
-  EXPECT_THROW(clean(s), NotAdmissible);
+TEST(Clean, RefusesWhatHasNoTriangleLeftAndTellsWhy) {
+  auto why = [](Surface s, const CleanOptions& options) {
+    try {
+      clean(s, options);
+    } catch (const NotAdmissible& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(why(surface(tetra_points, {{0, 0, 1}}), {}), "no triangle is left of 1: 1 degenerate");
+  EXPECT_EQ(why(surface(tetra_points, {}), {}), "the input has no triangle");
+  const Surface band = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                               {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  EXPECT_EQ(why(band, {.drop_nonorientable = true}), "no triangle is left of 5: 5 not orientable");
 }
 
 //  3-------2       triangle 1 = (0, 1, 4) is a cap: 4 lies on the edge 0-1; without it, and with nothing else
@@ -324,6 +335,64 @@ TEST(Clean, FillsHolesOfAtMostThatManyEdges) {
     EXPECT_EQ(clean(t, {.fill_holes = 4}).holes_filled, 1);
     EXPECT_EQ(topology_of(t).loops, 0);
     EXPECT_EQ(t.tris.size(), 4u);
+  }
+}
+
+//      2            a tetrahedron whose edge 0-1 has a vertex in its middle on one side only: the hole
+//     / \           (0, 1, 4), whose corners are in line, is filled and flipped away
+//    0---1
+//    0-4-1
+//     \|/           .
+//      3
+TEST(Clean, FillsASlitWithoutATriangleOfNoArea) {
+  Surface s = surface(tetra_points, {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+  s.points.push_back({0.5, 0, 0});
+  const CleanReport r = clean(s, {.fill_holes = 3});
+  EXPECT_EQ(r.holes_filled, 1);
+  EXPECT_EQ(r.degenerate, 0);
+  EXPECT_TRUE(r.culprits.empty());
+  EXPECT_EQ(s.tris.size(), 6u);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  for (const Tri& t : s.tris) EXPECT_GT(kappa(s.points[t[0]], s.points[t[1]], s.points[t[2]]), 0.1);
+  const std::vector<int>& patch = s.face.get<int>("patch");
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 10), 2);
+  EXPECT_TRUE(clean(s, {.fill_holes = 3}).nothing);
+}
+
+// points on a grid much coarser than the tolerance needs, so that triangles fall together, lose their area and
+// meet in edges of many
+TEST(Clean, WeldedCoarselyItIsCleanTheSecondTime) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 200; ++round) {
+    Surface s;
+    for (int v = 0; v < 40; ++v)
+      s.points.push_back({0.25 * (random() % 13), 0.25 * (random() % 5), 0.5 * (random() % 2)});
+    for (int t = 0; t < 60; ++t)
+      s.tris.push_back({(int)(random() % 40), (int)(random() % 40), (int)(random() % 40)});
+    CleanOptions options{.weld = 0.1 * (round % 8), .drop_nonorientable = true};
+    options.fill_holes = round % 3 ? 0 : 6;
+    options.keep_sheets = round % 5 == 0;
+    try {
+      clean(s, options);
+    } catch (const NotAdmissible&) {
+      continue;  // nothing is left
+    }
+    const CleanReport again = clean(s, options);
+    EXPECT_TRUE(again.nothing) << "round " << round;
+  }
+}
+
+TEST(Clean, RefusesSizesThatCannotBeMeasured) {
+  for (double size : {1e-200, 1e200}) {
+    Surface s = surface(tetra_points, tetra_tris);
+    for (Vec3& p : s.points) p = size * p;
+    EXPECT_THROW(clean(s), NotAdmissible);
+  }
+  for (double size : {1e-40, 1e40}) {
+    Surface s = surface(tetra_points, tetra_tris);
+    for (Vec3& p : s.points) p = size * p;
+    EXPECT_TRUE(clean(s).nothing);
   }
 }
 

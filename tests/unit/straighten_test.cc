@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/partition.h"
 #include "lib/topology.h"
@@ -90,4 +91,34 @@ TEST(Straighten, DoesNotLoseAPart) {
   Surface s = grid(20, [](int x, int y) { return x < 10 + y % 2 ? 1 : x == 10 + y % 2 ? 0 : 2; });
   straighten_interfaces(s, 3, 0.1);
   EXPECT_EQ(part_fault(s), "");
+}
+
+//  a quarter of a fan of large triangles: its corner at the middle becomes a chord
+TEST(Straighten, CutsACornerAcrossAFan) {
+  Surface s;
+  constexpr int n = 24;
+  s.points.push_back({0, 0, 0});
+  std::vector<int> part;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * 3.14159265358979 * i / n;
+    s.points.push_back({std::cos(a), std::sin(a), 0});
+    s.tris.push_back({0, 1 + i, 1 + (i + 1) % n});
+    part.push_back(i < n / 4);
+  }
+  s.face.set("part", part);
+  straighten_interfaces(s, 2, 0.1);
+  EXPECT_EQ(part_fault(s), "");
+  EXPECT_LT(measure_interfaces(s).length * diagonal(s), 1.5);
+  EXPECT_LT(measure_interfaces(s).largest_angle, 20);
+}
+
+//  a spike of one triangle on a straight interface is given to the other part
+TEST(Straighten, TrimsASpike) {
+  Surface s = grid(20, [](int x, int) { return x < 10 ? 0 : 1; });
+  s.face.get<int>("part")[2 * (7 * 20 + 10)] = 0;
+  const double length = measure_interfaces(s).length * diagonal(s);
+  EXPECT_GT(length, 20.1);
+  straighten_interfaces(s, 2, 0.1);
+  EXPECT_EQ(part_fault(s), "");
+  EXPECT_LT(measure_interfaces(s).length * diagonal(s), 20.01);
 }
