@@ -47,7 +47,7 @@ bool turns_away(const EditMesh& m, const std::vector<Vec3>& points, const std::v
 
 Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wanted, double most_turn) {
   constexpr int tries = 3;
-  constexpr double least_progress = 0.12;  // of a round
+  constexpr double least_progress = 0.2;  // of a round
   const int n = (int)mesh.points.size();
   EditMesh m(mesh.tris, n, model);
   std::vector<int> into(n), round_of(n, -1), left;

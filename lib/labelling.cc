@@ -13,6 +13,7 @@
 #include "lib/forecast.h"
 #include "lib/graph.h"
 #include "lib/handles.h"
+#include "lib/progress.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -391,6 +392,7 @@ Labelling search(const Component& c, const PartitionOptions& options) {
     if (failure) std::rethrow_exception(failure);
     for (Labelling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
+    add_progress(c.share * batch / (most_trials + sides));
   }
   if (genus > 0 && (options.homology || best.burden > genus + 2)) {
     const auto loops = handle_loops(c.mesh, c.opposite, genus);
@@ -457,6 +459,7 @@ Labelling best_labelling(Component& c, const PartitionOptions& options) {
     Component small = make_component(coarse, coarse.model,
                                      opposite_halfedges(coarse.tris, (int)coarse.points.size()), c.whole);
     small.of_fine = n;
+    small.share = c.share;
     weigh(small);
     l = search(small, options);
   }

@@ -23,7 +23,8 @@ struct Component {
   std::vector<int> weight;   ///< of each half-edge, as in the graph: the cost of a cut along it
   Cells cells;
   Region whole;
-  int of_fine = 0;  ///< triangles of the component that this is a coarse model of, or 0
+  int of_fine = 0;   ///< triangles of the component that this is a coarse model of, or 0
+  double share = 0;  ///< of the work on the whole surface (lib/progress.h)
 };
 
 /// Without weights and cells, which are made when they are needed.

@@ -8,6 +8,7 @@
 
 #include "lib/error.h"
 #include "lib/labelling.h"
+#include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
@@ -35,6 +36,8 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
   };
   std::vector<int> part(component), number(part.size());
   for (int& i : part) i = stays_whole(i) ? -1 : i;
+  constexpr double before = 0.05, searching = 0.6;
+  add_progress(before);
   std::vector<SubMesh> subs = split_by_label(surface, part, n_components);
   int n_parts = 0;
   std::vector<int> first(n_components);
@@ -55,6 +58,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
       within[h] = o < 0 ? -1 : 3 * number[o / 3] + o % 3;
     }
     Component c = make_component(std::move(subs[i]), std::move(model), std::move(within), whole.region[i]);
+    c.share = searching * (double)face.size() / (double)part.size();
     Labelling l;
     if (c.whole.maps_to_the_plane()) {
       l.label.assign(c.mesh.tris.size(), 0);

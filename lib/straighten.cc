@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "lib/cut.h"
+#include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/sparse.h"
 #include "lib/topology.h"
@@ -537,6 +538,7 @@ void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_f
     for (const Attempt& attempt : attempts)
       open = straighten_together(surface, opposite, open, attempt, limits);
     for (const Handle& one : open) straighten_together(surface, opposite, {one}, last_attempt, limits);
+    add_progress(0.2 / n_colours);
   }
   straighten_corners(surface, opposite, chosen, limits);
 }
