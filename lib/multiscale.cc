@@ -478,6 +478,9 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       if (options.method == CutMethod::maxcut && half.eta_geo > options.max_aspect)
         fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +
              std::to_string(made.is[1].eta_geo) + ", above " + std::to_string(options.max_aspect));
+    constexpr double blind = 0.01;  // a share of the triangles
+    if (too_small + turned_over > blind * part.mesh.tris.size())
+      fail("is cut by a line that does not see all of it");
     surface = std::move(made.surface);
     std::vector<int>& labels = surface.face.get<int>("part");
     for (std::size_t t = 0; t < labels.size(); t++)

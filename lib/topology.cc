@@ -166,6 +166,7 @@ double edge_path_depth(const Mesh& mesh, const std::vector<int>& opposite, const
         const double d = distance[v];
         if (bucket_of(d) != b) continue;  // it went on with a shorter way
         auto reach = [&](int w) {
+          if (distance[w] <= d) return;  // half of them: neither the point nor a root is needed
           const double along = d + norm(mesh.points[w] - mesh.points[v]);
           if (!(along < distance[w])) return;
           distance[w] = along;
