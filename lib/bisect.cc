@@ -167,6 +167,28 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   return false;
 }
 
+int cut_along_model_edges(Surface& surface, int part, int n_parts) {
+  if (!surface.face.has("model")) return n_parts;
+  auto& label = surface.face.get<int>("part");
+  const auto& model = surface.face.get<std::uint8_t>("model");
+  std::vector<int> only(label.size());
+  for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
+  const SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
+  std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size()), piece;
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (model[mesh.face[h / 3]] >> (h % 3) & 1) opposite[h] = -1;
+  const int pieces = components(opposite, piece);
+  if (pieces < 2) return n_parts;
+  for (const SubMesh& m : split_by_label(mesh, piece, pieces)) {
+    const auto within = opposite_halfedges(m.tris, (int)m.points.size());
+    if (find_pinched_vertex(m.tris, within, (int)m.points.size()) >= 0 || topology_of(m).genus > 0)
+      return n_parts;
+  }
+  for (std::size_t t = 0; t < piece.size(); ++t)
+    if (piece[t] > 0) label[mesh.face[t]] = n_parts + piece[t] - 1;
+  return n_parts + pieces - 1;
+}
+
 int cut_along_limbs(Surface& surface, int part, int n_parts) {
   // a surface of which only this part has a label, and a limit just below its aspect ratio; the labels of all
   // go through the cut in a column of their own

@@ -17,6 +17,11 @@ namespace meshpipe {
 /// split conformingly. Returns false, and changes nothing, if no line will do.
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
 
+/// Cuts `part` along the model edges in it (face column `model`), where these bound pieces that are all of
+/// genus 0: lines that the mesh has to follow anyway, and what CAD models are made of unrolls by itself. No
+/// triangle is split. Labels and result as of cut_along_limbs.
+int cut_along_model_edges(Surface& surface, int part, int n_parts);
+
 /// Cuts `part` by the multiscale partitioner (lib/multiscale.h) although its aspect ratio is admissible:
 /// along its limbs, so that none shrinks to nothing in a chart. Parts above the first get the labels n_parts,
 /// n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the partitioner cannot

@@ -30,7 +30,7 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
 
 /// sigma1/sigma2 (p99) of maps that cost the mesher more than some steps of optimisation cost here, and the
 /// triangles of a part up to which that is so; larger parts are cut, which costs less than either.
-constexpr double poor = 4;
+constexpr double poor = 4, useless = 20;
 constexpr std::size_t small = 4000;
 
 /// The element at the fraction q of the order.
@@ -282,7 +282,7 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
     // and that reverse angles; sigma1 and sigma2 are the sum and the difference of their norms
     Vec2 x = (1 / l) * p, y = (l / (2 * area)) * (q - (dot(e, f) / (l * l)) * p);
     double keep = 0.5 * std::hypot(x.x + y.y, x.y - y.x), reverse = 0.5 * std::hypot(x.x - y.y, x.y + y.x);
-    anisotropy.push_back(keep > reverse ? (keep + reverse) / (keep - reverse) : HUGE_VAL);
+    anisotropy.push_back(keep > reverse ? (keep + reverse) / (keep - reverse) : 1e300);
     scale.push_back(image / area);
     if (scale.back() < least) least = scale.back(), extremes[0] = t[0];
     if (scale.back() > most) most = scale.back(), extremes[1] = t[0];
@@ -352,7 +352,9 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       int n = n_parts;
       double uneven = missed ? HUGE_VAL : reports[p].area_scale;
       if (!options.strict && round < most_rounds) {
-        if (!missed && uneven > too_uneven && round < limb_rounds)
+        if (missed || reports[p].anisotropy_p99 > useless)
+          n_parts = cut_along_model_edges(surface, p, n_parts);
+        if (n_parts == n && !missed && uneven > too_uneven && round < limb_rounds)
           n_parts = cut_along_limbs(surface, p, n_parts);
         bool stretched = !missed && round < limb_rounds && reports[p].used != options.map &&
                          charts[p].mesh.tris.size() > small && reports[p].anisotropy_p99 > poor;
@@ -372,7 +374,6 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     }
     if (n_parts == n_before) break;
   }
-  for (Chart& chart : charts) index_chart(chart);
   return charts;
 }
 

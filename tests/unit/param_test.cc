@@ -7,8 +7,11 @@
 
 #include "lib/bisect.h"
 #include "lib/error.h"
+#include "lib/feature.h"
 #include "lib/injective.h"
 #include "lib/param_intrinsic.h"
+#include "lib/partition.h"
+#include "lib/shape.h"
 #include "lib/topology.h"
 
 using namespace meshpipe;
@@ -185,7 +188,6 @@ TEST(Param, ABorderThatCrossesItselfIsBent) {
   EXPECT_FALSE(reports[0].border_was_simple);
   EXPECT_LT(reports[0].anisotropy_p99, 1.2);  // still conformal
   EXPECT_TRUE(one_to_one(charts[0].mesh, charts[0].uv));
-  EXPECT_FALSE(charts[0].opposite.empty());
 }
 
 // A long thimble: conformal in one chart, its tip would be exp(-16) of its size.
@@ -278,6 +280,47 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
 
 // A needle across a flat strip: the long edge of two obtuse triangles is flipped, and all weights are
 // positive.
+TEST(Bisect, AlongModelEdges) {
+  Surface s;
+  const Body body = cube(120);
+  static_cast<Mesh&>(s) = body;
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  s.face.set("patch", body.patch);
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // none are known
+  mark_features(s, {});
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 6);
+  const auto& part = s.face.get<int>("part");
+  for (std::size_t t = 0; t < part.size(); ++t)
+    for (std::size_t u = 0; u < t; ++u) EXPECT_EQ(part[t] == part[u], body.patch[t] == body.patch[u]);
+  // a piece with a handle stays in one part with the rest
+  Surface ring;
+  static_cast<Mesh&>(ring) = torus(0.4, 200);
+  ring.vertex.rows = ring.points.size();
+  ring.face.rows = ring.tris.size();
+  ring.face.set("part", std::vector<int>(ring.tris.size(), 0));
+  std::vector<std::uint8_t> model(ring.tris.size(), 0);
+  model[0] = 7;  // all round one triangle
+  const std::vector<int> opposite = opposite_halfedges(ring.tris, (int)ring.points.size());
+  for (int h = 0; h < 3; ++h) model[opposite[h] / 3] |= static_cast<std::uint8_t>(1 << opposite[h] % 3);
+  ring.face.set("model", model);
+  EXPECT_EQ(cut_along_model_edges(ring, 0, 1), 1);
+}
+
+TEST(Param, SliversOfACadBodyAreCutAlongModelEdges) {
+  Surface s;
+  const Body body = cad_body(3, 3, 500);
+  static_cast<Mesh&>(s) = body;
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  s.face.set("patch", body.patch);
+  mark_features(s, {});
+  std::vector<ParamReport> reports;
+  map_surface(s, partition_to_disks(s), {}, reports);
+  for (const ParamReport& r : reports) EXPECT_LT(r.anisotropy_p99, 20);
+}
+
 TEST(Param, IntrinsicDelaunayFlipsNeedles) {
   auto strip = grid(
       30, 4, false,
