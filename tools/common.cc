@@ -361,7 +361,7 @@ void Io::expect_report(const std::string& option, const std::string& path, bool 
   for (const auto& [other, file] : files_)
     if (same_file(path, file)) {
       throw BadUsage(option + ' ' + path + ": " +
-                     (path != "-"       ? "that is the file of " + other
+                     (path != "-"     ? "that is the file of " + other
                       : other == "-o" ? "standard output is for the result; give -o FILE"
                                       : "standard output is for " + other));
     }
@@ -418,7 +418,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       ->type_name("N");
   app.add_flag("-q,--quiet", io.quiet, "say nothing but errors");
   app.add_flag("-v,--verbose", io.verbose, "say more");
-  app.add_option("--json", io.json, "write the report to this file; - is standard output, if -o is not")->type_name("FILE");
+  app.add_option("--json", io.json, "write the report to this file; - is standard output, if -o is not")
+      ->type_name("FILE");
   app.set_version_flag("--version", std::string(program) + " " MESHPIPE_VERSION " (mply 1.0)");
   app.get_option("--version")->description("the version, and that of the stream")->group(common_group);
   app.set_help_flag("-h,--help", "this text");
