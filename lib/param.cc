@@ -30,7 +30,7 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
 
 /// sigma1/sigma2 (p99) of maps that cost the mesher more than some steps of optimisation cost here, and the
 /// triangles of a part up to which that is so; larger parts are cut, which costs less than either.
-constexpr double poor = 4, useless = 20;
+constexpr double poor = 4;
 constexpr std::size_t small = 4000;
 
 /// The element at the fraction q of the order.
@@ -352,7 +352,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       int n = n_parts;
       double uneven = missed ? HUGE_VAL : reports[p].area_scale;
       if (!options.strict && round < most_rounds) {
-        if (missed || reports[p].anisotropy_p99 > useless)
+        if (missed || reports[p].anisotropy_p99 > poor)
           n_parts = cut_along_model_edges(surface, p, n_parts);
         if (n_parts == n && !missed && uneven > too_uneven && round < limb_rounds)
           n_parts = cut_along_limbs(surface, p, n_parts);
