@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lib/error.h"
+#include "lib/size.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -17,6 +18,8 @@ constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in good chains
+constexpr double gap = 0.05;  ///< of the strong edges, by length: weaker ones that leave a gap between
+constexpr double room = 1.5;  ///< target lengths between creases, on average
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 class Creases {
@@ -52,6 +55,7 @@ class Creases {
     // coarse model of few triangles has no longer chains than a tenth of itself
     const double mean = n ? sum / n : 0, most = 0.1 * diagonal(s_);
     telling_ = std::min(5 * mean, most);
+    size_ = options.size > 0 ? options.size : size_for_count(total_area(s_), (double)s_.tris.size());
     short_ = std::min(3 * (options.size > 0 ? options.size : mean), most);
   }
 
@@ -91,12 +95,19 @@ class Creases {
     }
   }
 
-  /// On components where less than half of the strong edges are in chains that look designed, takes no
-  /// crease.
-  void keep_designed(double sharp) {
+  /// Takes no crease on components that do not look designed. Two things tell: at least half of the strong
+  /// edges are in long smooth chains; or there is next to nothing between smooth and sharp, where noise has
+  /// every angle, and the creases leave room for triangles, which the steps of a segmented image do not.
+  void keep_designed(double sharp, double weak) {
     std::vector<int> component;
     const int n = components(opposite_, component);
-    std::vector<double> strong(n, 0), good(n, 0);
+    std::vector<double> strong(n, 0), good(n, 0), between(n, 0), area(n, 0);
+    for (int t = 0; t < (int)s_.tris.size(); ++t) {
+      const Tri& v = s_.tris[t];
+      area[component[t]] += 0.5 * norm(area_vector(s_.points[v[0]], s_.points[v[1]], s_.points[v[2]]));
+    }
+    for (int h = 0; h < (int)opposite_.size(); ++h)
+      if (opposite_[h] > h && angle_[h] > weak && angle_[h] <= sharp) between[component[h / 3]] += length(h);
     for (int h = 0; h < (int)opposite_.size(); ++h)
       if (opposite_[h] > h && (strong_[h] || (patch_[h] && angle_[h] > sharp))) {
         strong[component[h / 3]] += length(h);
@@ -110,8 +121,12 @@ class Creases {
       }
       if (along > telling_ && roughness(chain) < smooth_turn) good[component[chain[0] / 3]] += counted;
     }
+    std::vector<char> designed(n);
+    for (int c = 0; c < n; ++c)
+      designed[c] = good[c] >= design_share * strong[c] ||
+                    (between[c] < gap * strong[c] && area[c] > room * size_ * strong[c]);
     for (int h = 0; h < (int)opposite_.size(); ++h)
-      if (on_[h] && good[component[h / 3]] < design_share * strong[component[h / 3]]) set(h, 0);
+      if (on_[h] && !designed[component[h / 3]]) set(h, 0);
   }
 
   /// Drops connected pieces of the network that are short in all and hang on nothing.
@@ -273,6 +288,7 @@ class Creases {
   std::vector<int> valence_;       ///< of the network of creases
   std::vector<char> anchor_;  ///< on a patch border, former ones too, or the surface's: chains may end there
   double short_ = 0;          ///< pieces below this length are dropped
+  double size_ = 0;           ///< target edge length
   double telling_ = 0;        ///< chains above this length tell whether the surface is designed
 };
 
@@ -312,7 +328,7 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options, con
     creases.choose(options.strong * degree, options.weak * degree);
     if (options.mode == FeatureOptions::automatic) {
       creases.prune(std::numeric_limits<double>::infinity());
-      creases.keep_designed(options.strong * degree);
+      creases.keep_designed(options.strong * degree, options.weak * degree);
       creases.drop_small_pieces();
     } else {
       creases.prune(creases.shortest());

@@ -25,11 +25,12 @@ struct FeatureReport {
 /// ones; the angles are 40 and 20 in automatic mode. There, chains that are not closed and end freely are
 /// dropped, and a component keeps its creases only if it looks designed: at least half of its strong edges,
 /// by length, are between patches or in chains that turn smoothly and are longer than five mean edges of the
-/// input. Otherwise free ends are dropped if shorter than 3 h. Pieces below 3 h are dropped in automatic
-/// mode. `before`, if not null, holds the patches before some were merged: in automatic mode no crease runs
-/// along a border that vanished, unless it bends by more than 60 degrees. `given`, if not null, marks
-/// half-edges (both, where there are two) that are model edges in any mode, but for borders that vanished.
-/// Throws like opposite_halfedges.
+/// input; or edges between weak and strong have less than a twentieth of the length of the strong ones, and
+/// the creases are more than 1.5 h apart on average (area over length). Otherwise free ends are dropped if
+/// shorter than 3 h. Pieces below 3 h are dropped in automatic mode. `before`, if not null, holds the patches
+/// before some were merged: in automatic mode no crease runs along a border that vanished, unless it bends by
+/// more than 60 degrees. `given`, if not null, marks half-edges (both, where there are two) that are model
+/// edges in any mode, but for borders that vanished. Throws like opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<char>* given = nullptr);

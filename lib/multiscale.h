@@ -48,8 +48,9 @@ struct MultiscaleCut {
 /// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves are joined
 /// to neighbours where the union is admissible. Precondition: parts of genus 0 with a boundary.
 /// Triangles of no part (-1) are left alone, and then nothing is joined. Throws GoalMissed if a part cannot
-/// be cut; with maxcut, also if one cut does not make two admissible halves. Returns the number of parts;
-/// `cuts`, if given, receives what was done, in order, the cut that failed last.
+/// be cut; with maxcut, also if one cut does not make two admissible halves, or its map loses more than a
+/// hundredth of the triangles. Returns the number of parts; `cuts`, if given, receives what was done, in
+/// order, the cut that failed last.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr);
 

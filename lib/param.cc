@@ -374,7 +374,6 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     }
     if (n_parts == n_before) break;
   }
-  for (Chart& chart : charts) index_chart(chart);
   return charts;
 }
 

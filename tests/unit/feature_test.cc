@@ -92,6 +92,21 @@ TEST(Feature, AStaircaseOfVoxelsIsNoDesign) {
   EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
 }
 
+//  pits in a plate: every crease is short, but there is nothing between smooth and sharp
+//   ___   ___   _
+//      \_/   \_/
+TEST(Feature, ShortCreasesAreDesignIfThereIsRoomAndAGapBetweenSmoothAndSharp) {
+  auto pits = [](int i, int j) { return i % 8 % 7 && j % 8 % 7 && i % 8 < 5 && j % 8 < 5 ? -2.0 : 0.0; };
+  Surface s = terrain(40, 40, pits);
+  EXPECT_GT(mark_features(s, automatic).crease_edges, 500);
+  FeatureOptions coarse;
+  coarse.size = 3;
+  EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
+  //  the same with dunes between: every angle is there
+  Surface dunes = terrain(40, 40, [&](int i, int j) { return pits(i, j) + 0.6 * std::abs(i % 8 - 6.0); });
+  EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
+}
+
 TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyOnRequest) {
   // a ridge whose slopes flatten along j: sharp at j = 0, 30 degrees in the middle, none at the end
   auto fading = [](int i, int j) { return -std::abs(i - 10.0) * std::max(0.0, 1 - j / 20.0); };

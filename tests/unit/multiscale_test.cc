@@ -269,6 +269,15 @@ TEST(MaxCut, HalvesAShortTubeAndMissesALongOne) {
   EXPECT_GT(cuts.back().too_small, 0.8 * (double)before);
 }
 
+// halves that happen to be short are no success where the line ran through what the map had lost
+TEST(MaxCut, FailsWhereItsMapLosesTriangles) {
+  Surface s = pierced(tube(15, 32), {{9, 1}, {10, 4}, {12, 2}}, 0.2);
+  MultiscaleOptions options;
+  options.method = CutMethod::maxcut;
+  options.max_aspect = 12;
+  EXPECT_THROW(multiscale_cut(s, options), GoalMissed);
+}
+
 TEST(LevelSvg, EveryLevelShowsItsSetsAndItsLine) {
   Surface s = tube(20, 16);
   MultiscaleOptions options;
