@@ -69,10 +69,10 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 /// with any scale, but a limb that shrinks that much does so by a factor over every few elements, and loses
 /// its shape. So is a part with sigma1/sigma2 above 4 in the mean over its area, or else along its model
 /// edges, or in two: the coarse tubes and rings of CAD, with nothing between their ends to follow a ring in
-/// the plane, have such maps, and lie flat once they are open. Ears of parts that go to a circle, triangles
-/// with two edges on the longest loop, are split through their third edge, since a circle flattens them. Both
-/// append vertices and split triangles, and rewrite face column `part`; with `strict` there is neither.
-/// reports has one entry a part.
+/// the plane, have such maps, and lie flat once they are open; not if a circle map was asked for and is
+/// one-to-one. Ears of parts that go to a circle, triangles with two edges on the longest loop, are split
+/// through their third edge, since a circle flattens them. Both append vertices and split triangles, and
+/// rewrite face column `part`; with `strict` there is neither. reports has one entry a part.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports);
 
