@@ -62,6 +62,11 @@ void set_tables(Stream& stream, const std::vector<LineEdge>& edges) {
   std::rotate(points.columns.begin(), points.columns.begin() + 1, points.columns.end());
   stream.set(std::move(line));
   stream.set(std::move(points));
+  // data of vertices that are called so would be taken for rows of the table
+  Table& vertices = stream.surface.vertex;
+  for (Column& column : vertices.columns)
+    for (int i = 2; column.name == "line"; ++i)
+      if (const std::string name = "line_" + std::to_string(i); !vertices.has(name)) column.name = name;
 }
 
 /// A column of ints, or null.

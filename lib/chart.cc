@@ -217,7 +217,6 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
         throw BadInput("chart_vertex turns face " + std::to_string(chart.mesh.face[t]) + " of part " +
                        std::to_string(p) + " over or makes it flat");
     }
-    index_chart(chart);
   }
   return charts;
 }

@@ -31,7 +31,7 @@ struct Place {
 };
 
 /// Builds the charts of a surface from its part labels and the rows of the stream's chart_vertex table
-/// (part, vertex, u, v), indexed. Throws BadInput if a row is missing, doubled or out of range, or a triangle
+/// (part, vertex, u, v), not indexed. Throws BadInput if a row is missing, doubled or out of range, or a triangle
 /// is not positively oriented.
 std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex, int n_parts);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "lib/edit_mesh.h"
@@ -26,8 +27,7 @@ std::vector<Vec3> vertex_normals(const Mesh& mesh) {
 /// Would contracting an edge leave a triangle that turns away from the surface at its corners, further than
 /// the one it was?
 bool turns_away(const EditMesh& m, const std::vector<Vec3>& points, const std::vector<Vec3>& normal, int gone,
-                int kept) {
-  constexpr double least_cosine = 0.906;  // 25 degrees: a tube keeps about seven edges around it
+                int kept, double least_cosine) {
   bool turns = false;
   m.star(gone, [&](int e) {
     const int b = m.to(e), c = m.apex(e);
@@ -45,9 +45,9 @@ bool turns_away(const EditMesh& m, const std::vector<Vec3>& points, const std::v
 
 }  // namespace
 
-Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wanted) {
+Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wanted, double most_turn) {
   constexpr int tries = 3;
-  constexpr double least_progress = 0.12;  // of a round
+  constexpr double least_progress = 0.2;  // of a round
   const int n = (int)mesh.points.size();
   EditMesh m(mesh.tris, n, model);
   std::vector<int> into(n), round_of(n, -1), left;
@@ -80,7 +80,7 @@ Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wan
       if (m.opp[prev(last)] < 0) consider(prev(last), m.apex(last));
       for (int i = 0; i < found; ++i) {
         const auto [square, h, w] = shortest[i];
-        if (!m.can_collapse(h, v) || turns_away(m, mesh.points, normal, v, w)) continue;
+        if (!m.can_collapse(h, v) || turns_away(m, mesh.points, normal, v, w, std::cos(most_turn))) continue;
         m.collapse(h, v);
         into[v] = w;
         round_of[w] = round;

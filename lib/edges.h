@@ -19,19 +19,37 @@ inline int half_edge(EdgeUse e) { return (int)(std::uint32_t)e; }
 /// their smaller vertex, of about three.
 template <class Visit>
 void for_each_edge(const std::vector<Tri>& tris, int n_vertices, Visit visit) {
-  const int n = 3 * (int)tris.size();
+  const int n = (int)tris.size();
   std::vector<int> end(n_vertices + 1, 0);
-  for (int h = 0; h < n; ++h) ++end[std::min(origin(tris, h), target(tris, h)) + 1];
+  for (const auto& [a, b, c] : tris) {
+    ++end[std::min(a, b) + 1];
+    ++end[std::min(b, c) + 1];
+    ++end[std::min(c, a) + 1];
+  }
   for (int v = 0; v < n_vertices; ++v) end[v + 1] += end[v];
-  std::vector<EdgeUse> use(n);
-  for (int h = 0; h < n; ++h) {
-    const int a = origin(tris, h), b = target(tris, h);
-    use[end[std::min(a, b)]++] = (EdgeUse)std::max(a, b) << 32 | (std::uint32_t)h;
+  std::vector<EdgeUse> use(3 * (std::size_t)n);
+  for (int t = 0; t < n; ++t) {
+    const auto& [a, b, c] = tris[t];
+    auto put = [&](int p, int q, int h) {
+      use[end[std::min(p, q)]++] = (EdgeUse)std::max(p, q) << 32 | (std::uint32_t)h;
+    };
+    put(a, b, 3 * t);
+    put(b, c, 3 * t + 1);
+    put(c, a, 3 * t + 2);
   }
   EdgeUse* e = use.data();
   for (int v = 0; v < n_vertices; ++v) {  // end[v] has moved to the end of bucket v
     EdgeUse* stop = use.data() + end[v];
-    std::sort(e, stop);
+    if (stop - e > 24) {
+      std::sort(e, stop);
+    } else {  // nearly all: a sort by insertion, in place
+      for (EdgeUse* i = e; i < stop; ++i) {
+        const EdgeUse x = *i;
+        EdgeUse* j = i;
+        for (; j > e && j[-1] > x; --j) *j = j[-1];
+        *j = x;
+      }
+    }
     while (e < stop) {
       EdgeUse* f = e + 1;
       while (f < stop && *f >> 32 == *e >> 32) ++f;

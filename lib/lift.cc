@@ -225,7 +225,7 @@ std::vector<int> check_glue(const LiftedMesh& mesh, const std::vector<Edge>& seg
 
 }  // namespace
 
-LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, const Lines& lines,
+LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes) {
   const int n_parts = static_cast<int>(meshes.size());
   int n_line_vertices = 0;
@@ -234,7 +234,10 @@ LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, cons
   std::vector<PlaneMesh> mended;
   if (!doubled.empty()) {
     mended = meshes;
-    for (const InnerEdge& e : doubled) split_edge(charts[e.part], mended[e.part], e.a, e.b);
+    for (const InnerEdge& e : doubled) {
+      if (charts[e.part].opposite.empty()) index_chart(charts[e.part]);
+      split_edge(charts[e.part], mended[e.part], e.a, e.b);
+    }
   }
   const std::vector<PlaneMesh>& parts = doubled.empty() ? meshes : mended;
 
@@ -277,7 +280,10 @@ LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, cons
     }
     for (const Tri& t : mesh.tris) out.tris.push_back({number[t[0]], number[t[1]], number[t[2]]});
     out.part.insert(out.part.end(), mesh.tris.size(), p);
-    if (patches) look_below(reference, charts[p], mesh, below);
+    if (patches) {
+      if (charts[p].opposite.empty()) index_chart(charts[p]);
+      look_below(reference, charts[p], mesh, below);
+    }
   }
 
   const std::vector<Edge> model =

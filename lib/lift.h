@@ -20,8 +20,9 @@ struct LiftedMesh : Mesh {
 /// Glues the plane meshes of all charts: a line point becomes one vertex whatever the number of charts that
 /// use it (line points first, by row; then inside points by part). Positions are exact on edges and linear in
 /// triangles. Patch labels are given region by region (triangles joined across edges that are not model edges
-/// or borders), by the area-weighted majority of the reference patches below.
-LiftedMesh lift(const Surface& reference, const std::vector<Chart>& charts, const Lines& lines,
+/// or borders), by the area-weighted majority of the reference patches below. Indexes the charts where it has
+/// to look for a place.
+LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes);
 
 }  // namespace meshpipe

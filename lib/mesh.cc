@@ -92,24 +92,42 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
   return parts;
 }
 
-void expect_measurable(const Mesh& mesh) {
-  constexpr double least = 1e-50, most = 1e50, inf = std::numeric_limits<double>::infinity();
-  double far = 0, lo[3] = {inf, inf, inf}, hi[3] = {-inf, -inf, -inf};
-  for (const Tri& t : mesh.tris)
-    for (int v : t) {
-      const double x[3] = {mesh.points[v].x, mesh.points[v].y, mesh.points[v].z};
-      for (int k = 0; k < 3; ++k) {
-        far = std::max(far, std::abs(x[k]));
-        lo[k] = std::min(lo[k], x[k]);
-        hi[k] = std::max(hi[k], x[k]);
-      }
+namespace {
+
+struct Extent {
+  double far = 0, lo[3], hi[3];
+  Extent() {
+    std::fill_n(lo, 3, std::numeric_limits<double>::infinity());
+    std::fill_n(hi, 3, -std::numeric_limits<double>::infinity());
+  }
+  void add(const Vec3& p) {
+    const double x[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; ++k) {
+      far = std::max(far, std::abs(x[k]));
+      lo[k] = std::min(lo[k], x[k]);
+      hi[k] = std::max(hi[k], x[k]);
     }
-  const double size = mesh.tris.empty() ? 0 : std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]});
+  }
+  double size() const { return std::max({0.0, hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
+};
+
+}  // namespace
+
+void expect_measurable(const Mesh& mesh) {
+  constexpr double least = 1e-50, most = 1e50;
+  Extent of_points;
+  for (const Vec3& p : mesh.points) of_points.add(p);
+  if (of_points.far <= most && of_points.size() >= least) return;
+  Extent e;  // only the points that are used count
+  for (const Tri& t : mesh.tris)
+    for (int v : t) e.add(mesh.points[v]);
   char text[128];
-  if (far > most)
-    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g", far, most);
-  else if (size > 0 && size < least)
-    std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g", size, least);
+  if (e.far > most)
+    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g",
+                  e.far, most);
+  else if (e.size() > 0 && e.size() < least)
+    std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g",
+                  e.size(), least);
   else
     return;
   throw NotAdmissible(text);

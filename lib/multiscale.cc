@@ -17,6 +17,8 @@
 #include "lib/error.h"
 #include "lib/levels.h"
 #include "lib/maxcut.h"
+#include "lib/parallel.h"
+#include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
@@ -163,12 +165,13 @@ std::vector<double> across(const Part& part, const std::vector<int>& rim) {
   return distance;
 }
 
-/// The best field over all directions, balanced.
-CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options) {
+/// The best field over all directions, balanced. `share` is that of the work.
+CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options, double share) {
   CutMaps cut;
   cut.disk = fill_holes(part.mesh);
   const FilledDisk& disk = cut.disk;
   cut.levels = laplace_levels(disk, options.min_area, options.min_set);
+  add_progress(0.4 * share);
   struct Candidate {
     Assessment is;
     std::vector<double> field;
@@ -209,6 +212,7 @@ CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options) {
     cut.lines = std::move(c.lines);
     break;
   }
+  add_progress(0.3 * share);
   return cut;
 }
 
@@ -228,18 +232,19 @@ Part make_part(Mesh mesh, const std::vector<std::uint8_t>& model) {
 /// The best cut of a part, and its field there. That of a large part is looked for on a coarse model: the
 /// sides that its vertices give to those that have become them are as many and as connected.
 CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const MultiscaleOptions& options,
-                 std::vector<double>& field) {
+                 double share, std::vector<double>& field) {
   constexpr int enough = 12000, at_most = 6;  // triangles; of them for one
+  constexpr double most_turn = 25 * std::numbers::pi / 180;
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
   const double n = part.mesh.tris.size();
   Coarse coarse;
-  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most));
+  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most), most_turn);
   if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
-    CutMaps cut = best_cut_of(part, options);
+    CutMaps cut = best_cut_of(part, options, share);
     field = cut.field;
     return cut;
   }
-  CutMaps cut = best_cut_of(make_part(coarse, coarse.model), options);
+  CutMaps cut = best_cut_of(make_part(coarse, coarse.model), options, share);
   field.clear();
   for (int v : coarse.of) field.push_back(cut.field[v]);
   return cut;
@@ -398,17 +403,34 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
   return n;
 }
 
+/// The parts' topology, found again for those whose triangles are not as many as they were: a cut splits
+/// those of its neighbours.
+std::vector<Topology> refreshed(const Surface& surface, std::vector<Topology> is) {
+  std::vector<int> label = surface.face.get<int>("part"), faces(is.size(), 0);
+  for (int l : label)
+    if (l >= 0) ++faces[l];
+  for (int& l : label)
+    if (l >= 0 && faces[l] == is[l].faces) l = -1;
+  const std::vector<SubMesh> changed = split_by_label(surface, label, (int)is.size());
+  parallel_for((int)is.size(), [&](int p) {
+    if (!changed[p].tris.empty()) is[p] = topology_of(changed[p]);
+  });
+  return is;
+}
+
 std::string name(int part) { return "part " + std::to_string(part); }
 
 }  // namespace
 
-int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts) {
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts,
+                   std::vector<Topology>* topology) {
   const std::vector<int>& given = surface.face.get<int>("part");
   int n_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
   const int given_parts = n_parts;
   std::vector<char> was_cut(n_parts, 0);
   struct Task {
     int part, depth;
+    double share;  // of the work, as foreseen
   };
   std::vector<Task> tasks;
   std::vector<Topology> is = topology_of_parts(surface, given, n_parts);
@@ -417,8 +439,14 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       throw NotAdmissible(name(p) + " has " + std::to_string(is[p].components) + " components, genus " +
                           std::to_string(is[p].genus) + " and " + std::to_string(is[p].loops) +
                           " boundary loops where 1, 0 and at least 1 are needed; run mpartition first");
-    if (is[p].eta_geo > options.max_aspect) tasks.push_back({p, 0});
+    if (is[p].eta_geo > options.max_aspect) tasks.push_back({p, 0, (double)is[p].faces});
   }
+  // of what a cut is foreseen to take, a third is for cutting its halves again
+  constexpr double before = 0.05, all = 0.9, once = 2. / 3;
+  add_progress(before);
+  double faces = 0;
+  for (const Task& t : tasks) faces += t.share;
+  for (Task& t : tasks) t.share *= all / faces;
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
@@ -443,8 +471,9 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     cut.halves[1] = n_parts;
     cut.eta = is[task.part].eta_geo;
     std::vector<double> field;
-    CutMaps maps = options.method == CutMethod::maxcut ? single_cut(part, cut, field)
-                                                       : best_cut(part, model, options, field);
+    CutMaps maps = options.method == CutMethod::maxcut
+                       ? single_cut(part, cut, field)
+                       : best_cut(part, model, options, once * task.share, field);
     cut.levels = maps.levels.size();
     const Assessment expected = assess(part, field);
     cut.length = expected.length / diagonal(part.mesh);
@@ -475,16 +504,26 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       if (made.side[t] == 1) labels[t] = n_parts;
     was_cut.resize(n_parts + 1, 0);
     is.resize(n_parts + 1);
+    add_progress(0.3 * once * task.share);
     for (int s : {0, 1}) {
       const int half = s ? n_parts : task.part;
+      const double share = (1 - once) / 2 * task.share;
       was_cut[half] = 1;
       is[half] = made.is[s];
-      if (is[half].eta_geo > options.max_aspect) tasks.push_back({half, task.depth + 1});
+      if (is[half].eta_geo > options.max_aspect)
+        tasks.push_back({half, task.depth + 1, share});
+      else
+        add_progress(share);
     }
     n_parts++;
   }
-  return n_parts > std::max(given_parts, 2) ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
-                                            : n_parts;
+  if (n_parts > std::max(given_parts, 2)) {
+    const int cut_parts = n_parts;
+    n_parts = join_parts(surface, n_parts, was_cut, options.max_aspect, cuts);
+    if (n_parts != cut_parts) is.assign(n_parts, {});
+  }
+  if (topology) *topology = refreshed(surface, std::move(is));
+  return n_parts;
 }
 
 }  // namespace meshpipe

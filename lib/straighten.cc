@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "lib/cut.h"
+#include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/sparse.h"
 #include "lib/topology.h"
@@ -292,9 +293,9 @@ Measure measure(const Surface& s, const std::vector<int>& opposite, const std::v
   return m;
 }
 
-/// Straightens the chosen curves at once. If all is well, changes the surface and returns an empty list;
-/// otherwise returns the curves at fault.
-std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposite,
+/// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
+/// returns an empty list; otherwise returns the curves at fault.
+std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
                                 const std::vector<Curve>& curves, const std::vector<Role>& role,
                                 const Attempt& attempt, const Limits& limits) {
   const int n_parts = limits.n_parts, max_faces = limits.max_faces;
@@ -331,7 +332,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  const std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
+  std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
   keep_largest_pieces(s, after, band, curves, part, n_parts);
   std::vector<int> piece = part;
   std::vector<char> broken(n_parts, 0);
@@ -356,7 +357,7 @@ std::vector<int> try_straighten(Surface& surface, const std::vector<int>& opposi
   }
   if (at_fault.empty()) at_fault = near_fault;
   if (at_fault.empty() && std::find(broken.begin(), broken.end(), 1) == broken.end())
-    surface = std::move(s);
+    surface = std::move(s), opposite = std::move(after);
   else if (at_fault.empty())  // a bound on the triangles of a third part
     for (int c = 0; c < (int)curves.size(); ++c)
       if (role[c] == Role::moves) at_fault.push_back(c);
@@ -411,9 +412,10 @@ Handle handle_of(const Mesh& m, const Curve& c) {
 }
 
 /// Straightens these curves at once, without those that turn out to be at fault; returns the latter.
-std::vector<Handle> straighten_together(Surface& s, const std::vector<Handle>& handles,
-                                        const Attempt& attempt, const Limits& limits) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+std::vector<Handle> straighten_together(Surface& s, std::vector<int>& opposite,
+                                        const std::vector<Handle>& handles, const Attempt& attempt,
+                                        const Limits& limits) {
+  if (handles.empty()) return {};
   const std::vector<Curve> curves = find_curves(s, opposite);
   std::vector<Role> role(curves.size(), Role::other);
   std::vector<std::pair<int, int>> pairs;
@@ -499,10 +501,10 @@ double sharpest_turn(const Surface& s, const std::vector<int>& opposite, const C
 
 /// What is still bent: the bands of neighbours may have left no room for it, on fans of large triangles, but
 /// there is some for one curve alone.
-void straighten_corners(Surface& surface, const std::vector<char>& chosen, const Limits& limits) {
+void straighten_corners(Surface& surface, std::vector<int>& opposite, const std::vector<char>& chosen,
+                        const Limits& limits) {
   constexpr double bent = 0.5;
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   trim_ears(surface, opposite, chosen, limits);
   std::vector<std::pair<double, Handle>> corners;
   for (const Curve& c : find_curves(surface, opposite))
@@ -512,8 +514,8 @@ void straighten_corners(Surface& surface, const std::vector<char>& chosen, const
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
   for (const auto& [turn, one] : corners)
-    if (!straighten_together(surface, {one}, attempts[2], limits).empty())
-      straighten_together(surface, {one}, last_attempt, limits);
+    if (!straighten_together(surface, opposite, {one}, attempts[2], limits).empty())
+      straighten_together(surface, opposite, {one}, last_attempt, limits);
 }
 
 }  // namespace
@@ -521,24 +523,24 @@ void straighten_corners(Surface& surface, const std::vector<char>& chosen, const
 void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
                            const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
-  auto curves_of = [&] {
-    return find_curves(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
-  };
-  const std::vector<PairColour> pairs = colour_pairs(surface, curves_of());
+  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  const std::vector<PairColour> pairs = colour_pairs(surface, find_curves(surface, opposite));
   int n_colours = 0;
   for (const PairColour& p : pairs) n_colours = std::max(n_colours, p.colour + 1);
   for (int colour = 0; colour < n_colours; ++colour) {
     std::vector<Handle> open;
-    for (const Curve& c : curves_of())
+    for (const Curve& c : find_curves(surface, opposite))
       for (const PairColour& p : pairs)
         if (p.a == c.a && p.b == c.b && p.colour == colour && (chosen.empty() || chosen[p.a] || chosen[p.b]))
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
-    for (const Attempt& attempt : attempts) open = straighten_together(surface, open, attempt, limits);
-    for (const Handle& one : open) straighten_together(surface, {one}, last_attempt, limits);
+    for (const Attempt& attempt : attempts)
+      open = straighten_together(surface, opposite, open, attempt, limits);
+    for (const Handle& one : open) straighten_together(surface, opposite, {one}, last_attempt, limits);
+    add_progress(0.2 / n_colours);
   }
-  straighten_corners(surface, chosen, limits);
+  straighten_corners(surface, opposite, chosen, limits);
 }
 
 }  // namespace meshpipe

@@ -17,10 +17,10 @@ static std::string edge_name(const std::vector<Tri>& tris, int h) {
 }
 
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices) {
-  for (int h = 0; h < 3 * (int)tris.size(); ++h)
-    if (origin(tris, h) == target(tris, h))
-      throw NotAdmissible("triangle " + std::to_string(h / 3) + " has vertex " +
-                          std::to_string(origin(tris, h)) + " twice; run mclean first");
+  for (std::size_t t = 0; t < tris.size(); ++t)
+    if (const auto& [a, b, c] = tris[t]; a == b || b == c || c == a)
+      throw NotAdmissible("triangle " + std::to_string(t) + " has vertex " + std::to_string(b == c ? b : a) +
+                          " twice; run mclean first");
   std::vector<int> opposite(3 * tris.size(), -1);
   for_each_edge(tris, n_vertices, [&](std::span<const EdgeUse> uses) {
     int h = half_edge(uses[0]);
@@ -166,6 +166,7 @@ double edge_path_depth(const Mesh& mesh, const std::vector<int>& opposite, const
         const double d = distance[v];
         if (bucket_of(d) != b) continue;  // it went on with a shorter way
         auto reach = [&](int w) {
+          if (distance[w] <= d) return;  // half of them: neither the point nor a root is needed
           const double along = d + norm(mesh.points[w] - mesh.points[v]);
           if (!(along < distance[w])) return;
           distance[w] = along;

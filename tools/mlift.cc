@@ -27,15 +27,16 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     Stream stream = io.read();
-    const std::vector<Chart> charts = read_charts(stream);
-    LiftedMesh mesh = lift(stream.surface, charts, read_lines(stream), read_plane_meshes(stream, charts));
+    std::vector<Chart> charts = read_charts(stream);
+    const std::vector<PlaneMesh> meshes = read_plane_meshes(stream, charts);
+    for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
+    LiftedMesh mesh = lift(stream.surface, std::move(charts), read_lines(stream), meshes);
     Surface reference = std::move(stream.surface);
     reference.face.erase("curved");
     if (o.curved) reference.face.set("curved", std::vector<std::uint8_t>(reference.tris.size(), 1));
     write_reference(stream, reference);
     const std::string exceptions = write_on_reference(stream, mesh, reference, o.order == 2);
     if (!exceptions.empty()) io.say(exceptions);
-    for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
     io.say(std::to_string(mesh.points.size()) + " vertices, " + std::to_string(mesh.tris.size()) +
            " triangles");
     io.report["vertices"] = mesh.points.size();

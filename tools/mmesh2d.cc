@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     Stream stream = io.read();
-    const std::vector<Chart> charts = read_charts(stream);
+    std::vector<Chart> charts = read_charts(stream);
     const Lines lines = read_lines(stream);
     if (!stream.surface.vertex.has("size"))
       throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
@@ -65,7 +65,10 @@ int main(int argc, char** argv) {
     const int n = static_cast<int>(charts.size());
     std::vector<PlaneMesh> meshes(n);
     parallel_for(n, [&](int part) {
+      index_chart(charts[part]);
       meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part, meshers.at(mesher));
+      if (pictures.empty()) charts[part].opposite = {};
+      charts[part].grid = {};
       add_progress((double)charts[part].mesh.tris.size() / (double)stream.surface.tris.size());
     });
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

@@ -132,8 +132,7 @@ int main(int argc, char** argv) {
     std::vector<Chart> charts = map_surface(surface, n_before, options, reports);
     int n_parts = (int)charts.size();
     const Table* known = stream.find("part");
-    const bool same = known && surface.tris.size() == faces_before && n_parts == n_before;
-    Table parts = same ? *known : part_table(surface, n_parts);
+    Table parts = known && surface.tris.size() == faces_before && n_parts == n_before ? *known : part_table(surface, n_parts);
     add_columns(parts, reports);
     stream.set(std::move(parts));
     stream.set(chart_table(charts));

@@ -489,6 +489,17 @@ TEST(Inria, ReferencesRidgesAndSizes) {
   EXPECT_THROW(write_as(two_patches(), "dir/b.txt", false), BadUsage);
 }
 
+TEST(Msh, DataCalledLineAreNoRowsOfTheTableOfLines) {
+  const Stream s = read_any(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+      "$Elements\n2\n1 1 2 7 1 1 2\n2 2 2 4 4 1 2 3\n$EndElements\n"
+      "$NodeData\n1\n\"line\"\n1\n0\n3\n0\n1\n3\n1 5\n2 6\n3 7\n$EndNodeData\n",
+      "in");
+  EXPECT_EQ(s.surface.vertex.get<int>("line_2"), (std::vector<int>{5, 6, 7}));
+  EXPECT_EQ(s.find("line")->get<int>("tag"), std::vector<int>{7});
+  read_stream(write_stream(s, false), "again");  // throws if it is not valid
+}
+
 TEST(Msh, OldVersionsAndDataOfSomeNodes) {
   const Stream one = read_any(
       "$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n$ELM\n2\n1 15 0 1 1 1\n2 2 4 1 3 1 2 3\n$ENDELM\n", "in");

@@ -188,7 +188,6 @@ TEST(Param, ABorderThatCrossesItselfIsBent) {
   EXPECT_FALSE(reports[0].border_was_simple);
   EXPECT_LT(reports[0].anisotropy_p99, 1.2);  // still conformal
   EXPECT_TRUE(one_to_one(charts[0].mesh, charts[0].uv));
-  EXPECT_FALSE(charts[0].opposite.empty());
 }
 
 // A long thimble: conformal in one chart, its tip would be exp(-16) of its size.
@@ -276,6 +275,41 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
       EXPECT_NEAR(t.area, 5, 0.5);
       EXPECT_NEAR(t.longest_loop, 12, 1);
     }
+  }
+}
+
+//  +-----+-----+
+//  |     |     |    a model line across: two parts, no new vertex
+//  +-----+-----+
+TEST(Bisect, AtModelEdgesThatEncloseSomething) {
+  auto strip = grid(
+      40, 4, false,
+      [](double s, double t) {
+        return Vec3{10 * s, t, 0};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = strip;
+  s.vertex.rows = s.points.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  auto mark = [&](double up_to) {  // the edges at x = 5 below y
+    std::vector<std::uint8_t> model(s.tris.size(), 0);
+    for (std::size_t h = 0; h < 3 * s.tris.size(); ++h) {
+      const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)];
+      if (a.x == 5 && b.x == 5 && a.y < up_to && b.y < up_to) model[h / 3] |= 1 << h % 3;
+    }
+    s.face.set("model", std::move(model));
+  };
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // no model edges
+  mark(0.9);
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // they end inside
+  mark(2);
+  ASSERT_EQ(cut_along_model_edges(s, 0, 1), 2);
+  EXPECT_EQ(s.points.size(), strip.points.size());
+  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
+    EXPECT_EQ(t.components, 1);
+    EXPECT_EQ(t.loops, 1);
+    EXPECT_NEAR(t.area, 5, 1e-12);
   }
 }
 
