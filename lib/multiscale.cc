@@ -312,7 +312,7 @@ Halves split(const Surface& surface, const Part& part, const std::vector<double>
       hold[u] = hold[v] = Hold::joins;
   }
   Halves best;
-  for (auto [snap, sweeps] : {Pull{0.1, 30}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
+  for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;

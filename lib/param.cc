@@ -31,7 +31,7 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
 
 /// sigma1/sigma2 above which triangles cost the mesher more than some steps of optimisation cost here, and
 /// the triangles of a part up to which that is so; larger parts are cut, which costs less than either.
-constexpr double poor = 4, useless = 20;
+constexpr double poor = 4;
 constexpr std::size_t small = 20000;
 
 /// The element at the fraction q of the order.
@@ -381,7 +381,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
                          reports[p].anisotropy_mean > too_stretched &&
                          charts[p].mesh.tris.size() >= least_triangles;
         bool limbs = !missed && !whole[p] && round < limb_rounds && uneven > too_uneven;
-        if (missed || limbs || stretched || reports[p].anisotropy_p99 > useless)
+        if (missed || limbs || stretched || reports[p].anisotropy_p99 > poor)
           n_parts = cut_along_model_edges(surface, p, n_parts);
         if (n_parts == n && (limbs || stretched)) n_parts = cut_along_limbs(surface, p, n_parts);
         whole[p] = charts[p].uv.empty() && !missed && n_parts == n;

@@ -415,18 +415,20 @@ int Relaxer::irregularity(int v) const {
 }
 
 /// Mends the triangles that are not good enough, the worst first, then vertices of a valence that is none of
-/// 5, 6, 7.
+/// 5, 6, 7; only so many, since a mesh with more of them is not to be had by mending.
 void Relaxer::mend_worst() {
+  const int most = 200 + m_.live / 100;
   for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
+    if ((int)bad.size() > most) bad.resize(most);
     std::vector<int> triangles, irregular;
     for (auto [q, t] : bad) triangles.push_back(t);
     int changes = mend_each(triangles, round > 0, [this](int t) { return quality(t) < 1; });
-    for (int v = 0; v < (int)m_.out.size(); ++v)
+    for (int v = 0; v < (int)m_.out.size() && (int)irregular.size() < most; ++v)
       if (irregularity(v)) irregular.push_back(m_.out[v] / 3);
     changes += mend_each(irregular, false, [&](int t) {
       const Tri& v = m_.tris[t];
