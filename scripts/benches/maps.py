@@ -126,7 +126,7 @@ def growth(work, largest, times):
     while n <= largest:
         parts = f"{work}/growth.ply"
         subprocess.run(["bash", "-c", f"set -o pipefail; mshape tube --aspect 2 --triangles {n} --noise 0.2 -q | mclean -q | "
-                        f"mtopo -q | mpartition -q -o {parts}"], check=True)
+                        f"mtopo -q | mpartition -q --max-faces 100000000 -o {parts}"], check=True)
         best = None
         for _ in range(times):
             run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
