@@ -11,15 +11,15 @@ namespace meshpipe {
 namespace {
 
 enum Holds {
-  patches = 1,     ///< which triangles belong together
-  labels = 2,      ///< by which number
-  names = 4,       ///< of patches
-  lines = 8,       ///< with their labels
+  patches = 1,  ///< which triangles belong together
+  labels = 2,   ///< by which number
+  names = 4,    ///< of patches
+  lines = 8,    ///< with their labels
   line_names = 16,
-  data = 32,       ///< of vertices and faces
-  colors = 64,     ///< of vertices
+  data = 32,    ///< of vertices and faces
+  colors = 64,  ///< of vertices
   face_colors = 128,
-  marks = 256,     ///< .mesh: ref, corner, required
+  marks = 256,  ///< .mesh: ref, corner, required
 };
 
 struct Format {
@@ -54,12 +54,13 @@ bool among(const std::string& name, std::initializer_list<const char*> words) {
 std::string lost_columns(const Table& table, bool vertices, bool remeshed, int holds) {
   std::string words;
   for (const Column& c : table.columns) {
-    const bool internal = vertices ? among(c.name, {"ref_face", "b1", "b2", "kind", "line"}) ||
-                                         (remeshed && c.name == "size")
-                                   : among(c.name, {"patch", "part", "origin", "model"});
+    const bool internal =
+        vertices ? among(c.name, {"ref_face", "b1", "b2", "kind", "line"}) || (remeshed && c.name == "size")
+                 : among(c.name, {"patch", "part", "origin", "model"});
     const bool colored =
         (holds & (vertices ? colors : face_colors)) && among(c.name, {"red", "green", "blue"});
-    const bool marked = (holds & marks) && (c.name == "required" || (vertices && among(c.name, {"ref", "corner"})));
+    const bool marked =
+        (holds & marks) && (c.name == "required" || (vertices && among(c.name, {"ref", "corner"})));
     if (!internal && !colored && !marked) words.append(" '").append(c.name).append("'");
   }
   return words;
@@ -93,14 +94,15 @@ std::string lost_in(const Stream& stream, const std::string& path, bool ascii) {
   else if (tags.size() > 1 && !in_order && !(holds & labels))
     add("the numbers of " + std::to_string(tags.size()) + " patches");
   auto add_names = [&](int dim, const char* one, const char* many) {
-    const auto n = static_cast<std::size_t>(
-        std::count_if(stream.names.begin(), stream.names.end(), [&](const Name& name) { return name.dim == dim; }));
+    const auto n = static_cast<std::size_t>(std::count_if(stream.names.begin(), stream.names.end(),
+                                                          [&](const Name& name) { return name.dim == dim; }));
     if (n) add(count_of(n, one, many));
   };
   if (!(holds & names)) add_names(2, "name of a patch", "names of patches");
   if (!(holds & lines)) {
     std::vector<int> of_lines = read_model_edges(stream).tag;
-    if (const Table* table = stream.find("line"); table && table->has("tag")) of_lines = table->get<int>("tag");
+    if (const Table* table = stream.find("line"); table && table->has("tag"))
+      of_lines = table->get<int>("tag");
     std::erase(of_lines, 0);
     if (!of_lines.empty()) add(count_of(distinct(of_lines), "labelled line", "labelled lines"));
   }

@@ -134,8 +134,8 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
     chosen =
         std::find_if(std::begin(sortings), std::end(sortings), [](Sorting* s) { return s->names_any(); });
   if (chosen == std::end(sortings)) chosen = std::begin(sortings);
-  // names no face has are left out; patch_7, as written for a patch without a name, keeps its number, the others
-  // are numbered in the order of the faces
+  // names no face has are left out; patch_7, as written for a patch without a name, keeps its number, the
+  // others are numbered in the order of the faces
   std::vector<int> tag((*chosen)->names.size() + 1, 0);
   std::set<int> taken;
   for (const int k : (*chosen)->of_face)

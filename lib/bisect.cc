@@ -9,6 +9,7 @@
 #include "lib/cut.h"
 #include "lib/error.h"
 #include "lib/multiscale.h"
+#include "lib/regions.h"
 #include "lib/sparse.h"
 #include "lib/topology.h"
 
@@ -169,24 +170,39 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
 
 int cut_along_model_edges(Surface& surface, int part, int n_parts) {
   if (!surface.face.has("model")) return n_parts;
-  auto& label = surface.face.get<int>("part");
   const auto& model = surface.face.get<std::uint8_t>("model");
+  auto& label = surface.face.get<int>("part");
   std::vector<int> only(label.size());
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   const SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
-  std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size()), piece;
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (model[mesh.face[h / 3]] >> (h % 3) & 1) opposite[h] = -1;
-  const int pieces = components(opposite, piece);
-  if (pieces < 2) return n_parts;
-  for (const SubMesh& m : split_by_label(mesh, piece, pieces)) {
-    const auto within = opposite_halfedges(m.tris, (int)m.points.size());
-    if (find_pinched_vertex(m.tris, within, (int)m.points.size()) >= 0 || topology_of(m).genus > 0)
-      return n_parts;
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  std::vector<int> within = opposite, piece;
+  for (std::size_t h = 0; h < within.size(); ++h)
+    if (model[mesh.face[h / 3]] >> h % 3 & 1) within[h] = -1;
+  constexpr std::size_t fewest = 8;  // triangles of a piece, on average
+  const int n = components(within, piece);
+  if (n == 1 || n * fewest > mesh.face.size()) return n_parts;
+
+  Joiner joiner(mesh, opposite, piece, find_regions(mesh, opposite, piece, n));
+  for (int a = 0; a < n; ++a)
+    while (joiner.regions().region[a].faces > 0 && !joiner.regions().region[a].maps_to_the_plane()) {
+      int with = -1;
+      for (int h : joiner.regions().border[a]) {
+        const int b = opposite[h] < 0 ? a : piece[opposite[h] / 3];
+        if (b == a || b == with) continue;
+        if (with < 0 || joiner.joined(a, b).maps_to_the_plane()) with = b;
+      }
+      if (with < 0) return n_parts;
+      joiner.join(a, with);
+    }
+  std::vector<int> number(n, -1);
+  int next = part;
+  for (std::size_t i = 0; i < mesh.face.size(); ++i) {
+    int& to = number[piece[i]];
+    if (to < 0) to = next, next = next == part ? n_parts : next + 1;
+    label[mesh.face[i]] = to;
   }
-  for (std::size_t t = 0; t < piece.size(); ++t)
-    if (piece[t] > 0) label[mesh.face[t]] = n_parts + piece[t] - 1;
-  return n_parts + pieces - 1;
+  return std::max(next, n_parts);
 }
 
 int cut_along_limbs(Surface& surface, int part, int n_parts) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cutting a part of genus 0 in two: by a short line, whatever its shape, or along its limbs.
+// Cutting a part of genus 0 in two: by a short line, whatever its shape, along its limbs,
+// or at model edges.
 #pragma once
 #include <array>
 #include <vector>
@@ -17,9 +18,10 @@ namespace meshpipe {
 /// split conformingly. Returns false, and changes nothing, if no line will do.
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
 
-/// Cuts `part` along the model edges in it (face column `model`), where these bound pieces that are all of
-/// genus 0: lines that the mesh has to follow anyway, and what CAD models are made of unrolls by itself. No
-/// triangle is split. Labels and result as of cut_along_limbs.
+/// Cuts `part` along the model edges (face column `model`) inside it, which the mesh keeps in any case:
+/// pieces that have no map to the plane are joined to a neighbour. Pieces above the first get the labels
+/// n_parts, n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the edges
+/// enclose nothing, or little more than single triangles.
 int cut_along_model_edges(Surface& surface, int part, int n_parts);
 
 /// Cuts `part` by the multiscale partitioner (lib/multiscale.h) although its aspect ratio is admissible:

@@ -428,7 +428,8 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   std::vector<int>().swap(number);
 
   r.flipped.assign(r.tris.size(), 0);
-  constexpr int most_rounds = 50;  // two or three do; that holes filled and sheets split come to an end is not proved
+  constexpr int most_rounds =
+      50;  // two or three do; that holes filled and sheets split come to an end is not proved
   for (int round = 1; !make_manifold(r, surface.points, options, report) && round < most_rounds; ++round)
     unite(r);
   for (std::size_t t = 0; t < r.tris.size(); ++t)

@@ -25,15 +25,12 @@ std::vector<EdgeCrossing> sorted(std::vector<EdgeCrossing> list) {
 
 class Pull {
  public:
-  Pull(const Mesh& mesh, const std::vector<int>& opposite, LevelLine& line, const std::vector<Hold>& hold,
-       double snap)
+  Pull(const Mesh& mesh, const std::vector<int>& opposite, LevelLine& line, const std::vector<Hold>& hold)
       : tris_(mesh.tris),
         points_(mesh.points),
         opposite_(opposite),
         sign_(line.sign),
         hold_(hold),
-        snap_(snap),
-        least_(std::clamp(snap, 1e-3, 0.4)),
         at_(3 * mesh.tris.size(), -1),
         first_(mesh.points.size(), -1) {
     for (int h = 0; h < (int)at_.size(); ++h) {
@@ -52,7 +49,9 @@ class Pull {
       if (hold[v] == Hold::joins && sign_[v] != 0 && first_[v] >= 0) put_on(v);
   }
 
-  void sweep() {
+  void sweep(double snap) {
+    snap_ = snap;
+    least_ = std::clamp(snap, 1e-3, 0.4);
     // crossings that are gone leave the list, new ones have come at its end
     std::erase_if(crossed_, [&](int h) { return at_[h] < 0; });
     for (std::size_t i = 0; i < crossed_.size(); ++i)
@@ -244,7 +243,7 @@ class Pull {
   const std::vector<int>& opposite_;
   std::vector<signed char>& sign_;
   const std::vector<Hold>& hold_;
-  double snap_, least_;            // least_: of an edge between a vertex and a crossing
+  double snap_ = 0, least_ = 0;    // least_: of an edge between a vertex and a crossing
   std::vector<double> at_;         // of each half-edge that is crossed, from its origin; else -1
   std::vector<int> first_;         // of each vertex: a half-edge that leaves it, on the border the first
   std::vector<int> crossed_, on_;  // half-edges, one for each crossed edge; vertices
@@ -257,8 +256,10 @@ class Pull {
 
 void pull_straight(const Mesh& mesh, const std::vector<int>& opposite, LevelLine& line,
                    const std::vector<Hold>& hold, double snap, int sweeps) {
-  Pull pull(mesh, opposite, line, hold, snap);
-  for (int i = 0; i < sweeps; ++i) pull.sweep();
+  // the vertices that it runs through hold the line: in the end only, when it is straight
+  constexpr double freely = 0.1, part = 0.67;
+  Pull pull(mesh, opposite, line, hold);
+  for (int i = 0; i < sweeps; ++i) pull.sweep(i < part * sweeps ? freely * snap : snap);
   line.crossing = pull.crossings();
 }
 

@@ -123,8 +123,8 @@ void expect_measurable(const Mesh& mesh) {
     for (int v : t) e.add(mesh.points[v]);
   char text[128];
   if (e.far > most)
-    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g", e.far,
-                  most);
+    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g",
+                  e.far, most);
   else if (e.size() > 0 && e.size() < least)
     std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g",
                   e.size(), least);

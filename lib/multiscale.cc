@@ -17,6 +17,7 @@
 #include "lib/error.h"
 #include "lib/levels.h"
 #include "lib/maxcut.h"
+#include "lib/parallel.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/straighten.h"
@@ -311,7 +312,7 @@ Halves split(const Surface& surface, const Part& part, const std::vector<double>
       hold[u] = hold[v] = Hold::joins;
   }
   Halves best;
-  for (auto [snap, sweeps] : {Pull{0.1, 30}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
+  for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;
@@ -402,11 +403,27 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
   return n;
 }
 
+/// The parts' topology, found again for those whose triangles are not as many as they were: a cut splits
+/// those of its neighbours.
+std::vector<Topology> refreshed(const Surface& surface, std::vector<Topology> is) {
+  std::vector<int> label = surface.face.get<int>("part"), faces(is.size(), 0);
+  for (int l : label)
+    if (l >= 0) ++faces[l];
+  for (int& l : label)
+    if (l >= 0 && faces[l] == is[l].faces) l = -1;
+  const std::vector<SubMesh> changed = split_by_label(surface, label, (int)is.size());
+  parallel_for((int)is.size(), [&](int p) {
+    if (!changed[p].tris.empty()) is[p] = topology_of(changed[p]);
+  });
+  return is;
+}
+
 std::string name(int part) { return "part " + std::to_string(part); }
 
 }  // namespace
 
-int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts) {
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts,
+                   std::vector<Topology>* topology) {
   const std::vector<int>& given = surface.face.get<int>("part");
   int n_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
   const int given_parts = n_parts;
@@ -500,8 +517,13 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     }
     n_parts++;
   }
-  return n_parts > std::max(given_parts, 2) ? join_parts(surface, n_parts, was_cut, options.max_aspect, cuts)
-                                            : n_parts;
+  if (n_parts > std::max(given_parts, 2)) {
+    const int cut_parts = n_parts;
+    n_parts = join_parts(surface, n_parts, was_cut, options.max_aspect, cuts);
+    if (n_parts != cut_parts) is.assign(n_parts, {});
+  }
+  if (topology) *topology = refreshed(surface, std::move(is));
+  return n_parts;
 }
 
 }  // namespace meshpipe

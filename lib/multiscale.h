@@ -4,6 +4,7 @@
 #pragma once
 #include "lib/levels.h"
 #include "lib/mesh.h"
+#include "lib/topology.h"
 
 namespace meshpipe {
 
@@ -51,7 +52,8 @@ struct MultiscaleCut {
 /// be cut; with maxcut, also if one cut does not make two admissible halves, or its map loses more than a
 /// hundredth of the triangles. Returns the number of parts; `cuts`, if given, receives what was done, in
 /// order, the cut that failed last.
+/// `topology`, if given, receives that of the parts.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
-                   std::vector<MultiscaleCut>* cuts = nullptr);
+                   std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr);
 
 }  // namespace meshpipe

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -28,10 +29,10 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
   return few;
 }
 
-/// sigma1/sigma2 (p99) of maps that cost the mesher more than some steps of optimisation cost here, and the
-/// triangles of a part up to which that is so; larger parts are cut, which costs less than either.
-constexpr double poor = 4, useless = 20;
-constexpr std::size_t small = 4000;
+/// sigma1/sigma2 above which triangles cost the mesher more than some steps of optimisation cost here, and
+/// the triangles of a part up to which that is so; larger parts are cut, which costs less than either.
+constexpr double poor = 4;
+constexpr std::size_t small = 20000;
 
 /// The element at the fraction q of the order.
 double quantile(std::vector<double>& values, double q) {
@@ -86,11 +87,15 @@ class Search {
                                                     : least_squares_map(part_, disk_, filled, &report_.time);
   }
 
-  std::vector<Vec2> run() {
+  std::vector<Vec2> run(double most_uneven) {
     report_ = {};
     report_.used = options_.map;
     std::vector<Vec2> uv;
     try {
+      if (options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first) {
+        report_.area_scale = boundary_first().unevenness();
+        if (report_.area_scale > most_uneven) return {};
+      }
       uv = plain(options_.map);
       report_.flips_before = count_inverted(part_.tris, uv);
       report_.border_was_simple = border_is_simple(part_.tris, disk_.opposite, uv);
@@ -134,7 +139,7 @@ class Search {
     constexpr int steps_if_poor = 20;
     bool mend = part_.tris.size() <= small && !options_.strict &&
                 (report_.used != options_.map || options_.map == MapKind::conformal) &&
-                report_.anisotropy_p99 > poor;
+                (report_.anisotropy_p99 > poor || report_.anisotropy_mean > 1.5);
     if (int steps = std::max(options_.optimize, mend ? steps_if_poor : 0); steps > 0) lower(uv, steps);
     return uv;
   }
@@ -149,7 +154,9 @@ class Search {
     scale_to_area(part_, better);
     if (after.steps == 0 || !valid_map(better)) return;
     measure_distortion(part_, better, after);
-    if (after.anisotropy_p99 > report_.anisotropy_p99 && options_.optimize == 0) return;
+    if (options_.optimize == 0 && after.anisotropy_p99 > report_.anisotropy_p99 &&
+        after.anisotropy_mean >= report_.anisotropy_mean)
+      return;
     report_ = after;
     uv = std::move(better);
   }
@@ -186,12 +193,16 @@ class Search {
     return uv;
   }
 
-  std::vector<Vec2> bent(double bend) {
+  BoundaryFirst& boundary_first() {
     if (!boundary_first_) boundary_first_.emplace(part_, disk_, flat(), &report_.time);
-    std::vector<Vec2> polygon = boundary_first_->polygon(bend);
+    return *boundary_first_;
+  }
+
+  std::vector<Vec2> bent(double bend) {
+    std::vector<Vec2> polygon = boundary_first().polygon(bend);
     if (polygon.empty() && bend == 0) throw GoalMissed("the border of the conformal map does not close");
     if (bend > 0 && (polygon.empty() || !polygon_is_simple(polygon))) return {};
-    return boundary_first_->map(polygon);
+    return boundary_first().map(polygon);
   }
 
   /// Repairs a map whose outer border is simple; true if it is then one-to-one.
@@ -269,7 +280,8 @@ class Search {
 
 void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report) {
   std::vector<double> anisotropy, scale;
-  double chart_area = 0, smallest = HUGE_VAL, least = HUGE_VAL, most = 0;
+  double part_area = 0, sum = 0, chart_area = 0, smallest = HUGE_VAL, least = HUGE_VAL, most = 0;
+  constexpr double most_finite = std::numeric_limits<double>::max();
   std::array<int, 2> extremes{0, 0};
   for (const Tri& t : part.tris) {
     Vec3 e = part.points[t[1]] - part.points[t[0]], f = part.points[t[2]] - part.points[t[0]];
@@ -282,7 +294,11 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
     // and that reverse angles; sigma1 and sigma2 are the sum and the difference of their norms
     Vec2 x = (1 / l) * p, y = (l / (2 * area)) * (q - (dot(e, f) / (l * l)) * p);
     double keep = 0.5 * std::hypot(x.x + y.y, x.y - y.x), reverse = 0.5 * std::hypot(x.x - y.y, x.y + y.x);
-    anisotropy.push_back(keep > reverse ? (keep + reverse) / (keep - reverse) : 1e300);
+    // sigma2 from the determinant, for the difference may cancel; finite, for a table has to hold it
+    double sigma = keep + reverse, determinant = image / area;
+    anisotropy.push_back(std::min(determinant > 0 ? sigma * (sigma / determinant) : HUGE_VAL, most_finite));
+    part_area += area;
+    sum += area * anisotropy.back();
     scale.push_back(image / area);
     if (scale.back() < least) least = scale.back(), extremes[0] = t[0];
     if (scale.back() > most) most = scale.back(), extremes[1] = t[0];
@@ -291,8 +307,10 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
   report.anisotropy_median = quantile(anisotropy, 0.5);
   report.anisotropy_p99 = quantile(anisotropy, 0.99);
   report.anisotropy_max = quantile(anisotropy, 1);
-  report.area_scale = quantile(scale, 0.99) / quantile(scale, 0.01);
+  double low = quantile(scale, 0.01);
+  report.area_scale = std::min(low > 0 ? quantile(scale, 0.99) / low : HUGE_VAL, most_finite);
   report.smallest_area = smallest / chart_area;
+  report.anisotropy_mean = std::min(sum / part_area, most_finite);
   if (report.apart.empty()) report.apart.push_back(extremes);
 }
 
@@ -301,17 +319,20 @@ std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options) {
   return Search(part, options, report).plain(options.map);
 }
 
-std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report) {
-  return Search(part, options, report).run();
+std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
+                           double most_uneven) {
+  return Search(part, options, report).run(most_uneven);
 }
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 24, limb_rounds = 2;
+  constexpr int most_rounds = 24, limb_rounds = 2, stretched_rounds = 12;
   constexpr double too_uneven = 1e8, unresolved = 1e16;  // edges of 1e-8 of the chart keep half their digits
+  constexpr double too_stretched = 4;                    // sigma1/sigma2, the mean over the area
+  constexpr std::size_t least_triangles = 50;            // of a part that is cut for the sake of its shape
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   std::vector<Chart> charts;
-  std::vector<char> waiting;
+  std::vector<char> waiting, whole;  // whole: too uneven, but nothing to be done about it
   reports.clear();
   for (int round = 0;; ++round) {
     // a part is mapped anew if it was cut, or got vertices from the cut of a neighbour
@@ -319,6 +340,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     charts.resize(n_parts);
     reports.resize(n_parts);
     waiting.resize(n_parts, 1);
+    whole.resize(n_parts, 0);
     for (int p = 0; p < n_parts; ++p) {
       if (parts[p].vertex != charts[p].mesh.vertex) waiting[p] = 1;
       charts[p].mesh = std::move(parts[p]);
@@ -329,7 +351,8 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
     for (int p = 0; p < n_parts; ++p) {
       if (!waiting[p]) continue;
       try {
-        charts[p].uv = map_part(charts[p].mesh, options, reports[p]);
+        bool any = options.strict || round >= limb_rounds || whole[p];
+        charts[p].uv = map_part(charts[p].mesh, options, reports[p], any ? HUGE_VAL : too_uneven);
         if (round == 0) add_progress((double)charts[p].mesh.tris.size() / (double)surface.tris.size());
       } catch (const GoalMissed& e) {
         failure[p] = std::make_exception_ptr(GoalMissed("part " + std::to_string(p) + ": " + e.what()));
@@ -352,13 +375,17 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       int n = n_parts;
       double uneven = missed ? HUGE_VAL : reports[p].area_scale;
       if (!options.strict && round < most_rounds) {
-        if (missed || reports[p].anisotropy_p99 > useless)
+        // a circle map that was asked for is the user's own choice
+        bool chosen = reports[p].used == options.map && options.map != MapKind::conformal;
+        bool stretched = !missed && !chosen && round < stretched_rounds &&
+                         reports[p].anisotropy_mean > too_stretched &&
+                         charts[p].mesh.tris.size() >= least_triangles;
+        bool limbs = !missed && !whole[p] && round < limb_rounds && uneven > too_uneven;
+        if (missed || limbs || stretched || reports[p].anisotropy_p99 > poor)
           n_parts = cut_along_model_edges(surface, p, n_parts);
-        if (n_parts == n && !missed && uneven > too_uneven && round < limb_rounds)
-          n_parts = cut_along_limbs(surface, p, n_parts);
-        bool stretched = !missed && round < limb_rounds && reports[p].used != options.map &&
-                         charts[p].mesh.tris.size() > small && reports[p].anisotropy_p99 > poor;
-        if (n_parts == n && (uneven > unresolved || stretched)) {
+        if (n_parts == n && (limbs || stretched)) n_parts = cut_along_limbs(surface, p, n_parts);
+        whole[p] = charts[p].uv.empty() && !missed && n_parts == n;
+        if (n_parts == n && !whole[p] && (uneven > unresolved || stretched)) {
           // places that should be apart, and halves of the part; the latter first if the former has not
           // helped
           std::vector<std::array<int, 2>> choice[2] = {reports[p].apart, {}};
@@ -367,12 +394,12 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
             ++n_parts;
         }
       }
-      if (n_parts > n)
+      if (n_parts > n || whole[p])
         waiting[p] = 1;
       else if (missed)
         std::rethrow_exception(failure[p]);
     }
-    if (n_parts == n_before) break;
+    if (std::find(waiting.begin(), waiting.end(), 1) == waiting.end()) break;
   }
   return charts;
 }

@@ -36,9 +36,10 @@ struct ParamReport {
   /// asked for crossed itself, else the triangles of the least and of the largest area scale.
   std::vector<std::array<int, 2>> apart;
   double anisotropy_median = 1, anisotropy_p99 = 1, anisotropy_max = 1;  ///< sigma1 / sigma2 of the map
-  double area_scale = 1;                                                 ///< p99 / p1 of the area scale
-  double smallest_area = 0;  ///< in the plane, over the chart's area
-  SolveTime time;            ///< of all that was tried
+  double anisotropy_mean = 1;  ///< over the area: what the mesher makes too many triangles by
+  double area_scale = 1;       ///< p99 / p1 of the area scale
+  double smallest_area = 0;    ///< in the plane, over the chart's area
+  SolveTime time;              ///< of all that was tried
 };
 
 /// Distortion of a map: the report's anisotropies, area_scale, smallest_area, and `apart` if that is empty.
@@ -53,20 +54,25 @@ std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
 /// around inverted triangles solved again with positive weights, then the inside as a whole), else the next
 /// of conformal, conformal with a border bent towards a circle until it does not cross itself, harmonic,
 /// convex; after a circle map that was asked for, the conformal ones are the last resort. The distortion of
-/// any other map than the one asked for, and of a conformal one with sigma1/sigma2 above 4 (p99), is lowered.
-/// With `strict` there is only the map asked for. The result is proved one-to-one (exact orientation of every
-/// triangle, simple borders). Throws GoalMissed if no map is; never returns a bad one.
-std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report);
+/// any other map than the one asked for, and of a conformal one, is lowered if sigma1/sigma2 is above 4 for
+/// more than 1 % of the triangles, or above 1.5 in the mean over the area, up to 20000 triangles. With
+/// `strict` there is only the map asked for. The result is proved one-to-one (exact orientation of every
+/// triangle, simple borders). Throws GoalMissed if no map is; never returns a bad one. Returns none, early,
+/// with area_scale set, if that of a map by boundary first flattening would be above `most_uneven`.
+std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
+                           double most_uneven = HUGE_VAL);
 
-/// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part that has no
-/// one-to-one map is cut in two by a short line between the places that should not be in one chart
-/// (lib/bisect.h), and its halves are mapped in its place; and so is one of more than 4000 triangles that
-/// only has a map with sigma1/sigma2 above 4 (p99) in place of the one asked for. A part whose area scale
-/// varies by more than 1e8 (p99 / p1) is cut along its limbs: the plane mesher copes with any scale, but a
-/// limb that shrinks that much does so by a factor over every few elements, and loses its shape. Ears of
-/// parts that go to a circle, triangles with two edges on the longest loop, are split through their third
-/// edge, since a circle flattens them. Both append vertices and split triangles, and rewrite face column
-/// `part`; with `strict` there is neither. reports has one entry a part.
+/// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part is cut, and
+/// its pieces are mapped in its place, if it has no one-to-one map; if its area scale varies by more than 1e8
+/// (p99 / p1), since a limb that shrinks that much does so by a factor over every few elements, and loses its
+/// shape; or if sigma1/sigma2 is above 4 in the mean over its area: the coarse tubes and rings of CAD, with
+/// nothing between their ends to follow a ring in the plane, have such maps, and lie flat once they are open
+/// (but a circle map that was asked for and is one-to-one may be so). The cut is along the model edges inside
+/// the part, where these bound simple pieces: it costs the mesh nothing there, and is made above 20 (p99)
+/// too; else along its limbs; else by a short line between the places that should not be in one chart
+/// (lib/bisect.h). Ears of parts that go to a circle, triangles with two edges on the longest loop, are split
+/// through their third edge, since a circle flattens them. Both append vertices and split triangles, and
+/// rewrite face column `part`; with `strict` there is neither. reports has one entry a part.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports);
 

@@ -71,7 +71,14 @@ BoundaryFirst::BoundaryFirst(const SubMesh& part, const Disk& disk, const Filled
   // brings it into the rim, whose turns then add up to one round
   std::vector<double> charge(filled.n_vertices);
   for (std::size_t v = 0; v < charge.size(); ++v) charge[v] = angle_sum_[v] - 2 * pi;
-  turn_ = turns(filled, weights_, angle_sum_, extend(charge, std::vector<double>(charge.size(), 0), 1));
+  std::vector<double> scale = extend(charge, std::vector<double>(charge.size(), 0), 1);
+  turn_ = turns(filled, weights_, angle_sum_, scale);
+  scale.resize(part.points.size());
+  std::size_t few = scale.size() / 100, many = scale.size() - 1 - few;
+  std::nth_element(scale.begin(), scale.begin() + few, scale.end());
+  double low = scale[few];
+  std::nth_element(scale.begin(), scale.begin() + many, scale.end());
+  unevenness_ = std::exp(2 * (scale[many] - low));
 }
 
 /// Solves for the inner vertices with the given charges (empty: none), for several columns of held values.

@@ -113,10 +113,10 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
       std::string& p = path[(int)std::lround(v * (shades - 1))];
       for (int i = 0; i < 3; ++i) {
         Vec2 q = uv[c][charts[c].mesh.tris[t][i]];
-        p += (i == 0   ? "M"
-              : i == 1 ? "L"
-                       : " ") +
-             number(x + unit * (q.x - box[c].low.x)) + " " + number(y + unit * (box[c].high.y - q.y));
+        p += i == 0 ? 'M' : i == 1 ? 'L' : ' ';
+        p += number(x + unit * (q.x - box[c].low.x));
+        p += ' ';
+        p += number(y + unit * (box[c].high.y - q.y));
       }
       p += "z";
     }

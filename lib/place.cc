@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/bvh.h"
+#include "lib/error.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -38,6 +39,13 @@ Place on_edge(int h, double t) {
   return p;
 }
 
+double mean_edge(const Mesh& mesh) {
+  double sum = 0;
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) sum += norm(mesh.points[t[(i + 1) % 3]] - mesh.points[t[i]]);
+  return sum / (3 * (double)mesh.tris.size());
+}
+
 }  // namespace
 
 LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
@@ -66,15 +74,22 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
       r.place[v] = none ? hit.place : on_edge(halfedges[kind][hit.place.face], 1 - hit.place.b0);
     }
   }
+  const double edge = mean_edge(mesh);
+  int far = 0;
   for (int v = 0; v < n; ++v) {
     const Place& p = r.place[v];
     const Tri& t = reference.tris[p.face];
     r.points[v] =
         p.b0 * reference.points[t[0]] + p.b1 * reference.points[t[1]] + p.b2 * reference.points[t[2]];
+    far += norm(r.points[v] - mesh.points[v]) > edge;
     if (!reference.vertex.has("size")) continue;
     const auto& size = reference.vertex.get<double>("size");
     r.size.push_back(p.b0 * size[t[0]] + p.b1 * size[t[1]] + p.b2 * size[t[2]]);
   }
+  if (2 * far > n)
+    throw NotAdmissible("the mesh is not one of the reference: " + std::to_string(far) + " of " +
+                        std::to_string(n) + " vertices are farther from it than a mean edge, " +
+                        std::to_string(edge));
   if (r.size.empty())
     r.size.assign(n, std::sqrt(4 / std::sqrt(3.0) * total_area(reference) / (double)mesh.tris.size()));
   r.kind.resize(n);

@@ -9,7 +9,8 @@ namespace meshpipe {
 /// reference's border and vertices of its model edges (face column `model`) on the reference's model edges,
 /// where the reference has any. Points move there. Sizes are those of the reference's column `size`, else the
 /// edge length at which the reference has as many triangles as the mesh. Precondition: both have triangles;
-/// the mesh is an oriented manifold (else BadInput by opposite_halfedges).
+/// the mesh is an oriented manifold (else BadInput by opposite_halfedges). Throws NotAdmissible if more than
+/// half of the vertices are farther away than a mean edge.
 LiftedMesh place_on(const Surface& mesh, const Surface& reference);
 
 }  // namespace meshpipe

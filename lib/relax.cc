@@ -91,6 +91,7 @@ RelaxReport Relaxer::run() {
     collapse_short(0.65, 0);
     flip_to_regular();
     smooth(2);
+    add_progress(0.1);
   }
   for (int i = 0; i < options_.sweeps; ++i) {
     // edits unsettle the mesh, so they come first and the last sweeps only settle it
@@ -103,14 +104,20 @@ RelaxReport Relaxer::run() {
     smooth(1);
     flip_to_shape();
     smooth(2);
-    add_progress(0.9 / options_.sweeps);
+    add_progress(0.5 / options_.sweeps);
   }
   // what is mended is farther from some tips, what reaches them needs mending
   constexpr int rounds = 4;
   std::vector<Place> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
   for (int round = 0; round < rounds; ++round) {
-    reach_tips(tips);
+    // on a smooth surface there are none, and the mesh has come to rest in the first round
+    if (reach_tips(tips) || round == 0) {
+      smooth(3);
+      flip_to_shape();
+      smooth(2);
+    }
     mend_worst();
+    add_progress(0.1 / rounds);
   }
   separate();
   return finish();

@@ -43,11 +43,12 @@ std::vector<Place> Ground::likely_tips(double h) const {
 
 /// Tips and ridges that the mesh cuts off are where it is farthest from the reference. Where they are farther
 /// than a tenth of the size, the farthest first, a mesh vertex goes there and stays. Forgets the `tips` that
-/// the mesh is near to.
-void Relaxer::reach_tips(std::vector<Place>& tips) {
+/// the mesh is near to. True if one was reached.
+bool Relaxer::reach_tips(std::vector<Place>& tips) {
   std::vector<int> number;
   const Mesh now = compact(number);
-  if (now.tris.empty()) return;
+  if (now.tris.empty() || tips.empty()) return false;
+  bool reached = false;
   const Bvh tree(now);
   const double h = size_for_count(total_area(now), now.tris.size());
   const int n = (int)tips.size();
@@ -69,12 +70,10 @@ void Relaxer::reach_tips(std::vector<Place>& tips) {
     int alive = -1;
     for (int w : now.tris[hit[i].place.face])
       if (m_.out[w] >= 0) alive = m_.out[w] / 3;
-    if (alive >= 0 && reach(tips[i], alive, far_enough)) --left;
+    if (alive >= 0 && reach(tips[i], alive, far_enough)) --left, reached = true;
   }
   tips.swap(kept);
-  smooth(3);
-  flip_to_shape();
-  smooth(2);
+  return reached;
 }
 
 /// Puts a vertex of the triangle nearest to `tip` there, or a new one on one of its edges, whichever leaves
@@ -416,18 +415,20 @@ int Relaxer::irregularity(int v) const {
 }
 
 /// Mends the triangles that are not good enough, the worst first, then vertices of a valence that is none of
-/// 5, 6, 7.
+/// 5, 6, 7; only so many, since a mesh with more of them is not to be had by mending.
 void Relaxer::mend_worst() {
+  const int most = 200 + m_.live / 100;
   for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
+    if ((int)bad.size() > most) bad.resize(most);
     std::vector<int> triangles, irregular;
     for (auto [q, t] : bad) triangles.push_back(t);
     int changes = mend_each(triangles, round > 0, [this](int t) { return quality(t) < 1; });
-    for (int v = 0; v < (int)m_.out.size(); ++v)
+    for (int v = 0; v < (int)m_.out.size() && (int)irregular.size() < most; ++v)
       if (irregularity(v)) irregular.push_back(m_.out[v] / 3);
     changes += mend_each(irregular, false, [&](int t) {
       const Tri& v = m_.tris[t];

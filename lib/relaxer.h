@@ -136,7 +136,7 @@ class Relaxer {
   void remove_dislocations(int depth);
 
   // relax_mend.cc
-  void reach_tips(std::vector<Place>& tips);
+  bool reach_tips(std::vector<Place>& tips);
   bool reach(const Place& tip, int t, double far_enough);
   double quality(int t) const;
   int irregularity(int v) const;

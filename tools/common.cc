@@ -82,6 +82,23 @@ int make_temporary(std::string& name) {
   return fd;
 }
 
+/// What the program is at, for the line of progress; in a pipe it first waits for its input.
+enum class Phase { waiting, reading, working, writing };
+std::atomic<Phase> phase = Phase::waiting;
+
+/// Share of all that has to be done. Reading and writing a stream take about as long as each other.
+double share_done() {
+  constexpr double to_read = 0.2, to_write = 0.2;
+  switch (phase.load()) {
+    case Phase::working:
+      return to_read + (1 - to_read - to_write) * std::min(1.0, work_done.load());
+    case Phase::writing:
+      return 1 - to_write;
+    default:
+      return 0;
+  }
+}
+
 std::string reason() { return std::strerror(errno); }
 
 void write_all(int fd, std::string_view bytes, const std::string& where) {
@@ -136,6 +153,7 @@ Bytes read_all(const std::string& path) {
       throw BadInput(where + ": " + why);
     }
     if (n == 0) break;
+    if (phase == Phase::waiting) phase = Phase::reading;
     bytes.size += n;
   }
   if (!standard) ::close(fd);
@@ -271,18 +289,16 @@ class Progress {
   void watch(const std::string& name) {
     using Clock = std::chrono::steady_clock;
     Clock::time_point begun{};
-    double first = 0;
     bool shown = false;
     std::unique_lock lock(mutex_);
     while (!wake_.wait_for(lock, std::chrono::milliseconds(200), [this] { return over_; })) {
-      const double share = std::min(1.0, work_done.load());
-      // a program of a pipe may have waited for its input: time counts from the first share
-      if (share <= 0) continue;
-      if (begun == Clock::time_point{}) begun = Clock::now(), first = share;
-      const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
-      if (seconds < 1 || share <= first) continue;
+      if (phase == Phase::waiting) continue;
+      if (begun == Clock::time_point{}) begun = Clock::now();
+      const double seconds = std::chrono::duration<double>(Clock::now() - begun).count(),
+                   share = share_done();
+      if (seconds < 1 || share <= 0) continue;
       std::fprintf(stderr, "\r%s: %.0f %%, %.0f s left\033[K\r", name.c_str(), 100 * share,
-                   seconds * (1 - share) / (share - first));
+                   seconds * (1 - share) / share);
       shown = true;
     }
     if (shown) std::fputs("\r\033[K", stderr);
@@ -299,7 +315,9 @@ class Progress {
 Stream Io::read() {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
-  return read(input);
+  Stream stream = read(input);
+  phase = Phase::working;
+  return stream;
 }
 
 std::string Io::read_bytes(const std::string& path) { return std::string(std::string_view(read_all(path))); }
@@ -331,6 +349,7 @@ void Io::write(Stream& stream) {
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
   auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
+  phase = Phase::writing;
   if (output != "-") {
     write_beside(output, produce);
     finished_ = output;
@@ -362,7 +381,7 @@ void Io::expect_report(const std::string& option, const std::string& path, bool 
   for (const auto& [other, file] : files_)
     if (same_file(path, file)) {
       throw BadUsage(option + ' ' + path + ": " +
-                     (path != "-"       ? "that is the file of " + other
+                     (path != "-"     ? "that is the file of " + other
                       : other == "-o" ? "standard output is for the result; give -o FILE"
                                       : "standard output is for " + other));
     }
@@ -428,7 +447,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       ->type_name("N");
   app.add_flag("-q,--quiet", io.quiet, "say nothing but errors");
   app.add_flag("-v,--verbose", io.verbose, "say more");
-  app.add_option("--json", io.json, "write the report to this file; - is standard output, if -o is not")->type_name("FILE");
+  app.add_option("--json", io.json, "write the report to this file; - is standard output, if -o is not")
+      ->type_name("FILE");
   app.set_version_flag("--version", std::string(program) + " " MESHPIPE_VERSION " (mply 1.0)");
   app.get_option("--version")->description("the version, and that of the stream")->group(common_group);
   app.set_help_flag("-h,--help", "this text");
@@ -478,6 +498,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     io.expect_report("-o", io.output, usage.writes_mesh);
     if (!io.json.empty()) io.expect_report("--json", io.json);
     try {
+      if (!usage.reads) phase = Phase::working;
       const Progress progress(io);
       body(io);
     } catch (const NotAdmissible&) {

@@ -129,15 +129,15 @@ int main(int argc, char** argv) {
         // lines of a foreign file, by their place: vertices are about to be renumbered
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
         CleanReport report;
+        std::exception_ptr refused;
         try {
           clean(s, o, report);
         } catch (const NotAdmissible&) {
-          put(io, report, o);
-          write_culprits(io, o.culprits, report, input);
-          throw;
+          refused = std::current_exception();
         }
         put(io, report, o);
         write_culprits(io, o.culprits, report, input);
+        if (refused) std::rethrow_exception(refused);
         name_sheets(stream, report);
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one

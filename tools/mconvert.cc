@@ -103,5 +103,6 @@ int main(int argc, char** argv) {
           io.write_bytes(write_vtk_polydata(stream, ascii));
         else
           io.write_bytes(write_as(stream, io.output, ascii));
-      });
+      },
+      {.passes = true});
 }

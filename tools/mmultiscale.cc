@@ -55,9 +55,10 @@ int main(int argc, char** argv) {
     Stream stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     std::vector<MultiscaleCut> cuts;
+    std::vector<Topology> topology;
     int n_parts;
     try {
-      n_parts = multiscale_cut(stream.surface, options, &cuts);
+      n_parts = multiscale_cut(stream.surface, options, &cuts, &topology);
     } catch (const GoalMissed&) {  // the pictures show why
       if (options.keep_maps) draw_levels(directory, cuts);
       throw;
@@ -100,7 +101,7 @@ int main(int argc, char** argv) {
     io.report["junctions"] = cut.junctions;
     io.report["turning_angle"] = cut.turning_angle;
     io.report["largest_angle"] = cut.largest_angle;
-    stream.set(part_table(stream.surface, n_parts));
+    stream.set(part_table(topology));
     io.write(stream);
   };
   return run_tool(

@@ -76,6 +76,7 @@ nlohmann::ordered_json record_of(const ParamReport& r, int part, std::size_t tri
           {"flips_after", r.flips_after},
           {"border_was_simple", r.border_was_simple},
           {"steps", r.steps},
+          {"anisotropy_mean", r.anisotropy_mean},
           {"anisotropy_median", r.anisotropy_median},
           {"anisotropy_p99", r.anisotropy_p99},
           {"anisotropy_max", r.anisotropy_max},
@@ -131,8 +132,7 @@ int main(int argc, char** argv) {
     std::vector<Chart> charts = map_surface(surface, n_before, options, reports);
     int n_parts = (int)charts.size();
     const Table* known = stream.find("part");
-    const bool same = known && surface.tris.size() == faces_before && n_parts == n_before;
-    Table parts = same ? *known : part_table(surface, n_parts);
+    Table parts = known && surface.tris.size() == faces_before && n_parts == n_before ? *known : part_table(surface, n_parts);
     add_columns(parts, reports);
     stream.set(std::move(parts));
     stream.set(chart_table(charts));

@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
       if (stream.find("line_use"))  // lines on another surface
         for (const char* table : {"line", "line_use", "line_vertex"}) stream.erase(table);
     }
+    stream.surface = {};  // it is written anew: memory
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
     const bool second_order = stream.find("mid_vertex") != nullptr;
     const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);

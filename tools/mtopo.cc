@@ -102,7 +102,8 @@ int main(int argc, char** argv) {
           const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
           const int n = components(opposite, component);
           if (n == (int)s.tris.size() && n > 1 && !cleaned)
-            throw NotAdmissible("no two of the " + std::to_string(n) + " triangles share an edge; run mclean first");
+            throw NotAdmissible("no two of the " + std::to_string(n) +
+                                " triangles share an edge; run mclean first");
           if (required == "manifold")
             if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
               throw NotAdmissible("vertex " + std::to_string(v) +

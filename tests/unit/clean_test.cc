@@ -360,8 +360,8 @@ TEST(Clean, FillsASlitWithoutATriangleOfNoArea) {
   EXPECT_TRUE(clean(s, {.fill_holes = 3}).nothing);
 }
 
-// points on a grid much coarser than the tolerance needs, so that triangles fall together, lose their area and
-// meet in edges of many
+// points on a grid much coarser than the tolerance needs, so that triangles fall together, lose their area
+// and meet in edges of many
 TEST(Clean, WeldedCoarselyItIsCleanTheSecondTime) {
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {

@@ -278,6 +278,41 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
   }
 }
 
+//  +-----+-----+
+//  |     |     |    a model line across: two parts, no new vertex
+//  +-----+-----+
+TEST(Bisect, AtModelEdgesThatEncloseSomething) {
+  auto strip = grid(
+      40, 4, false,
+      [](double s, double t) {
+        return Vec3{10 * s, t, 0};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = strip;
+  s.vertex.rows = s.points.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  auto mark = [&](double up_to) {  // the edges at x = 5 below y
+    std::vector<std::uint8_t> model(s.tris.size(), 0);
+    for (std::size_t h = 0; h < 3 * s.tris.size(); ++h) {
+      const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)];
+      if (a.x == 5 && b.x == 5 && a.y < up_to && b.y < up_to) model[h / 3] |= 1 << h % 3;
+    }
+    s.face.set("model", std::move(model));
+  };
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // no model edges
+  mark(0.9);
+  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // they end inside
+  mark(2);
+  ASSERT_EQ(cut_along_model_edges(s, 0, 1), 2);
+  EXPECT_EQ(s.points.size(), strip.points.size());
+  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
+    EXPECT_EQ(t.components, 1);
+    EXPECT_EQ(t.loops, 1);
+    EXPECT_NEAR(t.area, 5, 1e-12);
+  }
+}
+
 // A needle across a flat strip: the long edge of two obtuse triangles is flipped, and all weights are
 // positive.
 TEST(Bisect, AlongModelEdges) {
@@ -377,4 +412,30 @@ TEST(Param, OptimisationLowersDistortionAndStaysOneToOne) {
   map_part(flat, {.map = MapKind::convex, .optimize = 100}, after);
   EXPECT_LT(after.anisotropy_max, 1.1);  // the least is an isometry
   EXPECT_LT(after.area_scale, 1.1);
+}
+
+// A prism of needles, open at both ends, with nothing between its two rings: in a ring of the plane the
+// needles would be sheared beyond use.
+TEST(Param, ACoarseTubeIsCutOpen) {
+  auto prism = grid(
+      64, 1, true,
+      [](double s, double t) {
+        double a = 2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), 6 * t};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = prism;
+  s.vertex.rows = s.points.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  std::vector<ParamReport> reports;
+  Surface strict = s;
+  ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
+  EXPECT_GT(reports[0].anisotropy_mean, 4);
+  auto charts = map_surface(s, 1, {}, reports);
+  EXPECT_EQ(charts.size(), 2u);
+  for (std::size_t p = 0; p < charts.size(); ++p) {
+    EXPECT_LT(reports[p].anisotropy_mean, 1.1);
+    EXPECT_TRUE(one_to_one(charts[p].mesh, charts[p].uv));
+  }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/error.h"
 #include "lib/feature.h"
 #include "lib/place.h"
 #include "lib/shape.h"
@@ -208,6 +209,18 @@ TEST(PlaceOn, BordersGoToBordersAndTheRestToTheSurface) {
     bool on_border = false;
     for (int i = 0; i < 3; ++i) on_border |= ref_opposite[3 * p.face + i] < 0 && b[(i + 2) % 3] == 0;
     EXPECT_TRUE(on_border) << origin(mesh.tris, h);
+  }
+}
+
+TEST(PlaceOn, AMeshOfSomethingElseIsRefused) {
+  Surface reference = sized(sphere(500), 500), mesh = reference;
+  EXPECT_NO_THROW(place_on(mesh, reference));
+  for (Vec3& p : mesh.points) p = p + Vec3{5, 0, 0};
+  try {
+    place_on(mesh, reference);
+    FAIL();
+  } catch (const NotAdmissible& e) {
+    EXPECT_NE(std::string(e.what()).find("not one of the reference"), std::string::npos) << e.what();
   }
 }
 
