@@ -178,8 +178,8 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_progress(0.4);
   over_edges(result, f.off);
   f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
-                                       [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
-                      f.off.begin());
+                                      [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
+                     f.off.begin());
 
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   Mesh curves, reference_curves;
