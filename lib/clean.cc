@@ -88,15 +88,6 @@ void join(Repair& r, CleanReport& report) {
   for (int t : many) blame(report, r.face[t], Fault::nonmanifold);
 }
 
-/// Turns a triangle round: its half-edges 0 1 2 become 2 1 0.
-void turn(Repair& r, int t) {
-  std::swap(r.tris[t][1], r.tris[t][2]);
-  std::swap(r.opposite[3 * t], r.opposite[3 * t + 2]);
-  for (int h : {3 * t, 3 * t + 2})
-    if (r.opposite[h] >= 0) r.opposite[r.opposite[h]] = h;
-  r.flipped[t] ^= 1;
-}
-
 /// Makes neighbours agree: a flood from the first triangle of each component, turned to the side of its
 /// majority. Components that are not orientable are noted, their triangles marked in `gone`.
 void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report) {
@@ -182,28 +173,6 @@ void split_fans(Repair& r, CleanReport& report) {
   if (report.nonmanifold_vertices) return;
   report.nonmanifold_vertices = vertices;
   for (int t : apart) blame(report, r.face[t], Fault::pinched);
-}
-
-/// Turns closed components inside out whose signed volume is clearly negative.
-void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n) {
-  std::vector<char> closed(n, 1);
-  std::vector<int> seed(n, -1);
-  std::vector<double> volume(n, 0), area(n, 0);
-  for (int t = 0; t < (int)r.tris.size(); ++t) {
-    const int c = component[t];
-    if (seed[c] < 0) seed[c] = r.tris[t][0];
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (r.opposite[h] < 0) closed[c] = 0;
-    const Vec3 o = points[r.vertex[seed[c]]];  // near, for the digits
-    const Vec3 a = points[r.vertex[r.tris[t][0]]] - o, b = points[r.vertex[r.tris[t][1]]] - o,
-               d = points[r.vertex[r.tris[t][2]]] - o;
-    volume[c] += dot(a, cross(b, d)) / 6;
-    area[c] += 0.5 * norm(area_vector(a, b, d));
-  }
-  for (int t = 0; t < (int)r.tris.size(); ++t) {
-    const int c = component[t];
-    if (closed[c] && volume[c] < -1e-12 * area[c] * std::sqrt(area[c])) turn(r, t);
-  }
 }
 
 /// Drops all components but the `keep` largest by area; whether there were more.
@@ -365,6 +334,14 @@ bool make_manifold(Repair& r, const std::vector<Vec3>& points, const CleanOption
 
 }  // namespace
 
+void turn(Repair& r, int t) {
+  std::swap(r.tris[t][1], r.tris[t][2]);
+  std::swap(r.opposite[3 * t], r.opposite[3 * t + 2]);
+  for (int h : {3 * t, 3 * t + 2})
+    if (r.opposite[h] >= 0) r.opposite[r.opposite[h]] = h;
+  r.flipped[t] ^= 1;
+}
+
 void drop(Repair& r, const std::vector<char>& gone) {
   std::vector<int> number(r.opposite.empty() ? 0 : gone.size(), -1);
   std::size_t n = 0;
@@ -432,12 +409,14 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
       50;  // two or three do; that holes filled and sheets split come to an end is not proved
   for (int round = 1; !make_manifold(r, surface.points, options, report) && round < most_rounds; ++round)
     unite(r);
-  for (std::size_t t = 0; t < r.tris.size(); ++t)
-    if (r.flipped[t]) blame(report, r.face[t], Fault::turned);
   std::vector<int> component;
   report.components = components(r.opposite, component);
   face_outward(r, surface.points, component, report.components);  // last, when holes are filled
-  report.flipped = (int)std::count(r.flipped.begin(), r.flipped.end(), 1);
+  for (std::size_t t = 0; t < r.tris.size(); ++t) {
+    if (!r.flipped[t] || r.face[t] < 0) continue;  // what fills a hole had no side before
+    ++report.flipped;
+    blame(report, r.face[t], Fault::turned);
+  }
   for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
   sort_culprits(report);
   if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));

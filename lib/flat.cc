@@ -23,20 +23,37 @@ class Flat {
     std::vector<int> flat;
     for (int t = 0; t < (int)r_.tris.size(); ++t)
       if (is_flat(r_.tris[t])) flat.push_back(t);
-    // a flip may free its neighbour; every round that goes on lowers their number
+    // What is done may free neighbours, which are tried next, or others by the edges it takes away: as long
+    // as something is done, which lowers their number, all are tried again.
+    std::vector<char> waits(r_.tris.size(), 0);
+    std::vector<int> queue, close;
     for (bool again = !flat.empty(); again;) {
       again = false;
-      std::vector<int> left;
-      for (int t : flat) {
+      queue = flat;
+      for (int t : queue) waits[t] = 1;
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        const int t = queue[i];
+        waits[t] = 0;
         if (gone_[t] || !is_flat(r_.tris[t])) continue;
         const int face = r_.face[t];
-        if (drop_on_border(t) || flip(t) || collapse(t)) {
-          counts.removed.push_back(face);
-          again = true;
+        close.assign(1, t);
+        for (int h = 3 * t; h < 3 * t + 3; ++h) {
+          const int u = r_.opposite[h] / 3;
+          if (r_.opposite[h] < 0) continue;
+          close.push_back(u);
+          for (int g = 3 * u; g < 3 * u + 3; ++g)
+            if (r_.opposite[g] >= 0) close.push_back(r_.opposite[g] / 3);
         }
-        if (!gone_[t] && is_flat(r_.tris[t])) left.push_back(t);
+        if (!(drop_on_border(t) || flip(t) || collapse(t))) continue;
+        counts.removed.push_back(face);
+        again = true;
+        for (int u : close)
+          if (!gone_[u] && !waits[u] && is_flat(r_.tris[u])) {
+            waits[u] = 1;
+            queue.push_back(u);
+          }
       }
-      flat = std::move(left);
+      std::erase_if(flat, [&](int t) { return gone_[t] || !is_flat(r_.tris[t]); });
     }
     counts.left = (int)flat.size();
     if (std::count(gone_.begin(), gone_.end(), 1)) drop(r_, gone_);
@@ -67,6 +84,29 @@ class Flat {
     if (o >= 0) r_.opposite[o] = h;
   }
 
+  /// Whether an edge joins the origins of two half-edges: looks round both in turns, so that the one with few
+  /// neighbours decides.
+  bool joined(int h, int g) const {
+    const int a = origin(r_.tris, h), b = origin(r_.tris, g);
+    struct Walk {
+      int seed, at, to;
+      bool back;
+    } walks[] = {{h, h, b, false}, {g, g, a, false}};
+    for (;;)
+      for (Walk& w : walks) {
+        if (target(r_.tris, w.at) == w.to || origin(r_.tris, prev(w.at)) == w.to) return true;
+        int step = w.back ? -1 : r_.opposite[prev(w.at)];
+        if (step == w.seed) return false;
+        if (step < 0) {  // on from the seed the other way round
+          const int other = r_.opposite[w.back ? w.at : w.seed];
+          w.back = true;
+          if (other < 0) return false;
+          step = next(other);
+        }
+        w.at = step;
+      }
+  }
+
   bool drop_on_border(int t) {
     const int h = longest_edge(t), a = r_.opposite[next(h)], b = r_.opposite[prev(h)];
     if (r_.opposite[h] >= 0) return false;
@@ -88,11 +128,7 @@ class Flat {
     const int u = o / 3;
     const int a = origin(r_.tris, h), b = target(r_.tris, h), c = origin(r_.tris, prev(h)),
               d = origin(r_.tris, prev(o));
-    bool joined = c == d;
-    for_each_spoke(r_, prev(h), [&](int g) {
-      joined = joined || target(r_.tris, g) == d || origin(r_.tris, prev(g)) == d;
-    });
-    if (joined) return false;
+    if (c == d || joined(prev(h), prev(o))) return false;
     const Tri left{a, d, c}, right{d, b, c};
     if (1 + is_flat(r_.tris[u]) <= is_flat(left) + is_flat(right)) return false;
     const int bc = r_.opposite[next(h)], ca = r_.opposite[prev(h)], ad = r_.opposite[next(o)],
@@ -100,6 +136,7 @@ class Flat {
     r_.tris[t] = left;
     r_.tris[u] = right;
     r_.face[t] = r_.face[u];
+    r_.flipped[t] = r_.flipped[u];
     connect(3 * t, ad);
     connect(3 * t + 1, 3 * u + 2);
     connect(3 * t + 2, ca);

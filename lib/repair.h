@@ -45,6 +45,15 @@ bool for_each_spoke(const Repair& r, int h, Visit visit) {
   return false;
 }
 
+/// Turns a triangle round: its half-edges 0 1 2 become 2 1 0.
+void turn(Repair& r, int t);
+
+/// Makes closed components face out of what they enclose: outward, or inward where they lie within an odd
+/// number of others. Nothing is turned among components within one another that all face outward, as they may
+/// be solids each, nor where signed volume or place are unclear (one lies on another). `component` of every
+/// triangle, 0 <= component < n. Time: a ray through the surface for each of a few vertices of a component.
+void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n);
+
 struct FlatCounts {
   std::vector<int> removed;  ///< their `face`
   int left = 0;              ///< flat triangles that could not go without opening a crack

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace meshpipe {
 namespace {
@@ -11,12 +12,6 @@ std::uint64_t mix(std::uint64_t x) {  // a bijection that spreads every bit (mul
   x = (x ^ x >> 32) * 0x9E3779B97F4A7C15u;
   x = (x ^ x >> 29) * 0xD6E8FEB86659FD93u;
   return x ^ x >> 32;
-}
-
-using Cell = std::array<std::int64_t, 3>;
-
-std::uint64_t hash(const Cell& c) {
-  return mix((std::uint64_t)c[0] + mix((std::uint64_t)c[1] + mix((std::uint64_t)c[2])));
 }
 
 std::uint64_t hash(const Vec3& p) {
@@ -103,34 +98,28 @@ void weld(Mesh& mesh) {
 int merge_near(const std::vector<Vec3>& points, const std::vector<char>& used, double tolerance,
                std::vector<int>& same) {
   const int n = (int)points.size();
-  Vec3 lo = n ? points[0] : Vec3{}, hi = lo;
-  for (const Vec3& p : points) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-  }
-  // cells of the tolerance's size, but never more than 2^40 along a side, which a double counts exactly
-  const double size = std::max(tolerance, norm(hi - lo) * 0x1p-40);
-  if (!(size > 0)) return 0;
+  // Cells of at least the tolerance's size, a power of two: the division is exact. Where a double does not
+  // tell neighbouring cells apart, points that differ are farther apart than the tolerance.
+  const double size = std::exp2(std::ceil(std::log2(std::max(tolerance, 1e-200))) + 1), per_size = 1 / size;
   auto cell_of = [&](const Vec3& p) {
-    return Cell{(std::int64_t)std::floor((p.x - lo.x) / size), (std::int64_t)std::floor((p.y - lo.y) / size),
-                (std::int64_t)std::floor((p.z - lo.z) / size)};
+    return Vec3{std::floor(p.x * per_size), std::floor(p.y * per_size), std::floor(p.z * per_size)};
   };
   const std::size_t mask = std::bit_ceil(2 * points.size() + 2) - 1;
   std::vector<int> slot(mask + 1, -1);  // the last vertex kept in a cell,
   std::vector<int> before(n, -1);       // and the one before it in the same cell
-  auto find = [&](const Cell& c) {
+  auto find = [&](const Vec3& c) {
     std::size_t i = hash(c) & mask;
-    while (slot[i] >= 0 && cell_of(points[slot[i]]) != c) i = (i + 1) & mask;
+    while (slot[i] >= 0 && !(cell_of(points[slot[i]]) == c)) i = (i + 1) & mask;
     return i;
   };
   int merged = 0;
   for (int v = 0; v < n; ++v) {
     if (!used[v] || same[v] != v) continue;
-    const Cell home = cell_of(points[v]);
+    const Vec3 home = cell_of(points[v]);
     int nearest = -1;
     double least = tolerance;
     for (int k = 0; k < 27; ++k) {
-      const Cell c{home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1};
+      const Vec3 c{home.x + (k % 3 - 1), home.y + (k / 3 % 3 - 1), home.z + (k / 9 - 1)};
       for (int w = slot[find(c)]; w >= 0; w = before[w]) {
         const double d = norm(points[w] - points[v]);
         if (d < least || (d == least && (nearest < 0 || w < nearest))) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
+#include <tuple>
 
 #include "lib/error.h"
 #include "lib/topology.h"
@@ -75,6 +77,84 @@ TEST(Clean, TurnsTheMinorityAndTheInsideOut) {
   EXPECT_EQ(clean(s).flipped, 4);
   EXPECT_GT(volume(s), 0);
   expect_manifold(s);
+}
+
+/// Nested tetrahedra, largest first, those with a minus inside out.
+static Surface nested(const std::string& signs) {
+  Surface s;
+  double size = 1;
+  for (char sign : signs) {
+    const int first = (int)s.points.size();
+    for (Vec3 p : tetra_points)
+      s.points.push_back(Vec3{0.2, 0.21, 0.22} + size * (p - Vec3{0.2, 0.21, 0.22}));
+    for (Tri t : tetra_tris) {
+      for (int& v : t) v += first;
+      if (sign == '-') std::swap(t[1], t[2]);
+      s.tris.push_back(t);
+    }
+    size /= 3;
+  }
+  s.face.set("patch", std::vector<int>(s.tris.size(), 1));
+  return s;
+}
+
+TEST(Clean, FacesOutOfWhatIsEnclosed) {
+  for (const char* consistent : {"+", "+-", "+-+", "+-+-", "++", "+++"}) {
+    Surface s = nested(consistent);
+    const std::vector<Tri> before = s.tris;
+    EXPECT_TRUE(clean(s).nothing) << consistent;
+    EXPECT_EQ(s.tris, before);
+  }
+  for (auto [given, due, turned] :
+       {std::tuple{"-", "+", 4}, {"-+", "+-", 8}, {"--", "+-", 4}, {"-+-", "+-+", 12}}) {
+    Surface s = nested(given);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.flipped, turned) << given;
+    EXPECT_EQ((int)r.culprits.size(), turned) << given;
+    const Surface expected = nested(due);
+    for (int c = 0; c < (int)s.tris.size() / 4; ++c) {
+      auto part = [&](const Surface& whole) {
+        return volume(surface(whole.points, {whole.tris.begin() + 4 * c, whole.tris.begin() + 4 * c + 4}));
+      };
+      EXPECT_GT(part(s) * part(expected), 0) << given << ' ' << c;
+    }
+    EXPECT_TRUE(clean(s).nothing) << given;
+  }
+}
+
+TEST(Clean, ManyTrianglesInLineTakeLittleTime) {
+  // a vertex on the line of the others: all but the last triangle of its fan are flat
+  const int n = 60000;
+  std::vector<Vec3> points{{0, 0, 0}};
+  std::vector<Tri> tris;
+  for (int i = 1; i <= n; ++i) points.push_back({(double)i, 0, 0});
+  points.push_back({0, 1, 0});
+  for (int i = 1; i < n; ++i) tris.push_back({0, i, i + 1});
+  tris.push_back({0, n, n + 1});
+  Surface s = surface(points, tris);
+  clean(s);
+  for (const Tri& t : s.tris) EXPECT_GT(norm(area_vector(s.points[t[0]], s.points[t[1]], s.points[t[2]])), 0);
+  EXPECT_TRUE(clean(s).nothing);
+}
+
+TEST(Clean, OneVertexFarOffDoesNotSlowTheWeld) {
+  const int n = 300;
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) points.push_back({(double)x, (double)y, 0});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x;
+      tris.push_back({a, a + 1, a + n + 2});
+      tris.push_back({a, a + n + 2, a + n + 1});
+    }
+  points.push_back({1e40, 3e20, -1e40});
+  tris.push_back({0, n + 1, (int)points.size() - 1});
+  for (double tolerance : {0.001, 1e-300}) {
+    Surface s = surface(points, tris);
+    EXPECT_EQ(clean(s, {.weld = tolerance}).welded_near, 0);
+  }
 }
 
 TEST(Clean, DropsDuplicatesDegeneratesAndUnreferencedVertices) {
