@@ -531,7 +531,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       write_report();
     } catch (const CannotWrite&) {
       struct stat info {};
-      if (::stat(io.finished_.c_str(), &info) == 0 && S_ISREG(info.st_mode)) ::unlink(io.finished_.c_str());
+      if (::stat(io.finished_.c_str(), &info) == 0 && !in_place(io.finished_, info)) ::unlink(io.finished_.c_str());
       throw;
     }
     return 0;
