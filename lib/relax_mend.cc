@@ -90,9 +90,12 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
     if (d < least) least = d, t = s;
   }
   if (least <= far_enough) return false;
-  auto walks_there = [&](int v) {
-    return held_[v] == loose &&
-           norm(ground_->walk.point(ground_->walk.closest(lifted_.place[v], p)) - p) < 1e-6 * size_at(v);
+  // a vertex of the border gets only to tips of the border, and along it
+  auto goes_there = [&](int v) {
+    if (held_[v] != loose && (held_[v] != slides || !m_.on_border(v))) return false;
+    const Place& from = lifted_.place[v];
+    const Place to = held_[v] == loose ? ground_->walk.closest(from, p) : ground_->walk.slide(from, p);
+    return norm(ground_->walk.point(to) - p) < 1e-6 * size_at(v);
   };
   const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
   const Relaxer before = patch(triangles, vertices);
@@ -101,18 +104,21 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
   double best = before.badness() + spoils;
   Relaxer chosen = before;
   bool found = false;
+  // by a vertex of the triangle nearest to it, then by a new one on an edge of that
   for (int i = 0; i < 6; ++i) {
-    const int h = i % 3;
-    if (!walks_there(m_.tris[t][h])) continue;
+    const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
+    const bool edge_of_border = before.m_.hard[h] && before.m_.opp[h] < 0;
+    if (!goes_there(from) && !(i >= 3 && edge_of_border && goes_there(to))) continue;
+    const bool on_border = i < 3 ? held_[from] == slides : edge_of_border;
+    if (i >= 3 && !edge_of_border && (before.m_.hard[h] || held_[from] == slides)) continue;
     Relaxer after = before;
     int v = after.m_.from(h);
     if (i >= 3) {
-      if (before.m_.hard[h]) continue;
       v = (int)after.m_.out.size();
       after.insert(h, tip, p, facing);
     }
     after.put(v, tip, p, facing);
-    after.held_[v] = anchored;
+    after.held_[v] = on_border ? fixed : anchored;
     after.listed_ = false;
     after.settle(2);
     if (const double bad = after.badness();
@@ -276,12 +282,13 @@ void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vect
       ++report_.collapses;
     }
   }
-  for (int i = 0; i < (int)vertices.size(); ++i)
-    if (mended.m_.out[i] >= 0 && (mended.held_[i] < fixed || mended.held_[i] == anchored)) {
-      held_[vertices[i]] = mended.held_[i];
-      put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
-      touch(vertices[i]);
-    }
+  for (int i = 0; i < (int)vertices.size(); ++i) {
+    const char held = mended.held_[i];
+    if (mended.m_.out[i] < 0 || held == frozen || (held == fixed && held_[vertices[i]] == fixed)) continue;
+    held_[vertices[i]] = held;
+    put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
+    touch(vertices[i]);
+  }
   listed_ = false;
 }
 
