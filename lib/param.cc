@@ -375,7 +375,10 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       int n = n_parts;
       double uneven = missed ? HUGE_VAL : reports[p].area_scale;
       if (!options.strict && round < most_rounds) {
-        bool stretched = !missed && round < stretched_rounds && reports[p].anisotropy_mean > too_stretched &&
+        // a circle map that was asked for is the user's own choice
+        bool chosen = reports[p].used == options.map && options.map != MapKind::conformal;
+        bool stretched = !missed && !chosen && round < stretched_rounds &&
+                         reports[p].anisotropy_mean > too_stretched &&
                          charts[p].mesh.tris.size() >= least_triangles;
         bool limbs = !missed && !whole[p] && round < limb_rounds && uneven > too_uneven;
         if (missed || limbs || stretched || reports[p].anisotropy_p99 > poor)

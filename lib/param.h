@@ -62,17 +62,17 @@ std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
 std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
                            double most_uneven = HUGE_VAL);
 
-/// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part that has no
-/// one-to-one map is cut in two by a short line between the places that should not be in one chart
-/// (lib/bisect.h), and its halves are mapped in its place. A part whose area scale varies by more than 1e8
-/// (p99 / p1) is cut along its limbs: the plane mesher copes with any scale, but a limb that shrinks that
-/// much does so by a factor over every few elements, and loses its shape. So is a part with sigma1/sigma2
-/// above 4 in the mean over its area, or else in two: the coarse tubes and rings of CAD, with nothing between
-/// their ends to follow a ring in the plane, have such maps, and lie flat once they are open. Before all
-/// that, such parts are cut at the model edges inside them, where a cut costs the mesh nothing. Ears of
-/// parts that go to a circle, triangles with two edges on the longest loop, are split through their third
-/// edge, since a circle flattens them. Both append vertices and split triangles, and rewrite face column
-/// `part`; with `strict` there is neither. reports has one entry a part.
+/// Maps every part of the surface (face column `part`, 0..n_parts-1), charts in parallel. A part is cut, and
+/// its pieces are mapped in its place, if it has no one-to-one map; if its area scale varies by more than 1e8
+/// (p99 / p1), since a limb that shrinks that much does so by a factor over every few elements, and loses its
+/// shape; or if sigma1/sigma2 is above 4 in the mean over its area: the coarse tubes and rings of CAD, with
+/// nothing between their ends to follow a ring in the plane, have such maps, and lie flat once they are open
+/// (but a circle map that was asked for and is one-to-one may be so). The cut is along the model edges inside
+/// the part, where these bound simple pieces: it costs the mesh nothing there, and is made above 20 (p99)
+/// too; else along its limbs; else by a short line between the places that should not be in one chart
+/// (lib/bisect.h). Ears of parts that go to a circle, triangles with two edges on the longest loop, are split
+/// through their third edge, since a circle flattens them. Both append vertices and split triangles, and
+/// rewrite face column `part`; with `strict` there is neither. reports has one entry a part.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports);
 

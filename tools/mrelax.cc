@@ -79,6 +79,7 @@ int main(int argc, char** argv) {
       corners = model_corners(reference);
       write_reference(stream, reference);
     }
+    stream.surface = {};  // it is written anew: memory
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
     const bool second_order = stream.find("mid_vertex") != nullptr;
     const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """the maps of mparam: distortion by map, share of a whole run, growth with the size of a chart
 
-usage: scripts/bench maps [--bin DIR] [--json FILE] [--times N] [--largest N] [--figures DIR] [FILE[:TRIANGLES] ...]
+usage: scripts/bench maps [--bin DIR] [--json FILE] [--only TABLE] [--times N] [--largest N] [--figures DIR]
+                          [FILE[:TRIANGLES] ...]
 
 Surfaces are the FILEs, or made by mshape. Three tables: the charts of every surface by every map (worst chart of each);
 seconds of CPU in mparam and its share of the whole chain, on one thread (best of N, default 3); and the time of one chart
-from 10 000 triangles to --largest (default 1 000 000), with the exponent of its growth. --figures DIR writes two
-pictures: harmonic beside conformal charts of an arterial tree with nine ends, and the same of a short tube.
+from 10 000 triangles to --largest (default 1 000 000), with the exponent of its growth. --only TABLE makes only one of
+distortion, share, growth and figures. --figures DIR (default here) writes two pictures, with a table of their distortion:
+harmonic beside conformal charts of an arterial tree with nine ends and eta 28, and the same of a short tube.
 """
 import json
 import math
@@ -32,21 +34,27 @@ def main(words):
     p.add_argument("--times", type=int, default=3)
     p.add_argument("--largest", type=int, default=1000000)
     p.add_argument("--figures")
+    p.add_argument("--only", choices=["distortion", "share", "growth", "figures"])
     args = common.parse(p, words)
-    found = {"distortion": [], "share": [], "growth": []}
+    found = {}
     with tempfile.TemporaryDirectory() as work:
-        surfaces = common.surfaces(args, work)
+        surfaces = []
+        if args.only in (None, "distortion", "share"):
+            surfaces = common.surfaces(args, work)
         for name, path, _ in surfaces:
             subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q {path} | mtopo -q | mfeature -q | mpartition -q | "
                             f"mmultiscale -q -o {work}/{name}.parts.ply"], check=True)
-        found["distortion"] = distortion(surfaces, work)
-        found["share"] = [share(name, path, count, work, args.times) for name, path, count in surfaces]
-        row = common.table(["surface", "charts", "mparam s", "whole s", "share %"])
-        for r in found["share"]:
-            row(r["surface"], r["charts"], f"{r['mparam']:.3f}", f"{r['whole']:.3f}", f"{100 * r['mparam'] / r['whole']:.1f}")
-        found["growth"] = growth(work, args.largest, args.times)
-        if args.figures:
-            figures(work, args.figures)
+        if args.only in (None, "distortion"):
+            found["distortion"] = distortion(surfaces, work)
+        if args.only in (None, "share"):
+            found["share"] = [share(name, path, count, work, args.times) for name, path, count in surfaces]
+            row = common.table(["surface", "charts", "mparam s", "whole s", "share %"])
+            for r in found["share"]:
+                row(r["surface"], r["charts"], f"{r['mparam']:.3f}", f"{r['whole']:.3f}", f"{100 * r['mparam'] / r['whole']:.1f}")
+        if args.only in (None, "growth"):
+            found["growth"] = growth(work, args.largest, args.times)
+        if args.figures or args.only == "figures":
+            found["figures"] = figures(work, args.figures or ".")
     common.save(args, found)
     return 0
 
@@ -118,7 +126,7 @@ def growth(work, largest, times):
     while n <= largest:
         parts = f"{work}/growth.ply"
         subprocess.run(["bash", "-c", f"set -o pipefail; mshape tube --aspect 2 --triangles {n} --noise 0.2 -q | mclean -q | "
-                        f"mtopo -q | mpartition -q -o {parts}"], check=True)
+                        f"mtopo -q | mpartition -q --max-faces 100000000 -o {parts}"], check=True)
         best = None
         for _ in range(times):
             run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
@@ -142,16 +150,25 @@ def growth(work, largest, times):
 
 
 def figures(work, folder):
-    """The paper's Figs. 8 and 1: harmonic (left) beside conformal (right)."""
+    """The paper's Figs. 8 and 1: harmonic (left) beside conformal (right), with their distortion."""
     os.makedirs(folder, exist_ok=True)
-    for name, shape in [("tree", "tree --outlets 9 --ratio 0.93 --triangles 12000"), ("tube", "tube --aspect 2 --triangles 4000")]:
+    rows = []
+    row = common.table(["figure", "eta", "N_B", "map", "charts", "median", "p99", "area scale"])
+    for name, shape in [("tree", "tree --outlets 9 --aspect 28 --triangles 12000"), ("tube", "tube --aspect 2 --triangles 4000")]:
         parts = f"{work}/figure.ply"
-        subprocess.run(["bash", "-c", f"set -o pipefail; mshape {shape} -q | mclean -q | mtopo | mpartition -q | mmultiscale -q "
-                        f"-o {parts}"], check=True)
+        subprocess.run(["bash", "-c", f"set -o pipefail; mshape {shape} -q | mclean -q | mtopo -q --json {work}/topology.json | "
+                        f"mpartition -q | mmultiscale -q -o {parts}"], check=True)
+        with open(f"{work}/topology.json") as f:
+            whole = json.load(f)["components"][0]
         pictures = []
         for kind in ("harmonic", "conformal"):
-            run = common.run(["mparam", "--map", kind, parts, "-o", f"{work}/charts.ply", "--svg", f"{work}/{kind}.svg"])
-            print(run.text.strip())
+            report = report_of(parts, ["--map", kind, "--svg", f"{work}/{kind}.svg"], work)
+            charts = report["charts"]
+            r = {"figure": name, "eta": whole["eta_cyl"], "loops": whole["loops"], "map": kind, "charts": len(charts)}
+            r.update({k: max(c[k] for c in charts) for k in ("anisotropy_median", "anisotropy_p99", "area_scale")})
+            rows.append(r)
+            row(name, f"{r['eta']:.1f}", r["loops"], kind, r["charts"], f"{r['anisotropy_median']:.3f}",
+                f"{r['anisotropy_p99']:.3f}", f"{r['area_scale']:.3g}")
             with open(f"{work}/{kind}.svg") as f:
                 pictures.append(f.read())
         height = max(float(p.split('height="', 1)[1].split('"', 1)[0]) for p in pictures)
@@ -161,3 +178,4 @@ def figures(work, folder):
             for i, picture in enumerate(pictures):
                 f.write(picture.replace("<svg ", f'<svg x="{i * width:g}" ', 1))
             f.write("</svg>\n")
+    return rows
