@@ -77,19 +77,33 @@ bool Relaxer::reach_tips(std::vector<Place>& tips) {
 }
 
 /// Puts a vertex of the triangle nearest to `tip` there, or a new one on one of its edges, whichever leaves
-/// the better mesh when all round it has settled. `t`: a triangle near by. False if the tip is not farther
-/// than `far_enough`, cannot be walked to, or would spoil the mesh.
+/// the better mesh when all round it has settled. `t`: a triangle near by. One of the farthest tips that
+/// would spoil the mesh is gone half way to. False if the tip is not farther than `far_enough`, cannot be
+/// walked to, or would spoil the mesh.
 bool Relaxer::reach(const Place& tip, int t, double far_enough) {
-  constexpr double spoils = 2e-3;  // about one triangle with nine tenths of the quality wanted
   const Vec3 p = ground_->walk.point(tip);
+  Vec3 q;
   double least = 1e300;
   for (int s : triangles_round(t, 2)) {
     const Tri& v = m_.tris[s];
     const auto b = closest_on_triangle(p, at(v[0]), at(v[1]), at(v[2]));
-    const double d = norm(b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]) - p);
-    if (d < least) least = d, t = s;
+    const Vec3 x = b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]);
+    if (const double d = norm(x - p); d < least) least = d, t = s, q = x;
   }
   if (least <= far_enough) return false;
+  if (go_to(tip, t, least)) return true;
+  if (least < 1.2 * far_enough) return false;
+  const Vec3 half = lerp(q, p, 0.5);
+  const Place along = ground_->walk.slide(tip, half);  // stays if the tip is on no border
+  const bool moved = norm(ground_->walk.point(along) - p) > 0.1 * least;
+  return go_to(moved ? along : ground_->walk.closest(tip, half), t, least);
+}
+
+/// Does so for a place near triangle t; `least`: the distance from the mesh that it may not grow to near by.
+bool Relaxer::go_to(const Place& tip, int t, double least) {
+  // about one triangle with nine tenths of the quality wanted; more for a tip that is far out
+  const double spoils = least > 0.5 * size_at(m_.tris[t][0]) ? 2e-2 : 2e-3;
+  const Vec3 p = ground_->walk.point(tip);
   // a vertex of the border gets only to tips of the border, and along it
   auto goes_there = [&](int v) {
     if (held_[v] != loose && (held_[v] != slides || !m_.on_border(v))) return false;
