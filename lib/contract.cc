@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -95,7 +96,7 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
     facts.push_back(what + ", not above " + text(r.limit));
   };
   auto within = [&](double value, const std::string& where = "") {
-    if (!(value > r.limit)) return;  // a figure that there is not is no failure
+    if (value <= r.limit) return;
     facts.push_back(text(value) + where + ", above " + text(r.limit));
   };
   if (r.name == "kappa") return above(q.kappa_min, q.worst);
@@ -108,9 +109,15 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
   if (r.name == "mean") return within(d.mean);
   if (r.name == "rms") return within(d.rms);
   if (r.name == "boundary") return within(f.boundary);
-  if (r.name == "features") return within(f.features);
+  if (r.name == "features") {
+    if (f.features) within(*f.features);
+    return;
+  }
   if (r.name == "size") return within(q.edge_deviation);
-  if (r.name == "trace") return within(f.kappa_elsewhere - f.kappa_by_cuts);
+  if (r.name == "trace") {
+    if (f.kappa_by_cuts && f.kappa_elsewhere) within(*f.kappa_elsewhere - *f.kappa_by_cuts);
+    return;
+  }
   if (f.farthest >= 0)
     within(f.off[f.farthest], " of its edges is how far vertex " + std::to_string(f.farthest) +
                                   " lies off the reference, " + place(mesh.points[f.farthest]));
@@ -130,7 +137,7 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
     for (std::size_t t = 0; t < faults.size(); ++t) {
       const Tri& v = mesh.tris[t];
       if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit)) faults[t] |= fault_kappa;
-      if (r.name == "vertices" && std::max({f.off[v[0]], f.off[v[1]], f.off[v[2]]}) > r.limit)
+      if (r.name == "vertices" && !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
         faults[t] |= fault_vertex;
     }
   }
@@ -160,7 +167,7 @@ Contract parse_contract(const std::string& list) {
     const std::string number = item.substr(std::min(name.size() + 1, item.size()));
     double value = 0;
     const auto r = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (r.ec != std::errc() || r.ptr != number.data() + number.size() || !(value >= 0))
+    if (r.ec != std::errc() || r.ptr != number.data() + number.size() || !(value >= 0 && std::isfinite(value)))
       throw BadUsage("requirement '" + item + "' needs a number, as in " + name + "=0.1");
     contract.push_back({name, value});
   }
@@ -223,8 +230,8 @@ std::vector<Figure> figures(const Findings& f) {
       {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},
       {"kappa_mean", "kappa mean", 4, p.kappa_mean, q.kappa_mean},
       {"kappa_off_wedges", "kappa min off wedges", 4, nan, f.kappa_off_wedges},
-      {"kappa_by_cuts", "kappa mean by the cuts", 4, nan, f.kappa_by_cuts},
-      {"kappa_elsewhere", "kappa mean elsewhere", 4, nan, f.kappa_elsewhere},
+      {"kappa_by_cuts", "kappa mean by the cuts", 4, nan, f.kappa_by_cuts.value_or(nan)},
+      {"kappa_elsewhere", "kappa mean elsewhere", 4, nan, f.kappa_elsewhere.value_or(nan)},
       {"min_angle", "angle min", 2, p.min_angle, q.min_angle},
       {"mean_min_angle", "angle min, mean", 2, p.mean_min_angle, q.mean_min_angle},
       {"max_angle", "angle max", 2, p.max_angle, q.max_angle},
@@ -240,7 +247,7 @@ std::vector<Figure> figures(const Findings& f) {
       {"mean_distance", "distance mean", digits, nan, d.mean},
       {"rms_distance", "distance rms", digits, nan, d.rms},
       {"boundary_distance", "distance of borders", digits, nan, f.boundary},
-      {"feature_distance", "distance of features", digits, nan, f.features},
+      {"feature_distance", "distance of features", digits, nan, f.features.value_or(nan)},
       {"vertex_distance", "vertices off, in edges", digits, nan, f.farthest < 0 ? 0 : f.off[f.farthest]},
   };
 }

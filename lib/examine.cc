@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <tuple>
 
 #include "lib/curved.h"
@@ -12,8 +11,6 @@
 
 namespace meshpipe {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Both at the same time, where it is worth it.
 template <class F, class G>
@@ -109,10 +106,9 @@ std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, 
   return folds;
 }
 
-std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, const Quality& quality,
-                                         const std::vector<int>& opposite,
-                                         const std::vector<std::uint8_t>& model, const Lines& lines,
-                                         const Mesh& surface) {
+std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(
+    const Mesh& mesh, const Bvh& tree, const Quality& quality, const std::vector<int>& opposite,
+    const std::vector<std::uint8_t>& model, const Lines& lines, const Mesh& surface) {
   std::vector<char> close(mesh.tris.size(), 0);
   auto at = [&](int i) {
     const LinePoint& p = lines.points[i];
@@ -148,7 +144,8 @@ std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, cons
     sum[(int)close[t]] += quality.kappas[t];
     ++count[(int)close[t]];
   }
-  return {count[1] ? sum[1] / count[1] : nan, count[0] ? sum[0] / count[0] : nan};
+  auto mean = [&](int i) { return count[i] ? std::optional(sum[i] / count[i]) : std::nullopt; };
+  return {mean(1), mean(0)};
 }
 
 Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples) {
@@ -180,14 +177,15 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
   add_progress(0.4);
   over_edges(result, f.off);
-  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end()) - f.off.begin());
+  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
+                                      [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
+                     f.off.begin());
 
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   Mesh curves, reference_curves;
   add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
   add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
   f.boundary = curve_distance(reference_curves, curves) / unit;
-  f.features = nan;
   f.kappa_off_wedges = f.quality.kappa_min;
   f.worst_off_wedges = f.quality.worst;
   if (result.face.has("model")) {
@@ -200,7 +198,6 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
       f.features = curve_distance(reference_curves, curves) / unit;
     }
   }
-  f.kappa_by_cuts = f.kappa_elsewhere = nan;
   if (lines)
     std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(
         result, mesh_tree, f.quality, f.mesh.opposite,

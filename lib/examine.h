@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All that is known of a result and of the surface it was made from.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,7 +16,7 @@ struct Findings {
   Quality quality, reference_quality;
   Distance distance;
   double boundary = 0;  ///< Hausdorff distance of the borders over the diagonal; infinite if only one has any
-  double features = 0;  ///< the same of borders and model edges; NaN if the model edges of one are not known
+  std::optional<double> features;  ///< the same of borders and model edges, if both know their model edges
   std::vector<std::pair<int, int>> intersections;  ///< pairs of the mesh's triangles
   int reference_intersections = -1;                ///< counted only when the mesh has some
   std::vector<int> folds;                          ///< half-edges of the mesh, see find_folds
@@ -23,7 +24,7 @@ struct Findings {
   int farthest = -1;            ///< the vertex with the largest `off`
   double kappa_off_wedges = 0;  ///< see lib/check.h; kappa_min if no model edges are known
   int worst_off_wedges = -1;
-  double kappa_by_cuts = 0, kappa_elsewhere = 0;  ///< see kappa_by_lines; NaN without interfaces
+  std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
   std::vector<std::string> lost_patches;
 };
 
@@ -40,11 +41,10 @@ std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, 
 
 /// Mean kappa of the triangles whose centre is within an edge (their mean one) of an interface line, and of
 /// all others; triangles that touch the border or a model edge (bit i of `model`, which may be empty) are in
-/// neither, since those cost quality of their own. Where a result shows no trace of the cuts the two means
+/// neither, since those cost quality of their own; none where there are no such triangles. Where a result shows no trace of the cuts the two means
 /// are the same. The lines lie on `surface`.
-std::pair<double, double> kappa_by_lines(const Mesh& mesh, const Bvh& tree, const Quality& quality,
-                                         const std::vector<int>& opposite,
-                                         const std::vector<std::uint8_t>& model, const Lines& lines,
-                                         const Mesh& surface);
+std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(
+    const Mesh& mesh, const Bvh& tree, const Quality& quality, const std::vector<int>& opposite,
+    const std::vector<std::uint8_t>& model, const Lines& lines, const Mesh& surface);
 
 }  // namespace meshpipe

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
@@ -396,6 +397,15 @@ void Io::say(const std::string& line) const {
 
 void Io::detail(const std::string& line) const {
   if (verbose) say(line);
+}
+
+CLI::Validator positive_number() {
+  return {[](std::string& text) {
+            double x = 0;
+            const bool good = CLI::detail::lexical_cast(text, x) && std::isfinite(x) && x > 0;
+            return good ? std::string() : "'" + text + "' is not a positive number";
+          },
+          ""};
 }
 
 double most_triangles() {

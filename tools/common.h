@@ -66,6 +66,9 @@ struct Usage {
                             ///< into fresh pages, so that freed memory is kept for the next arrays
 };
 
+/// A check of an option's value: above 0, and finite.
+CLI::Validator positive_number();
+
 /// How many triangles the machine's memory holds while a pipeline of these programs works on them.
 double most_triangles();
 

@@ -32,7 +32,7 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   if (o.reference.empty()) {
     reference = read_reference(stream);
     before = patch_names(stream, reference);
-    if (stream.find("line")) lines = read_lines(stream);
+    if (stream.find("line_use")) lines = read_lines(stream);
   } else {
     Stream other = io.read(o.reference);
     before = patch_names(other, other.surface);
@@ -40,6 +40,8 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
     clean(reference);
     if (is_soup(result)) weld(result);
   }
+  expect_measurable(result);
+  expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   Findings f = examine(result, reference, o.reference.empty() ? &lines : nullptr, o.samples);
   const std::vector<std::string> after = patch_names(stream, result);
@@ -87,7 +89,12 @@ void check(Io& io, const Options& o) {
   Contract contract = parse_contract(o.require);
   if (o.max_error > 0) contract.push_back({"hausdorff", o.max_error});
   if (!o.refine.empty() && !(o.max_error > 0)) throw BadUsage("--refine needs --max-error");
+  if (!o.histogram.empty()) io.expect_report("--histogram", o.histogram);
+  if (!o.culprits.empty()) io.expect_report("--culprits", o.culprits, true);
+  if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
   Stream stream = io.read();
+  if (!o.refine.empty() && !stream.surface.vertex.has("size"))
+    throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
   const Findings f = compare(io, stream, o, reference);
   tell(io, f);
@@ -123,7 +130,7 @@ int main(int argc, char** argv) {
     app.add_option("--require", o.require, "what must be met, see mcheck(1) (default " + o.require + ")")
         ->type_name("LIST");
     app.add_option("--max-error", o.max_error, "requires hausdorff=E, too")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("E");
     app.add_flag("--accept", o.accept,
                  "pass the stream on even if the contract is missed; the status is still 6");

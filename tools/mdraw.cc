@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     app.add_option("--azimuth", view.azimuth,
                    "direction of the viewer round the z axis, degrees (default 30)");
     app.add_option("--elevation", view.elevation, "height of the viewer, degrees (default 20)");
-    app.add_option("--zoom", view.zoom, "enlarge about the centre (default 1)")->check(CLI::PositiveNumber);
+    app.add_option("--zoom", view.zoom, "enlarge about the centre (default 1)")->check(positive_number());
     app.add_option("--right", view.shift_x, "move the centre right by this share of the width");
     app.add_option("--up", view.shift_y, "move the centre up by this share of the width");
     app.add_option("--width", width, "pixels of one picture (default 800)")->check(CLI::Range(16, 8192));

@@ -64,10 +64,10 @@ int main(int argc, char** argv) {
                        "go on; none")
             ->type_name("auto|A[,B]|none");
         auto* size = app.add_option("--size", options.size, "target edge length")
-                         ->check(CLI::PositiveNumber)
+                         ->check(positive_number())
                          ->type_name("H");
         app.add_option("--triangles", triangles, "target number of triangles")
-            ->check(CLI::PositiveNumber)
+            ->check(positive_number())
             ->excludes(size)
             ->type_name("N");
         app.add_option("--merge", group_file, "make one patch of each group of patches in this file")

@@ -66,6 +66,8 @@ int main(int argc, char** argv) {
     if (o.reference.empty()) {
       mesh = read_lifted(stream);
       reference = read_reference(stream);
+      expect_measurable(stream.surface);
+      expect_measurable(reference);
       const Lines lines = read_lines(stream);
       for (const Line& l : lines.lines) {
         kinds.push_back(l.kind);
@@ -78,6 +80,8 @@ int main(int argc, char** argv) {
       mesh = place_on(stream.surface, reference);
       corners = model_corners(reference);
       write_reference(stream, reference);
+      if (stream.find("line_use"))  // lines on another surface
+        for (const char* table : {"line", "line_use", "line_vertex"}) stream.erase(table);
     }
     stream.surface = {};  // it is written anew: memory
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);

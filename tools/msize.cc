@@ -62,13 +62,7 @@ int main(int argc, char** argv) {
   auto add_options = [&](CLI::App& app) {
     auto length = [&](const char* name, double& value, const char* what, const char* type) {
       return app.add_option(name, value, what)
-          ->check(CLI::Validator(
-              [](std::string& text) {
-                double h = 0;
-                const bool good = CLI::detail::lexical_cast(text, h) && std::isfinite(h) && h > 0;
-                return good ? std::string() : "'" + text + "' is not a positive number";
-              },
-              ""))
+          ->check(positive_number())
           ->type_name(type);
     };
     auto* fixed = length("--size", o.size, "target edge length", "H");

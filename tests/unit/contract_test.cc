@@ -37,8 +37,20 @@ TEST(contract, lists_are_read_and_refused) {
   EXPECT_EQ(c[1].limit, 0.25);
   EXPECT_EQ(c[2].limit, 1e-3);
   for (const char* bad : {"", "topologie", "kappa", "kappa=", "kappa=x", "kappa=0.1x", "topology=1",
-                          "kappa=-1", "topology,", "angle=30 "})
+                          "kappa=-1", "hausdorff=inf", "mean=nan", "topology,", "angle=30 "})
     EXPECT_THROW(parse_contract(bad), BadUsage) << bad;
+}
+
+TEST(contract, what_is_not_a_number_fails_and_what_there_is_not_does_not) {
+  const Mesh m = sphere(500);
+  Findings f = examine(as_surface(m), as_surface(m), nullptr, 1000);
+  const Contract c = parse_contract("features=1,trace=1,mean=1,boundary=1,vertices=1,size=1");
+  EXPECT_TRUE(judge(c, f, m).empty());
+  const double nan = std::nan("");
+  f.features = f.kappa_by_cuts = f.kappa_elsewhere = f.distance.mean = f.boundary = f.quality.edge_deviation =
+      f.off[f.farthest] = nan;
+  EXPECT_EQ(judge(c, f, m).size(), c.size());
+  EXPECT_FALSE(culprits(c, f, m).tris.empty());
 }
 
 TEST(contract, nothing_is_found_where_nothing_is) {
@@ -174,10 +186,10 @@ TEST(contract, figures_by_the_cuts) {
   lines.lines.push_back({interface_line, 0, 0, 21, 0});
   for (int y = 0; y <= 20; ++y) lines.points.push_back({y * 41 + 20, y * 41 + 20, 0});
   const Findings f = examine(m, m, &lines, 1000);
-  EXPECT_LT(f.kappa_by_cuts, f.kappa_elsewhere - 0.003);
+  EXPECT_LT(*f.kappa_by_cuts, *f.kappa_elsewhere - 0.003);
   EXPECT_TRUE(fails(judge(parse_contract("trace=0.003"), f, m), "trace"));
   lines.lines[0].kind = model_line;
-  EXPECT_TRUE(std::isnan(examine(m, m, &lines, 1000).kappa_by_cuts));
+  EXPECT_FALSE(examine(m, m, &lines, 1000).kappa_by_cuts);
 }
 
 }  // namespace
