@@ -9,6 +9,8 @@
 namespace meshpipe {
 namespace {
 
+/// Names of columns are looked up one after the other.
+constexpr std::size_t max_columns = 5000;
 constexpr const char* channels[] = {"red", "green", "blue"};
 
 bool is_one_of(std::string_view name, std::initializer_list<const char*> names) {
@@ -38,10 +40,20 @@ bool is_taken(const Table& table, const std::string& name) {
   return table.has(name);
 }
 
+/// `start` and the first number from 2 on by which no column is called.
+std::string first_free(const Table& table, const std::string& start) {
+  std::vector<char> taken(table.columns.size() + 3, false);
+  for (const Column& c : table.columns)
+    if (long long k; c.name.starts_with(start) && c.name[start.size()] != '0' &&
+                     parse_integer(std::string_view(c.name).substr(start.size()), k) && k >= 2 &&
+                     k < static_cast<long long>(taken.size()))
+      taken[static_cast<std::size_t>(k)] = true;
+  return start + std::to_string(std::find(taken.begin() + 2, taken.end(), false) - taken.begin());
+}
+
 void add(Table& table, std::size_t rows, Column column) {
   give_known_type(column);
-  const std::string wanted = column.name;
-  for (int k = 2; is_taken(table, column.name); ++k) column.name = wanted + '_' + std::to_string(k);
+  if (is_taken(table, column.name)) column.name = first_free(table, column.name + '_');
   table.rows = rows;
   table.columns.push_back(std::move(column));
 }
@@ -95,6 +107,12 @@ void leave_out(Stream& stream, const Table& table, std::string_view name, const 
 }
 
 void add_columns(Stream& stream, Table& table, std::size_t rows, Array array) {
+  if (table.columns.size() + static_cast<std::size_t>(array.components) > max_columns) {
+    const std::string remark =
+        "left out: " + table.name + " data beyond " + std::to_string(max_columns) + " columns";
+    if (stream.remarks.empty() || stream.remarks.back() != remark) stream.remarks.push_back(remark);
+    return;
+  }
   if (const auto* reals = std::get_if<std::vector<double>>(&array.data)) {
     const auto bad = std::find_if(reals->begin(), reals->end(), [](double x) { return !std::isfinite(x); });
     if (bad != reals->end()) {

@@ -139,6 +139,7 @@ class InriaReader {
     }
     while (const int keyword = next_keyword()) {
       if (keyword == file_end) break;
+      if (keyword > 0) once(keyword);
       section(keyword);
     }
   }
@@ -166,6 +167,16 @@ class InriaReader {
     // a section of another kind has a count at least; what ends with its first letters is cut off
     if (const std::string name(w); peek().empty()) fail("the file ends after " + quoted(name));
     return -1;
+  }
+
+  /// No section comes twice: numbers of triangles would be of either.
+  void once(int keyword) {
+    for (const auto& [name, known] : keywords) {
+      if (known != keyword) continue;
+      const std::uint64_t bit = std::uint64_t{1} << keyword;
+      if (seen_ & bit) fail(std::string("a second section of ") + name);
+      seen_ |= bit;
+    }
   }
 
   void section(int keyword) {
@@ -323,6 +334,7 @@ class InriaReader {
   Stream stream_;
   Polygons polygons_;
   bool has_vertices_ = false;
+  std::uint64_t seen_ = 0;  ///< bits of keywords
   std::size_t first_triangle_ = 0;
   int n_triangles_ = 0;
   std::vector<int> required_triangles_, ridges_, required_edges_;

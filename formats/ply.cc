@@ -29,6 +29,9 @@ double as_double(const char* bytes) {
   return static_cast<double>(value);
 }
 
+/// Elements, and properties of each: their names are looked up one after the other.
+constexpr std::size_t max_declared = 1000;
+
 constexpr Type types[] = {
     {"char", "int8", 1, true, as_double<std::int8_t>},
     {"uchar", "uint8", 1, true, as_double<std::uint8_t>},
@@ -137,6 +140,8 @@ class PlyReader {
     e.name = text_.word();
     const int rows = text_.integer("a count of rows");
     if (rows < 0) fail("element " + quoted(e.name) + " has " + std::to_string(rows) + " rows");
+    if (elements_.size() == max_declared)
+      fail("more than " + std::to_string(max_declared) + " elements, which is the limit");
     e.rows = rows;
     for (const Element& other : elements_)
       if (other.name == e.name) fail("element " + quoted(e.name) + " is declared twice");
@@ -153,6 +158,9 @@ class PlyReader {
   void property() {
     if (elements_.empty()) fail("a property before the first element");
     Element& e = elements_.back();
+    if (e.properties.size() == max_declared)
+      fail("element " + quoted(e.name) + " has more than " + std::to_string(max_declared) +
+           " properties, which is the limit");
     Property p;
     const bool list = text_.peek() == "list";
     if (list) {

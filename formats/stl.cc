@@ -209,6 +209,50 @@ Stream read_stl(std::string_view bytes, const std::string& where) {
   return stream;
 }
 
+std::string beyond_single_precision(const Surface& s) {
+  constexpr double most = std::numeric_limits<float>::max();
+  double largest = 0;
+  for (const Vec3& p : s.points)
+    for (double x : {p.x, p.y, p.z}) largest = std::max(largest, std::abs(x));
+  if (largest > most) {
+    std::string value;
+    append(value, largest);
+    return "a coordinate of " + value + " is beyond it";
+  }
+  auto rounded = [](const Vec3& p) {
+    return Vec3{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  };
+  if (std::all_of(s.points.begin(), s.points.end(), [&](const Vec3& p) { return rounded(p) == p; }))
+    return "";
+  // that a triangle is thinner than the digits of its own coordinates is not the doing of the format
+  const double noise = 1e-14 * largest;
+  std::size_t spoiled = 0;
+  std::vector<char> used(s.points.size(), false);
+  for (const Tri& t : s.tris) {
+    const Vec3 p[] = {s.points[t[0]], s.points[t[1]], s.points[t[2]]};
+    const Vec3 q[] = {rounded(p[0]), rounded(p[1]), rounded(p[2])};
+    for (int v : t) used[v] = true;
+    const Vec3 u = area_vector(p[0], p[1], p[2]);
+    const double longest = std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])});
+    if (norm(u) > noise * longest && !(dot(u, area_vector(q[0], q[1], q[2])) > 0)) ++spoiled;
+  }
+  auto places = [&](auto&& place) {
+    std::vector<Vec3> all;
+    for (std::size_t v = 0; v < s.points.size(); ++v)
+      if (used[v]) all.push_back(place(s.points[v]));
+    std::vector<int> number(all.size());
+    PointNumbers numbers(all.size());
+    constexpr std::size_t block = 1024;
+    for (std::size_t i = 0; i < all.size(); i += block)
+      numbers.add(all.data() + i, static_cast<int>(std::min(block, all.size() - i)), number.data() + i);
+    return numbers.points.size();
+  };
+  const std::size_t before = places([](const Vec3&p) { return p; }), after = places(rounded);
+  if (spoiled + (before - after) == 0) return "";
+  return std::to_string(before - after) + " vertices fall on others and " + std::to_string(spoiled) +
+         " triangles become degenerate or turn over";
+}
+
 std::string write_stl(const Stream& stream, bool ascii) {
   const Surface& s = stream.surface;
   if (!ascii) return write_binary(s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <climits>
 #include <cmath>
@@ -127,7 +128,11 @@ bool Text::at_nan() const {
   const char *at = left_.data(), *const end = at + left_.size();
   while (at < end && is_blank(*at)) ++at;
   if (at < end && (*at == '-' || *at == '+')) ++at;
-  return at < end && (*at == 'n' || *at == 'N');
+  if (end - at < 3 || !same_word({at, 3}, "nan")) return false;
+  at += 3;
+  const char* const word_end = std::find_if(at, end, is_blank);
+  // C writes what kind of NaN it is in parentheses
+  return at == word_end || (*at == '(' && word_end[-1] == ')');
 }
 
 bool Text::leading_integer(int& value, bool slash) {
@@ -207,8 +212,8 @@ std::string percent_decode(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned value = 0;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(&text[i + 1], &text[i + 3], value, 16).ptr == &text[i + 3]) {
+    const char* const at = text.data() + i;
+    if (*at == '%' && i + 2 < text.size() && std::from_chars(at + 1, at + 3, value, 16).ptr == at + 3) {
       out += static_cast<char>(value);
       i += 2;
     } else {

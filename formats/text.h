@@ -37,7 +37,7 @@ class Text {
   /// The next word of the line if it is an int, alone or (with `slash`) before a "/", with what follows that;
   /// false for any other, which is left.
   bool leading_integer(int& value, bool slash = true);
-  /// Is the next word NaN, of either sign?
+  /// Is the next word NaN, of either sign, as C writes it: "nan", "-NaN", "nan(ind)"?
   bool at_nan() const;
   /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
   void skip(std::size_t n);

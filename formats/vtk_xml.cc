@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <pugixml.hpp>
 
 #include "formats/base64.h"
@@ -62,8 +63,10 @@ class XmlReader {
       fail(root, "compressor " + quoted(compressor) + ", but only vtkZLibDataCompressor is known");
     const pugi::xml_node grid = root.child(type.c_str());
     if (!grid) fail(root, "no element " + type);
+    // names are pairs of numbers; what is longer need not be decompressed
     for (pugi::xml_node array : grid.child("FieldData").children("DataArray"))
-      data_.field_data.push_back(load(array));
+      if (!attribute_is(array, "type", "String") && is_short(array))
+        if (Array a = load(array); a.size() <= 2) data_.field_data.push_back(std::move(a));
     for (pugi::xml_node p : grid.children("Piece")) piece(p, type == "PolyData");
     return vtk_surface(std::move(data_));
   }
@@ -113,7 +116,8 @@ class XmlReader {
 
   // -- the values of an array
 
-  Array load(pugi::xml_node node) const {
+  /// An array of at most this many rows, for what is more is refused before it is decompressed.
+  Array load(pugi::xml_node node, std::size_t rows = std::numeric_limits<int>::max()) {
     Array array;
     array.name = name_of(node);
     const std::size_t components = number(node, "NumberOfComponents", 1);
@@ -124,8 +128,10 @@ class XmlReader {
     if (format == "ascii" || format.empty())
       array.data = of_type(node, [&]<class T>(T*) { return from_text<T>(node); });
     else if (format == "binary" || format == "appended")
-      array.data =
-          of_type(node, [&]<class T>(T*) { return from_bytes<T>(node, bytes(node, format == "appended")); });
+      array.data = of_type(node, [&]<class T>(T*) {
+        const std::size_t most = rows * static_cast<std::size_t>(array.components) * sizeof(T);
+        return from_bytes<T>(node, bytes(node, format == "appended", most));
+      });
     else
       fail(node, shown(node) + " has format " + quoted(format));
     if (array.size() % array.components)
@@ -134,9 +140,21 @@ class XmlReader {
     return array;
   }
 
+  /// Whether an array may be two numbers: text, or as few bytes by its head.
+  bool is_short(pugi::xml_node node) const {
+    const std::string_view format = node.attribute("format").value();
+    if (format != "binary" && format != "appended") return true;
+    Feed feed = feed_of(node, format == "appended");
+    const std::size_t first = size(node, feed);
+    if (!compressed_) return first <= 16;
+    if (first > 1) return false;
+    const std::size_t whole = size(node, feed), part = size(node, feed);
+    return (part ? part : whole) <= 16;
+  }
+
   /// Calls make((T*)nullptr) with the type of the array.
   template <class Make>
-  Data of_type(pugi::xml_node node, const Make& make) const {
+  Data of_type(pugi::xml_node node, const Make& make) {
     const std::string_view type = node.attribute("type").value();
     if (type == "Float64") return make(static_cast<double*>(nullptr));
     if (type == "Float32") return make(static_cast<float*>(nullptr));
@@ -199,8 +217,8 @@ class XmlReader {
     return meshpipe::load<T>(at, swap_);
   }
 
-  /// The bytes of a binary array, without its header and compression.
-  std::string bytes(pugi::xml_node node, bool appended) const {
+  /// What follows the head of a binary array is still to be taken from it.
+  Feed feed_of(pugi::xml_node node, bool appended) const {
     std::string_view text = node.child_value();
     if (appended) {
       const std::size_t offset = number(node, "offset", 0);
@@ -210,10 +228,22 @@ class XmlReader {
                        " of the appended data, which has " + std::to_string(appended_.size()));
       text = appended_.substr(offset);
     }
-    Feed feed(text, !appended || appended_base64_);
+    return Feed(text, !appended || appended_base64_);
+  }
+
+  /// The bytes of a binary array, at most this many, without its header and compression.
+  std::string bytes(pugi::xml_node node, bool appended, std::size_t most) {
+    Feed feed = feed_of(node, appended);
     std::string out;
+    auto bound = [&](std::size_t n) {
+      if (n > most)
+        fail(node, shown(node) + " has " + std::to_string(n) + " bytes, at most " + std::to_string(most) +
+                       " are due");
+    };
     if (!compressed_) {
-      take(node, feed, size(node, feed), out);
+      const std::size_t n = size(node, feed);
+      bound(n);
+      take(node, feed, n, out);
       return out;
     }
     // the number of blocks, their size, that of the last if it is a part of one, and compressed ones of all
@@ -223,6 +253,13 @@ class XmlReader {
                      std::to_string(feed.most()) + " bytes");
     std::vector<std::size_t> sizes(n);
     for (std::size_t& s : sizes) s = size(node, feed);
+    // no block is part of two arrays, so that a small file cannot become many large ones
+    for (std::size_t s : sizes)
+      if (s > bytes_.size() - packed_)
+        fail(node, shown(node) + " and those before it have more compressed bytes than the file, " +
+                       std::to_string(bytes_.size()));
+      else
+        packed_ += s;
     std::string block;
     for (std::size_t i = 0; i < n; ++i) {
       block.clear();
@@ -232,6 +269,7 @@ class XmlReader {
       if (due > 1032 * sizes[i] + 1032)
         fail(node, shown(node) + " has a block of " + std::to_string(due) + " bytes compressed to " +
                        std::to_string(sizes[i]));
+      bound(start + due);
       out.resize(start + due);
       uLongf length = due;
       const int status = uncompress(reinterpret_cast<Bytef*>(out.data() + start), &length,
@@ -263,7 +301,7 @@ class XmlReader {
     return array;
   }
 
-  std::vector<int> integers(pugi::xml_node node) const {
+  std::vector<int> integers(pugi::xml_node node) {
     std::vector<int> out;
     Array array = load(node);
     if (auto* ints = std::get_if<std::vector<int>>(&array.data)) return std::move(*ints);
@@ -276,7 +314,7 @@ class XmlReader {
     const std::size_t n = number(node, "NumberOfPoints", 0);
     if (n > 0) {
       const pugi::xml_node array = child(node, "Points", nullptr);
-      const Array points = load(array);
+      const Array points = load(array, n);
       if (points.components != 3 || points.rows() != n)
         fail(array, "points of " + std::to_string(points.components) + " components, " +
                         std::to_string(points.rows()) + " of them, where 3 and " + std::to_string(n) +
@@ -343,7 +381,7 @@ class XmlReader {
   void arrays(pugi::xml_node piece, const char* section, std::vector<Array>& all, std::size_t rows) {
     for (pugi::xml_node node : piece.child(section).children("DataArray")) {
       if (attribute_is(node, "type", "String")) continue;
-      Array array = load(node);
+      Array array = load(node, rows);
       if (array.rows() != rows)
         fail(node, shown(node) + " has " + std::to_string(array.rows()) + " rows, " + std::to_string(rows) +
                        " are due");
@@ -370,6 +408,7 @@ class XmlReader {
   pugi::xml_document document_;
   bool swap_ = false, wide_header_ = false, compressed_ = false, appended_base64_ = false,
        has_appended_ = false, first_piece_ = true;
+  std::size_t packed_ = 0;  ///< compressed bytes of the arrays so far
   VtkData data_;
 };
 

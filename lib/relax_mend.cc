@@ -77,22 +77,39 @@ bool Relaxer::reach_tips(std::vector<Place>& tips) {
 }
 
 /// Puts a vertex of the triangle nearest to `tip` there, or a new one on one of its edges, whichever leaves
-/// the better mesh when all round it has settled. `t`: a triangle near by. False if the tip is not farther
-/// than `far_enough`, cannot be walked to, or would spoil the mesh.
+/// the better mesh when all round it has settled. `t`: a triangle near by. One of the farthest tips that
+/// would spoil the mesh is gone half way to. False if the tip is not farther than `far_enough`, cannot be
+/// walked to, or would spoil the mesh.
 bool Relaxer::reach(const Place& tip, int t, double far_enough) {
-  constexpr double spoils = 2e-3;  // about one triangle with nine tenths of the quality wanted
   const Vec3 p = ground_->walk.point(tip);
+  Vec3 q;
   double least = 1e300;
   for (int s : triangles_round(t, 2)) {
     const Tri& v = m_.tris[s];
     const auto b = closest_on_triangle(p, at(v[0]), at(v[1]), at(v[2]));
-    const double d = norm(b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]) - p);
-    if (d < least) least = d, t = s;
+    const Vec3 x = b[0] * at(v[0]) + b[1] * at(v[1]) + b[2] * at(v[2]);
+    if (const double d = norm(x - p); d < least) least = d, t = s, q = x;
   }
   if (least <= far_enough) return false;
-  auto walks_there = [&](int v) {
-    return held_[v] == loose &&
-           norm(ground_->walk.point(ground_->walk.closest(lifted_.place[v], p)) - p) < 1e-6 * size_at(v);
+  if (go_to(tip, t, least)) return true;
+  if (least < 1.2 * far_enough) return false;
+  const Vec3 half = lerp(q, p, 0.5);
+  const Place along = ground_->walk.slide(tip, half);  // stays if the tip is on no border
+  const bool moved = norm(ground_->walk.point(along) - p) > 0.1 * least;
+  return go_to(moved ? along : ground_->walk.closest(tip, half), t, least);
+}
+
+/// Does so for a place near triangle t; `least`: the distance from the mesh that it may not grow to near by.
+bool Relaxer::go_to(const Place& tip, int t, double least) {
+  // about one triangle with nine tenths of the quality wanted; more for a tip that is far out
+  const double spoils = least > 0.5 * size_at(m_.tris[t][0]) ? 2e-2 : 2e-3;
+  const Vec3 p = ground_->walk.point(tip);
+  // a vertex of the border gets only to tips of the border, and along it
+  auto goes_there = [&](int v) {
+    if (held_[v] != loose && (held_[v] != slides || !m_.on_border(v))) return false;
+    const Place& from = lifted_.place[v];
+    const Place to = held_[v] == loose ? ground_->walk.closest(from, p) : ground_->walk.slide(from, p);
+    return norm(ground_->walk.point(to) - p) < 1e-6 * size_at(v);
   };
   const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
   const Relaxer before = patch(triangles, vertices);
@@ -101,18 +118,21 @@ bool Relaxer::reach(const Place& tip, int t, double far_enough) {
   double best = before.badness() + spoils;
   Relaxer chosen = before;
   bool found = false;
+  // by a vertex of the triangle nearest to it, then by a new one on an edge of that
   for (int i = 0; i < 6; ++i) {
-    const int h = i % 3;
-    if (!walks_there(m_.tris[t][h])) continue;
+    const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
+    const bool edge_of_border = before.m_.hard[h] && before.m_.opp[h] < 0;
+    if (!goes_there(from) && !(i >= 3 && edge_of_border && goes_there(to))) continue;
+    const bool on_border = i < 3 ? held_[from] == slides : edge_of_border;
+    if (i >= 3 && !edge_of_border && (before.m_.hard[h] || held_[from] == slides)) continue;
     Relaxer after = before;
     int v = after.m_.from(h);
     if (i >= 3) {
-      if (before.m_.hard[h]) continue;
       v = (int)after.m_.out.size();
       after.insert(h, tip, p, facing);
     }
     after.put(v, tip, p, facing);
-    after.held_[v] = anchored;
+    after.held_[v] = on_border ? fixed : anchored;
     after.listed_ = false;
     after.settle(2);
     if (const double bad = after.badness();
@@ -276,12 +296,13 @@ void Relaxer::adopt(const Relaxer& mended, std::vector<int> triangles, std::vect
       ++report_.collapses;
     }
   }
-  for (int i = 0; i < (int)vertices.size(); ++i)
-    if (mended.m_.out[i] >= 0 && (mended.held_[i] < fixed || mended.held_[i] == anchored)) {
-      held_[vertices[i]] = mended.held_[i];
-      put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
-      touch(vertices[i]);
-    }
+  for (int i = 0; i < (int)vertices.size(); ++i) {
+    const char held = mended.held_[i];
+    if (mended.m_.out[i] < 0 || held == frozen || (held == fixed && held_[vertices[i]] == fixed)) continue;
+    held_[vertices[i]] = held;
+    put(vertices[i], mended.lifted_.place[i], mended.at(i), mended.facing_[i]);
+    touch(vertices[i]);
+  }
   listed_ = false;
 }
 

@@ -138,6 +138,7 @@ class Relaxer {
   // relax_mend.cc
   bool reach_tips(std::vector<Place>& tips);
   bool reach(const Place& tip, int t, double far_enough);
+  bool go_to(const Place& tip, int t, double least);
   double quality(int t) const;
   int irregularity(int v) const;
   double badness() const;

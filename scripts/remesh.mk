@@ -5,15 +5,16 @@
 #   make -j -f scripts/remesh.mk aorta.mesh.vtu SIZE=0.8
 #   make -j -f scripts/remesh.mk aorta.mesh.vtu lung.mesh.stl TRIANGLES=50000 FLAGS=-v
 #
-# NAME.mesh.EXT is made from NAME.stl, .obj, .off, .ply, .msh, .vtu, .vtp, .vtk or .mesh, whichever is there first.
+# EXT is vtu, vtp, vtk, stl, obj, off, ply, msh, msh2, msh4, mesh, meshb, gts, inp, bdf, nas or poly; NAME has no blanks.
+# NAME.mesh.EXT is made from NAME.stl, .obj, .off, .ply, .msh, .vtu, .vtp, .vtk, .mesh or .meshb, whichever is there first.
 #   SIZE, TRIANGLES      what mremesh takes as --size and --triangles (default: as many triangles as the input has)
 #   CLEAN_ARGS, FEATURE_ARGS, PARTITION_ARGS, ... CHECK_ARGS
 #                        further options of a stage's program: FEATURE_ARGS='--feature-angle none'
 #   FLAGS                options of all programs (default -q)
 
 FLAGS ?= -q
-inputs := stl obj off ply msh vtu vtp vtk mesh
-outputs := vtu vtp vtk stl obj off ply msh mesh inp bdf
+inputs := stl obj off ply msh vtu vtp vtk mesh meshb
+outputs := vtu vtp vtk stl obj off ply msh msh2 msh4 mesh meshb gts inp bdf nas poly
 stages := 01-clean 02-topo 03-feature 04-partition 05-multiscale 06-param 07-size 08-lines 09-mesh2d 10-lift 11-relax
 
 goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))
@@ -33,6 +34,12 @@ endif
 .DELETE_ON_ERROR:
 .PHONY: FORCE
 FORCE:
+
+# make takes a name with a blank for two
+parts := $(filter-out $(foreach e,$(outputs),%.mesh.$(e)) %.ply %.options,$(MAKECMDGOALS))
+ifneq ($(parts),)
+  $(error '$(firstword $(parts))' is no NAME.mesh.EXT, where EXT is one of: $(outputs); and NAME has no blanks)
+endif
 
 upper = $(shell printf %s '$(1)' | tr a-z A-Z)
 # the options of a stage are a file too, which is written when they change

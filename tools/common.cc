@@ -27,6 +27,7 @@
 #include <thread>
 
 #include "formats/losses.h"
+#include "formats/stl.h"
 #include "lib/progress.h"
 
 namespace meshpipe {
@@ -175,16 +176,21 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
     sink(write_as(stream, path, text));
 }
 
+/// A device or a pipe is written to, not replaced; so is what names of the system's lead to (/dev/stdout is a
+/// link, to a regular file if that is where standard output goes).
+bool in_place(const std::string& path, const struct stat& info) {
+  return !S_ISREG(info.st_mode) || path.starts_with("/dev/") || path.starts_with("/proc/");
+}
+
 /// Writes what `produce` hands to its sink to a file, beside it and renamed; "-" is standard output.
 void write_beside(const std::string& path, const std::function<void(const Sink&)>& produce) {
-  if (path == "-") {
+  if (path == "-" || path == "/dev/stdout") {
     produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
     return;
   }
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
-  // a device or a pipe is written to, not replaced
-  std::string temporary = exists && !S_ISREG(info.st_mode) ? "" : path + ".XXXXXX";
+  std::string temporary = exists && in_place(path, info) ? "" : path + ".XXXXXX";
   int fd = temporary.empty() ? ::open(path.c_str(), O_WRONLY) : make_temporary(temporary);
   if (fd < 0) throw CannotWrite(path + ": " + reason());
   try {
@@ -217,7 +223,7 @@ void expect_writable(const std::string& path, bool mesh) {
   if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
   const std::size_t slash = path.rfind('/');
   const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
-  const std::string& target = exists && !S_ISREG(info.st_mode) ? path : directory;
+  const std::string& target = exists && in_place(path, info) ? path : directory;
   if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + reason());
 }
 
@@ -331,11 +337,20 @@ Stream Io::read(const std::string& path) const {
   return stream;
 }
 
+bool Io::needs_text(const std::string& path, const Stream& stream) const {
+  if (extension_of(path) != ".stl") return false;
+  const std::string why = beyond_single_precision(stream.surface);
+  if (why.empty()) return false;
+  if (binary) throw CannotWrite(path + ": single precision of binary .stl does not hold the surface: " + why);
+  say(path + " is written as text, single precision of binary .stl does not hold the surface: " + why);
+  return true;
+}
+
 bool Io::text_for(const Stream& stream) const {
   const std::string extension = extension_of(output);
   // only the text of STL has room for patches and their names
   const bool named = extension == ".stl" && !binary && !stream.names.empty();
-  const bool text = ascii || named || (stream.ascii && !binary);
+  const bool text = ascii || named || (stream.ascii && !binary) || needs_text(output, stream);
   if (is_stream_name(output) && program != "mconvert") return text;
   if (const std::string lost = lost_in(stream, output, text); !lost.empty())
     say("left out, " + std::string(extension == ".stl" && !text ? "binary " : "") + extension +
@@ -360,7 +375,8 @@ void Io::write(Stream& stream) {
 }
 
 void Io::write_to(const std::string& path, const Stream& stream) const {
-  write_beside(path, [&](const Sink& sink) { encode(path, stream, ascii, sink); });
+  const bool text = ascii || needs_text(path, stream);
+  write_beside(path, [&](const Sink& sink) { encode(path, stream, text, sink); });
 }
 
 void Io::write_bytes(std::string_view bytes) const {
@@ -515,7 +531,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       write_report();
     } catch (const CannotWrite&) {
       struct stat info {};
-      if (::stat(io.finished_.c_str(), &info) == 0 && S_ISREG(info.st_mode)) ::unlink(io.finished_.c_str());
+      if (::stat(io.finished_.c_str(), &info) == 0 && !in_place(io.finished_, info)) ::unlink(io.finished_.c_str());
       throw;
     }
     return 0;

@@ -25,6 +25,7 @@ class Io {
   /// output.
   void write(Stream& stream);
   /// Whether -o FILE is to be text; and tells what the format of its extension has no room for.
+  /// Throws CannotWrite if it is to be binary STL by --binary and single precision does not hold the surface.
   bool text_for(const Stream& stream) const;
   /// Writes another stream to a file of the user's ("-": standard output), in the format of its extension.
   void write_to(const std::string& path, const Stream& stream) const;
@@ -50,6 +51,8 @@ class Io {
   std::string json;
 
  private:
+  /// Whether a file must be text: of STL, because single precision does not hold the surface, which it says.
+  bool needs_text(const std::string& path, const Stream& stream) const;
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
                       const std::function<void(Io&)>&, struct Usage);
   std::string arguments_;

@@ -97,7 +97,8 @@ int main(int argc, char** argv) {
                   std::to_string(stream.surface.tris.size()) + " triangles");
         io.report["vertices"] = stream.surface.points.size();
         io.report["triangles"] = stream.surface.tris.size();
-        if (io.output == "-" || io.output.ends_with(".mply"))
+        const std::string extension = extension_of(io.output);
+        if (extension.empty() || extension == ".mply")
           io.write(stream);
         else if (const bool ascii = io.text_for(stream); o.polydata)
           io.write_bytes(write_vtk_polydata(stream, ascii));

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What files of other programs hold beside flat triangles: curved elements, lines, colours, odd sizes.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cstring>
 
+#include "formats/columns.h"
 #include "formats/formats.h"
 #include "formats/inria.h"
+#include "formats/stl.h"
+#include "formats/text.h"
 #include "lib/error.h"
 
 using namespace meshpipe;
@@ -224,4 +228,133 @@ TEST(Msh, NumbersMayBeBeyondInt) {
   std::string bytes = msh("1\n123456789012 2 2 3 1 1 2 5000000000\n");
   bytes.replace(bytes.find("\n3 2 2 0"), 3, "\n5000000000 ");
   EXPECT_EQ(read_any(bytes, "in").surface.tris, (std::vector<Tri>{{0, 1, 2}}));
+}
+
+TEST(Bounds, RepeatedSectionsOfMeshAreRefused) {
+  const std::string head = "MeshVersionFormatted 2\nDimension 3\nVertices 3\n0 0 0 0\n1 0 0 0\n0 1 0 0\n";
+  const std::string face = "Triangles 1\n1 2 3 1\n";
+  EXPECT_EQ(failure(head + face), "");
+  EXPECT_EQ(failure(head + face + "Corners\n0\nCorners\n0\n"), "in:11: a second section of corners");
+  EXPECT_EQ(failure(head + face + face), "in:9: a second section of triangles");
+}
+
+TEST(Bounds, PropertiesOfPly) {
+  std::string bytes = "ply\nformat ascii 1.0\nelement vertex 0\n";
+  for (int i = 0; i < 1001; ++i) bytes += "property float p" + std::to_string(i) + '\n';
+  EXPECT_EQ(failure(bytes), "in:1004: element 'vertex' has more than 1000 properties, which is the limit");
+}
+
+TEST(Bounds, WhatIsNoNumberIsNotNan) {
+  auto ply = [](const std::string& value) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float q\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0 1\n1 0 0 " +
+           value + "\n0 1 0 2\n3 0 1 2\n";
+  };
+  for (const char* nan : {"nan", "-NaN", "+NAN", "nan(ind)", "-nan(0x8)"}) {
+    const Stream s = read_any(ply(nan), "in");
+    EXPECT_EQ(s.remarks, std::vector<std::string>{"left out: vertex data q, not finite in row 1"}) << nan;
+  }
+  for (const char* word : {"none", "n", "nano", "nan(", "N/A", "-"})
+    EXPECT_EQ(failure(ply(word)), "in:12: '" + std::string(word) + "' where a finite number is due");
+}
+
+TEST(Bounds, ColumnsOfOneName) {
+  Stream stream;
+  Table& table = stream.surface.vertex;
+  for (int i = 0; i < 5002; ++i) add_columns(stream, table, 1, {"a", 1, std::vector<int>{i}});
+  ASSERT_EQ(table.columns.size(), 5000u);
+  EXPECT_EQ(table.columns[0].name, "a");
+  EXPECT_EQ(table.columns[1].name, "a_2");
+  EXPECT_EQ(table.columns[4999].name, "a_5000");
+  EXPECT_EQ(stream.remarks, std::vector<std::string>{"left out: vertex data beyond 5000 columns"});
+}
+
+TEST(Bounds, NamesEndInAnyWay) {
+  EXPECT_EQ(percent_decode("a%20"), "a ");
+  EXPECT_EQ(percent_decode("a%2"), "a%2");
+  EXPECT_EQ(percent_decode("%"), "%");
+}
+
+// As the files of VTK have them: a head of numbers of 32 bits, blocks, size, part, and the compressed ones.
+static std::string packed(std::string bytes) {
+  std::string out(compressBound(bytes.size()), '\0');
+  uLongf length = out.size();
+  compress(reinterpret_cast<Bytef*>(out.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+           bytes.size());
+  const std::uint32_t head[] = {1, static_cast<std::uint32_t>(bytes.size()), 0,
+                                static_cast<std::uint32_t>(length)};
+  return std::string(reinterpret_cast<const char*>(head), sizeof head) + out.substr(0, length);
+}
+
+static std::string packed_vtu(const std::string& field, const std::string& point_data, int uses = 1) {
+  std::string noise;  // that cannot be compressed
+  for (std::uint32_t x = 1; noise.size() < 2700; x = x * 1664525 + 1013904223)
+    noise += static_cast<char>(x >> 24);
+  std::string data;
+  auto array = [&](const std::string& type, const std::string& name, const std::string& more,
+                   const std::string& bytes) {
+    const std::string at = std::to_string(data.size());
+    data += packed(bytes);
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" " + more +
+           " format=\"appended\" offset=\"" + at + "\"/>";
+  };
+  auto bytes_of = [](auto... v) {
+    const std::common_type_t<decltype(v)...> all[] = {v...};
+    return std::string(reinterpret_cast<const char*>(all), sizeof all);
+  };
+  const std::string zeros = array("UInt8", "zeros", "", std::string(1000000, '\0'));
+  std::string out =
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
+      "<UnstructuredGrid><FieldData>";
+  if (field == "zeros")
+    for (int i = 0; i < 60; ++i) out += zeros;
+  out += array("Int32", "wall", "", bytes_of(7, 2));
+  out +=
+      "</FieldData><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points>" +
+      array("Float64", "Points", "NumberOfComponents=\"3\"", bytes_of(0., 0., 0., 1., 0., 0., 0., 1., 0.)) +
+      "</Points><PointData>" + (point_data == "zeros" ? zeros : "");
+  if (point_data == "shared")
+    for (const std::string one = array("UInt8", "d", "NumberOfComponents=\"900\"", noise); uses-- > 0;)
+      out += one;
+  return out + "</PointData><CellData>" + array("Int32", "patch", "", bytes_of(7)) + "</CellData><Cells>" +
+         array("Int32", "connectivity", "", bytes_of(0, 1, 2)) + array("Int32", "offsets", "", bytes_of(3)) +
+         array("Int32", "types", "", bytes_of(5)) +
+         "</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" + data +
+         "</AppendedData></VTKFile>";
+}
+
+TEST(Bounds, CompressedArraysOfVtk) {
+  const Stream s = read_any(packed_vtu("zeros", ""), "in");
+  EXPECT_EQ(s.surface.tris.size(), 1u);
+  EXPECT_EQ(s.name_of(2, 7), "wall");
+  EXPECT_EQ(failure(packed_vtu("", "zeros")), "in:1: array 'zeros' has 1000000 bytes, at most 3 are due");
+  EXPECT_EQ(failure(packed_vtu("", "shared")), "");
+  EXPECT_NE(failure(packed_vtu("", "shared", 20)).find("more compressed bytes than the file"),
+            std::string::npos);
+}
+
+TEST(Bounds, SurfacesThatSinglePrecisionDoesNotHold) {
+  //  3---2
+  //  | / |   of edge 0.25, far from the origin
+  //  0---1
+  auto square = [](double x) {
+    Surface s;
+    s.points = {{x, x, 0}, {x + 0.25, x, 0}, {x + 0.25, x + 0.25, 0}, {x, x + 0.25, 0}};
+    s.tris = {{0, 1, 2}, {0, 2, 3}};
+    return s;
+  };
+  EXPECT_EQ(beyond_single_precision(square(0)), "");
+  EXPECT_EQ(beyond_single_precision(square(1e5 + 0.1)), "");
+  EXPECT_EQ(beyond_single_precision(square(1e7)),
+            "3 vertices fall on others and 2 triangles become degenerate or turn over");
+  EXPECT_EQ(beyond_single_precision(square(1e39)), "a coordinate of 1e+39 is beyond it");
+  // what lay at the same place before, or in a line, is not the doing of the format
+  Surface flat = square(0.1);
+  flat.points[3] = flat.points[0];
+  EXPECT_EQ(beyond_single_precision(flat), "");
+  // an unused vertex is not written
+  Surface unused = square(0.1);
+  unused.points.push_back({0.1 + 1e-12, 0.1, 0});
+  EXPECT_EQ(beyond_single_precision(unused), "");
 }
