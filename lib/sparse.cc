@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/sparse.h"
 
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <chrono>
@@ -8,7 +9,6 @@
 #include <numeric>
 #include <string>
 
-#include "lib/cholesky.h"
 #include "lib/error.h"
 
 namespace meshpipe {
@@ -16,26 +16,27 @@ namespace {
 
 /// Entries to compressed columns: two stable counting passes (by row, then by column), then equal places
 /// added up.
-Eigen::SparseMatrix<double> compress(int n, const std::vector<Entry<double>>& entries) {
-  auto sort_by = [n](const std::vector<Entry<double>>& from, int Entry<double>::*key,
+template <class Scalar>
+Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& entries) {
+  auto sort_by = [n](const std::vector<Entry<Scalar>>& from, int Entry<Scalar>::*key,
                      std::vector<int>& start) {
     start.assign(n + 1, 0);
-    for (const Entry<double>& e : from) ++start[e.*key + 1];
+    for (const Entry<Scalar>& e : from) ++start[e.*key + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Entry<double>> to(from.size());
+    std::vector<Entry<Scalar>> to(from.size());
     std::vector<int> place(start.begin(), start.end() - 1);
-    for (const Entry<double>& e : from) to[place[e.*key]++] = e;
+    for (const Entry<Scalar>& e : from) to[place[e.*key]++] = e;
     return to;
   };
   std::vector<int> start;
-  std::vector<Entry<double>> sorted = sort_by(entries, &Entry<double>::row, start);
-  sorted = sort_by(sorted, &Entry<double>::col, start);
+  std::vector<Entry<Scalar>> sorted = sort_by(entries, &Entry<Scalar>::row, start);
+  sorted = sort_by(sorted, &Entry<Scalar>::col, start);
 
-  Eigen::SparseMatrix<double> m(n, n);
+  Eigen::SparseMatrix<Scalar> m(n, n);
   m.resizeNonZeros((Eigen::Index)sorted.size());
   int* column = m.outerIndexPtr();
   int* row = m.innerIndexPtr();
-  double* value = m.valuePtr();
+  Scalar* value = m.valuePtr();
   int k = 0;
   for (int c = 0; c < n; ++c) {
     column[c] = k;
@@ -57,10 +58,8 @@ Eigen::SparseMatrix<double> compress(int n, const std::vector<Entry<double>>& en
 class Stopwatch {
  public:
   explicit Stopwatch(double* seconds) : seconds_(seconds), start_(Clock::now()) {}
-  ~Stopwatch() { stop(); }
-  void stop() {
+  ~Stopwatch() {
     if (seconds_) *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
-    seconds_ = nullptr;
   }
 
  private:
@@ -69,63 +68,45 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-template <class Scalar>
-Pattern pattern_of(int n, const std::vector<Entry<Scalar>>& entries) {
-  Pattern all, pattern;
-  all.start.assign(n + 1, 0);
-  for (const auto& e : entries)
-    if (e.row != e.col) ++all.start[e.row + 1], ++all.start[e.col + 1];
-  std::partial_sum(all.start.begin(), all.start.end(), all.start.begin());
-  all.neighbour.resize(all.start.back());
-  std::vector<int> at(all.start.begin(), all.start.end() - 1), seen(n, -1);
-  for (const auto& e : entries)
-    if (e.row != e.col) {
-      all.neighbour[at[e.row]++] = e.col;
-      all.neighbour[at[e.col]++] = e.row;
-    }
-  pattern.start.assign(1, 0);
-  for (int i = 0; i < n; ++i) {
-    for (int e = all.start[i]; e < all.start[i + 1]; ++e)
-      if (int j = all.neighbour[e]; seen[j] != i) {
-        seen[j] = i;
-        pattern.neighbour.push_back(j);
-      }
-    pattern.start.push_back((int)pattern.neighbour.size());
-  }
-  return pattern;
-}
-
 }  // namespace
 
 template <class Scalar>
 struct Factorisation<Scalar>::Impl {
-  Cholesky<Scalar> factor;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> ldlt;
   int n;
   SolveTime* time;
 
-  void factorise(const std::vector<Entry<Scalar>>& lower_triangle) {
-    Stopwatch watch(time ? &time->factorisation : nullptr);
-    // a pivot that has lost all its digits against the diagonal it started from is as singular as zero
+  void factorise(const Eigen::SparseMatrix<Scalar>& m) {
+    {
+      Stopwatch watch(time ? &time->factorisation : nullptr);
+      ldlt.factorize(m);
+    }
+    // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
+    // lost all its digits against the diagonal it started from is as singular, and a negative one as little
+    // definite
+    const auto& pivot = ldlt.vectorD();
+    const auto& order = ldlt.permutationP().indices();
     constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
-    try {
-      factor.factorise(lower_triangle, lost);
-    } catch (const typename Cholesky<Scalar>::Singular& s) {
-      throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(s.row) +
-                       " has diagonal " + std::to_string(s.diagonal) + " and pivot " +
-                       std::to_string(s.pivot));
+    for (int i = 0; i < n; ++i) {
+      double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
+      if (ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
+        throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
+                         " has diagonal " + std::to_string(a) + " and pivot " + std::to_string(d));
     }
   }
 };
 
 template <class Scalar>
-Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle,
-                                     SolveTime* time) {
-  Stopwatch watch(time ? &time->ordering : nullptr);
-  Pattern pattern = pattern_of(n, lower_triangle);
-  Supernodes nodes = find_supernodes(pattern, elimination_order(pattern));
-  impl_ = std::make_unique<Impl>(Impl{Cholesky<Scalar>(std::move(nodes)), n, time});
-  watch.stop();
-  impl_->factorise(lower_triangle);
+Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle, SolveTime* time)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->n = n;
+  impl_->time = time;
+  Eigen::SparseMatrix<Scalar> m = compress(n, lower_triangle);
+  {
+    Stopwatch watch(time ? &time->ordering : nullptr);
+    impl_->ldlt.analyzePattern(m);
+  }
+  impl_->factorise(m);
 }
 
 template <class Scalar>
@@ -135,14 +116,16 @@ Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
 
 template <class Scalar>
 void Factorisation<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
-  impl_->factorise(lower_triangle);
+  impl_->factorise(compress(impl_->n, lower_triangle));
 }
 
 template <class Scalar>
 void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
+  if (right_hand_side.empty()) return;
   Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
-  for (std::size_t at = 0; at < right_hand_side.size(); at += impl_->n)
-    impl_->factor.solve(right_hand_side.data() + at);
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
+      right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
+  x = impl_->ldlt.solve(x).eval();
 }
 
 template class Factorisation<double>;

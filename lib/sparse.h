@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse direct solves: symmetric by Cholesky factorisation (lib/cholesky.h) in Eigen's minimum degree order
-// (lib/ordering.h), others by Eigen's LU; no other file of the library sees Eigen's sparse matrices.
+// Sparse direct solves, by Eigen's simplicial LDL^T; no other file of the library sees Eigen's solvers.
 #pragma once
 #include <array>
 #include <complex>
