@@ -444,6 +444,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   if (usage.passes) {
     ::mallopt(M_MMAP_MAX, 0);
     ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  } else {
+    ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // large arrays go back when freed: by default the limit creeps up
   }
   Io io;
   io.program = program;
