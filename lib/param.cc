@@ -69,6 +69,38 @@ void solve_patches(const SubMesh& part, const Disk& disk, int rings, std::vector
   solve_dirichlet(tris, weights, fixed, uv);
 }
 
+/// Cuts a part along its limbs if its triangles then keep their shape much better in every piece; not across
+/// model edges, which would meet the cut at any angle. Returns the new number of parts; n_parts, with nothing
+/// changed, if it did not.
+int cut_if_flatter(Surface& surface, const SubMesh& part_mesh, int part, int n_parts,
+                   const ParamOptions& options, const ParamReport& whole) {
+  constexpr double much = 0.6;  // what may be left of the median of sigma1/sigma2 above 1
+  if (surface.face.has("model")) {
+    const auto& model = surface.face.get<std::uint8_t>("model");
+    const auto opposite = opposite_halfedges(part_mesh.tris, (int)part_mesh.points.size());
+    for (std::size_t h = 0; h < opposite.size(); ++h)
+      if (opposite[h] >= 0 && (model[part_mesh.face[h / 3]] >> h % 3 & 1)) return n_parts;
+  }
+  Surface trial = surface;
+  const int n = cut_along_limbs(trial, part, n_parts);
+  if (n == n_parts) return n_parts;
+  std::vector<int> piece = trial.face.get<int>("part");
+  for (int& label : piece) label = label == part ? 0 : label < n_parts ? -1 : label - n_parts + 1;
+  for (const SubMesh& mesh : split_by_label(trial, piece, n - n_parts + 1)) {
+    ParamReport report;
+    try {
+      map_part(mesh, options, report);
+    } catch (const GoalMissed&) {
+      return n_parts;
+    }
+    if (report.anisotropy_median - 1 > much * (whole.anisotropy_median - 1) ||
+        report.anisotropy_p99 > whole.anisotropy_p99)
+      return n_parts;
+  }
+  surface = std::move(trial);
+  return n;
+}
+
 /// What maps of one part share, and the search for one that is one-to-one.
 class Search {
  public:
@@ -326,7 +358,9 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
   constexpr int most_rounds = 24, limb_rounds = 2, stretched_rounds = 12;
   constexpr double too_uneven = 1e8, unresolved = 1e16;  // edges of 1e-8 of the chart keep half their digits
   constexpr double too_stretched = 4;                    // sigma1/sigma2, the mean over the area
+  constexpr double too_steep = 1.05, shrinks = 1e4;      // sigma1/sigma2, the median; and the area scale
   constexpr std::size_t least_triangles = 50;            // of a part that is cut for the sake of its shape
+  constexpr std::size_t least_of_a_limb = 500;
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   std::vector<Chart> charts;
   std::vector<char> waiting, whole;  // whole: too uneven, but nothing to be done about it
@@ -381,6 +415,10 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
         if (missed || limbs || stretched || reports[p].anisotropy_p99 > poor)
           n_parts = cut_along_model_edges(surface, p, n_parts);
         if (n_parts == n && (limbs || stretched)) n_parts = cut_along_limbs(surface, p, n_parts);
+        if (n_parts == n && !missed && !chosen && round < limb_rounds &&
+            reports[p].anisotropy_median > too_steep && reports[p].area_scale > shrinks &&
+            charts[p].mesh.tris.size() >= least_of_a_limb)
+          n_parts = cut_if_flatter(surface, charts[p].mesh, p, n_parts, options, reports[p]);
         whole[p] = charts[p].uv.empty() && !missed && n_parts == n;
         if (n_parts == n && !whole[p] && (uneven > unresolved || stretched)) {
           // places that should be apart, and halves of the part; the latter first if the former has not

@@ -313,8 +313,6 @@ TEST(Bisect, AtModelEdgesThatEncloseSomething) {
   }
 }
 
-// A needle across a flat strip: the long edge of two obtuse triangles is flipped, and all weights are
-// positive.
 TEST(Bisect, AlongModelEdges) {
   Surface s;
   const Body body = cube(120);
@@ -356,6 +354,8 @@ TEST(Param, SliversOfACadBodyAreCutAlongModelEdges) {
   for (const ParamReport& r : reports) EXPECT_LT(r.anisotropy_p99, 20);
 }
 
+// A needle across a flat strip: the long edge of two obtuse triangles is flipped, and all weights are
+// positive.
 TEST(Param, IntrinsicDelaunayFlipsNeedles) {
   auto strip = grid(
       30, 4, false,
@@ -438,4 +438,40 @@ TEST(Param, ACoarseTubeIsCutOpen) {
     EXPECT_LT(reports[p].anisotropy_mean, 1.1);
     EXPECT_TRUE(one_to_one(charts[p].mesh, charts[p].uv));
   }
+}
+
+// A tube open at both ends, admissible as it is, with few edges round: a ring would shear its triangles.
+TEST(Param, ALimbWithFewEdgesRoundIsCutAlong) {
+  constexpr int n = 24, m = 22;
+  auto tube = grid(
+      n, m, true,
+      [](double s, double t) {
+        double a = 2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), 1.9 * pi * t};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = tube;
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  std::vector<ParamReport> reports;
+  Surface strict = s, creased = s;
+  map_surface(strict, 1, {.strict = true}, reports);
+  EXPECT_GT(reports[0].anisotropy_median, 1.15);
+  EXPECT_LT(reports[0].area_scale, 1e6);
+  auto charts = map_surface(s, 1, {}, reports);
+  ASSERT_EQ(charts.size(), 2u);
+  for (const ParamReport& r : reports) {
+    EXPECT_LT(r.anisotropy_median, 1.01);
+    EXPECT_LT(r.area_scale, 2);
+  }
+  // not where the cut would cross a model edge: one round the middle
+  std::vector<std::uint8_t> model(creased.tris.size(), 0);
+  for (std::size_t t = 0; t < creased.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      if (creased.tris[t][i] / n == m / 2 && creased.tris[t][(i + 1) % 3] / n == m / 2)
+        model[t] |= static_cast<std::uint8_t>(1 << i);
+  creased.face.set("model", std::move(model));
+  EXPECT_EQ(map_surface(creased, 1, {}, reports).size(), 1u);
 }
