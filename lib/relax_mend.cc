@@ -366,7 +366,7 @@ std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool t
     return trials;
   };
   const Relaxer before = patch(triangles, vertices_of(triangles));
-  const double good_enough = 0.9 * before.badness();
+  const double bad = before.badness(), good_enough = bad - std::min(0.1 * bad, 0.05);
   const std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
   if (trials.empty()) return {};
   Trial best = trials.front();
