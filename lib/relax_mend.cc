@@ -120,9 +120,10 @@ bool Relaxer::go_to(const Place& tip, int t, double least) {
   // by a vertex of the triangle nearest to it, then by a new one on an edge of that
   for (int i = 0; i < 6; ++i) {
     const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
-    const bool hard = before.m_.hard[h], crease = hard && before.m_.opp[h] >= 0;
+    const bool hard = before.m_.hard[h], seam = held_[from] == paired && held_[to] == paired;
+    const bool stays = seam || (before.m_.opp[h] >= 0 && this->on_line(from, to) < 0);
     const bool on_line = i < 3 ? held_[from] == slides : hard;
-    if (i >= 3 && (hard ? crease && this->on_line(from, to) < 0 : held_[from] == slides)) continue;
+    if (i >= 3 && (hard ? stays : held_[from] == slides)) continue;
     if (!goes_there(from) && !(i >= 3 && hard && goes_there(to))) continue;
     Relaxer after = before;
     int v = after.m_.from(h);
