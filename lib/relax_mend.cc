@@ -465,16 +465,23 @@ void Relaxer::mend_worst() {
   }
 }
 
-/// Where triangles of the result intersect, the surface is too thin or bends too much for their size: refine
-/// there, and ask for smaller triangles from then on. Ends with the fewest intersections it came to, when
-/// more rounds do not help.
+/// Where triangles of the result intersect, but not of the reference, the surface is too thin or bends too
+/// much for their size: refine there, and ask for smaller triangles from then on. Ends with the fewest
+/// intersections it came to, when more rounds do not help.
 void Relaxer::separate() {
   const int most = m_.live + m_.live / 4 + 1000;
   std::optional<Relaxer> best;
+  std::optional<Mesh> known;
   for (int round = 0, since_best = 0;; ++round) {
     std::vector<int> number;
     const Mesh now = compact(number);
     report_.intersections = self_intersections(now);
+    const int all = (int)report_.intersections.size();
+    if (all > 0) {
+      if (!known) known = contacts(ground_->surface, self_intersections(ground_->surface));
+      report_.intersections = new_intersections(now, report_.intersections, *known);
+    }
+    report_.intersections_of_reference = all - (int)report_.intersections.size();
     for (auto& [s, t] : report_.intersections) s = number[s], t = number[t];
     if (report_.intersections.empty()) return;
     const bool better = !best || report_.intersections.size() < best->report_.intersections.size();
