@@ -274,7 +274,7 @@ void balance_sides(const FilledDisk& disk, const std::vector<int>& opposite, con
     matrix.push_back({std::max(a, b), std::min(a, b), -k});
   }
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
-  const Factorisation<double> smoother(n, matrix);
+  const Factorisation<double> smoother(n, std::move(matrix));
   auto smooth = [&](std::vector<double>& x) {
     for (int v = 0; v < n; ++v) x[v] *= mass[v];
     smoother.solve(x);

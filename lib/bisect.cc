@@ -43,7 +43,7 @@ Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>
     }
   }
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v]});
-  return Factorisation<double>(n, matrix);
+  return Factorisation<double>(n, std::move(matrix));
 }
 
 /// By inverse iteration. Both sides of its zero level are connected (Fiedler 1975).

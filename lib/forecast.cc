@@ -231,7 +231,7 @@ Forecast Forecaster::of(const std::vector<int>& label, int a, int b, const std::
   for (int i = 0; i < (int)cells.size(); ++i) entries.push_back({i, i, diagonal[i]});
   std::vector<double> scale;  // logarithm of the length scale, 0 on the rim
   for (int c : cells) scale.push_back(charge[c]);
-  Factorisation<double>((int)cells.size(), entries).solve(scale);
+  Factorisation<double>((int)cells.size(), std::move(entries)).solve(scale);
 
   Forecast forecast;
   std::vector<int> order(cells.size());

@@ -187,6 +187,27 @@ void measure_chains(const Surface& s, const std::vector<double>& size, Chains& c
     }
 }
 
+/// Does one of the cut line's segments leave out a bend that a longer line of its curvature would not: more
+/// than a tenth of the size off it, and longer than a size by so much that its sag, h^2 / 8R, is a tenth too
+/// large?
+bool cuts_off_a_bend(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
+                     const std::vector<Cut>& cuts) {
+  const int n = static_cast<int>(cuts.size()) - 1;
+  const double segment = (cuts[n].measure - cuts[0].measure) / n;
+  if (c.kind == interface_line || segment * segment <= 1.1) return false;
+  const int* v = &chains.vertex[c.first];
+  auto point = [&](const Cut& cut) {
+    return cut.t > 0 ? lerp(s.points[v[cut.piece]], s.points[v[cut.piece + 1]], cut.t)
+                     : s.points[v[cut.piece]];
+  };
+  for (int k = 0; k < n; ++k) {
+    const Vec3 p = point(cuts[k]), chord = point(cuts[k + 1]) - p;
+    for (int i = cuts[k].piece + 1; i <= cuts[k + 1].piece; ++i)
+      if (norm(cross(chord, s.points[v[i]] - p)) > 0.1 * size[v[i]] * norm(chord)) return true;
+  }
+  return false;
+}
+
 /// How many segments each line is divided into at first.
 std::vector<int> segment_counts(const Chains& chains) {
   std::vector<int> count;
@@ -274,7 +295,11 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   measure_chains(surface, size, chains);
   Division division(chains.chain.size());
   const std::vector<int> count = segment_counts(chains);
-  for (int l = 0; l < static_cast<int>(count.size()); ++l) division[l] = divide(chains, l, count[l]);
+  for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+    division[l] = divide(chains, l, count[l]);
+    if (cuts_off_a_bend(surface, size, chains, chains.chain[l], division[l]))
+      division[l] = divide(chains, l, count[l] + 1);
+  }
   if (keep_border) {
     const std::vector<char> kept = input_border(surface);
     for (int l = 0; l < static_cast<int>(count.size()); ++l) {

@@ -45,11 +45,12 @@ std::vector<char> input_border(const Surface& surface);
 /// Chains the special edges (mesh border, part borders, model bits) into lines that end at junctions and
 /// corners (a vertex where the number of special edges is not two, and model_corners), and divides each into
 /// N = round(integral of 1/h) segments, at least 1 (3 if closed), equidistributed in that measure, h = column
-/// `size` linear along edges. No two lines, nor a line and itself, cross or touch in any chart but at common
-/// ends: where the chords would, or would lose the shape of a loop, the lines are refined. A line's points
-/// are the same in every chart that uses it. Precondition: charts in part order, positively oriented.
-/// `tag`, if not null, is the label of each half-edge's edge: lines end where it changes.
-/// With keep_border borders have exactly the input's points, and those where lines meet them.
+/// `size` linear along edges; one more where rounding down would cut a bend of a border or model edge off. No
+/// two lines, nor a line and itself, cross or touch in any chart but at common ends: where the chords would,
+/// or would lose the shape of a loop, the lines are refined. A line's points are the same in every chart that
+/// uses it. Precondition: charts in part order, positively oriented. `tag`, if not null, is the label of each
+/// half-edge's edge: lines end where it changes. With keep_border borders have exactly the input's points,
+/// and those where lines meet them.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7,
                  const std::vector<int>* tag = nullptr, bool keep_border = false);
 

@@ -152,7 +152,7 @@ class Search {
   std::vector<Vec2> plain(MapKind kind) {
     if (kind != MapKind::conformal) return on_circle(kind);
     if (options_.form == ConformalForm::boundary_first) return bent(0);
-    const Filled& filled = options_.neumann ? open() : flat();
+    const Filled filled = options_.neumann ? open() : flat();
     return options_.form == ConformalForm::spectral ? spectral_map(part_, disk_, filled, &report_.time)
                                                     : least_squares_map(part_, disk_, filled, &report_.time);
   }
@@ -250,10 +250,7 @@ class Search {
     if (!round_) round_ = round_holes(part_, disk_);
     return *round_;
   }
-  const Filled& flat() {
-    if (!flat_) flat_ = flat_holes(part_, disk_, &report_.time);
-    return *flat_;
-  }
+  Filled flat() { return flat_holes(part_, disk_, &report_.time); }
 
   std::vector<Vec2> on_circle(MapKind kind) {
     Weights weights = kind == MapKind::harmonic ? Weights::finite_element : options_.weights;
@@ -342,7 +339,7 @@ class Search {
   const ParamOptions& options_;
   ParamReport& report_;
   Disk disk_;
-  std::optional<Filled> open_, round_, flat_;
+  std::optional<Filled> open_, round_;
   std::optional<BoundaryFirst> boundary_first_;
 };
 

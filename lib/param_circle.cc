@@ -77,8 +77,8 @@ std::vector<Vec2> extend_border(const SubMesh& part, const Filled& filled, const
   } else {
     // positive weights make it one-to-one; bounded ones keep it so in floating point
     std::vector<double> w = weights == Weights::uniform     ? std::vector<double>(3 * filled.tris.size(), 0.5)
-                            : weights == Weights::cotangent ? cotangents(filled, 0.01, 100)
-                                                            : cotangents(filled);
+                            : weights == Weights::cotangent ? cotangents(filled.shape, 0.01, 100)
+                                                            : cotangents(filled.shape);
     solve_dirichlet(filled.tris, w, fixed, border, time);
   }
   border.resize(n_points);

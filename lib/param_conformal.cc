@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "lib/error.h"
 
@@ -29,7 +30,7 @@ std::vector<int> inner_unknowns(const SubMesh& part, const Disk& disk, const Fil
 std::vector<Entry<Complex>> conformal_energy(const SubMesh& part, const Disk& disk, const Filled& filled,
                                              std::vector<double>& diagonal) {
   std::vector<Entry<Complex>> matrix;
-  std::vector<double> weights = cotangents(filled);
+  std::vector<double> weights = cotangents(filled.shape);
   matrix.reserve(weights.size() + filled.n_vertices);
   diagonal.assign(filled.n_vertices, 0);
   for (int h = 0; h < (int)weights.size(); ++h) {
@@ -58,21 +59,21 @@ std::vector<Vec2> plane_points(const SubMesh& part, const std::vector<Complex>& 
 
 }  // namespace
 
-BoundaryFirst::BoundaryFirst(const SubMesh& part, const Disk& disk, const Filled& filled, SolveTime* time)
+BoundaryFirst::BoundaryFirst(const SubMesh& part, const Disk& disk, Filled filled, SolveTime* time)
     : part_(part),
       disk_(disk),
-      filled_(filled),
+      filled_(std::move(filled)),
       time_(time),
-      weights_(cotangents(filled)),
-      angle_sum_(angle_sums(filled, weights_)),
-      unknown_(inner_unknowns(part, disk, filled, n_)),
-      factorisation_(laplacian(filled, weights_, unknown_, n_, time)) {
+      weights_(cotangents(std::exchange(filled_.shape, {}))),
+      angle_sum_(angle_sums(filled_, weights_)),
+      unknown_(inner_unknowns(part, disk, filled_, n_)),
+      factorisation_(laplacian(filled_, weights_, unknown_, n_, time)) {
   // The log of the scale, zero on the rim, that takes all curvature from the inside (the Yamabe equation) and
   // brings it into the rim, whose turns then add up to one round
-  std::vector<double> charge(filled.n_vertices);
+  std::vector<double> charge(filled_.n_vertices);
   for (std::size_t v = 0; v < charge.size(); ++v) charge[v] = angle_sum_[v] - 2 * pi;
   std::vector<double> scale = extend(charge, std::vector<double>(charge.size(), 0), 1);
-  turn_ = turns(filled, weights_, angle_sum_, scale);
+  turn_ = turns(filled_, weights_, angle_sum_, scale);
   scale.resize(part.points.size());
   std::size_t few = scale.size() / 100, many = scale.size() - 1 - few;
   std::nth_element(scale.begin(), scale.begin() + few, scale.end());
@@ -187,7 +188,7 @@ std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const
   }
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) matrix.push_back({unknown[v], unknown[v], diagonal[v]});
-  if (n > 0) Factorisation<Complex>(n, matrix, time).solve(b);
+  if (n > 0) Factorisation<Complex>(n, std::move(matrix), time).solve(b);
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) z[v] = b[unknown[v]];
   return plane_points(part, z);
@@ -208,7 +209,7 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
   // eigenvector, makes the matrix definite
   constexpr double shift = 1e-6;
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v] + shift * moment[v]});
-  Factorisation<Complex> factorisation(n, matrix, time);
+  Factorisation<Complex> factorisation(n, std::move(matrix), time);
 
   std::vector<Complex> z(n, 0), before;
   double at = 0;

@@ -10,8 +10,9 @@ namespace meshpipe {
 /// factorisations at most: bent borders need one of their own.
 class BoundaryFirst {
  public:
-  /// Keeps references. `filled`: flat_holes of the part. Throws GoalMissed if the matrix is singular.
-  BoundaryFirst(const SubMesh& part, const Disk& disk, const Filled& filled, SolveTime* time);
+  /// Keeps references to the part and the disk. `filled`: flat_holes of the part. Throws GoalMissed if the
+  /// matrix is singular.
+  BoundaryFirst(const SubMesh& part, const Disk& disk, Filled filled, SolveTime* time);
 
   /// Largest over smallest area scale that the map at bend 0 will have at the part's vertices, 1 % of them
   /// left out at either end.
@@ -32,7 +33,7 @@ class BoundaryFirst {
 
   const SubMesh& part_;
   const Disk& disk_;
-  const Filled& filled_;
+  Filled filled_;  ///< without its shapes: the weights stand for them
   SolveTime* time_;
   int n_ = 0;
   std::vector<double> weights_, angle_sum_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "lib/error.h"
 #include "lib/param_intrinsic.h"
@@ -111,11 +112,11 @@ Filled round_holes(const SubMesh& part, const Disk& disk) {
 }
 
 Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
-  Filled filled = open_holes(part);
-  const Filled alone = intrinsic_delaunay(filled);
+  Filled alone = intrinsic_delaunay(open_holes(part));
   int n_holes = (int)disk.loops.size() - 1, n_points = (int)part.points.size();
   if (n_holes == 0) return alone;
-  std::vector<double> weights = cotangents(alone), angle_sum = angle_sums(alone, weights);
+  std::vector<double> weights = cotangents(std::exchange(alone.shape, {})),  // which stand for the shapes now
+      angle_sum = angle_sums(alone, weights);
 
   // unknowns: one scale for each hole, then one for each inner vertex
   constexpr int unset = -2;
@@ -137,6 +138,7 @@ Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) at[v] = scale[unknown[v]];
   std::vector<double> turn = turns(alone, weights, angle_sum, at);
+  Filled filled = open_holes(part);
   for (int l = 1; l <= n_holes; ++l) {
     const auto& loop = disk.loops[l];
     int centre = filled.n_vertices++;
@@ -146,10 +148,10 @@ Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
   return intrinsic_delaunay(std::move(filled));
 }
 
-std::vector<double> cotangents(const Filled& filled, double floor, double ceiling) {
+std::vector<double> cotangents(const Shapes& shapes, double floor, double ceiling) {
   std::vector<double> weights;
-  weights.reserve(3 * filled.tris.size());
-  for (const auto& [a, b, c] : filled.shape)
+  weights.reserve(3 * shapes.size());
+  for (const auto& [a, b, c] : shapes)
     for (double w : cotangent_weights(a, b, c, floor)) weights.push_back(std::min(w, 0.5 * ceiling));
   return weights;
 }
@@ -174,7 +176,7 @@ Factorisation<double> laplacian(const Filled& filled, const std::vector<double>&
     if (i >= 0 && j >= 0) matrix.push_back({std::max(i, j), std::min(i, j), -w});
   });
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
-  return Factorisation<double>(n, matrix, time);
+  return Factorisation<double>(n, std::move(matrix), time);
 }
 
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,

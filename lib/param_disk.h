@@ -20,12 +20,15 @@ Disk disk_of(const SubMesh& part);
 /// Length in space of half-edge h.
 double edge_length(const Mesh& mesh, int h);
 
+/// Corners of triangles in space, with no regard to their neighbours.
+using Shapes = std::vector<std::array<Vec3, 3>>;
+
 /// The part's triangles, then those that fill its holes: a fan around a virtual centre vertex for each loop
 /// but the longest, numbered after the part's vertices in the order of the loops.
 struct Filled {
   std::vector<Tri> tris;
   /// Per triangle: its corners in space; those of a fan lie in a plane of their own.
-  std::vector<std::array<Vec3, 3>> shape;
+  Shapes shape;
   int n_vertices = 0;
 };
 
@@ -42,8 +45,8 @@ Filled round_holes(const SubMesh& part, const Disk& disk);
 /// star-shaped are those of round_holes. One factorisation if there are holes.
 Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time);
 
-/// Cotangent weights (lib/sparse.h) of every half-edge of a filled part.
-std::vector<double> cotangents(const Filled& filled, double floor = -1e30, double ceiling = 1e30);
+/// Cotangent weights (lib/sparse.h) of every half-edge.
+std::vector<double> cotangents(const Shapes& shapes, double floor = -1e30, double ceiling = 1e30);
 
 /// Sum of the angles around each vertex, from cotangent weights: the angles of triangles that have none of
 /// their own (no area) are then those that the weights stand for.

@@ -85,6 +85,7 @@ RelaxReport Relaxer::run() {
   const double target = options_.target_triangles > 0 ? options_.target_triangles
                         : ground_->sizes              ? count_for_size(ground_->surface, *ground_->sizes)
                                                       : m_.live;
+  merge_corners();
   for (int i = 0; i < 3; ++i) {
     collapse_short_segments();
     split_long(1.4, 1e9);

@@ -104,16 +104,15 @@ bool Relaxer::go_to(const Place& tip, int t, double least) {
   // about one triangle with nine tenths of the quality wanted; more for a tip that is far out
   const double spoils = least > 0.5 * size_at(m_.tris[t][0]) ? 2e-2 : 2e-3;
   const Vec3 p = ground_->walk.point(tip);
-  // a vertex of the border gets only to tips of the border, and along it
+  // a vertex of a border or model edge gets only to tips of that, and along it
   auto goes_there = [&](int v) {
-    if (held_[v] != loose && (held_[v] != slides || !m_.on_border(v))) return false;
+    if (held_[v] != loose && held_[v] != slides) return false;
     const Place& from = lifted_.place[v];
     const Place to = held_[v] == loose ? ground_->walk.closest(from, p) : ground_->walk.slide(from, p);
     return norm(ground_->walk.point(to) - p) < 1e-6 * size_at(v);
   };
   const std::vector<int> triangles = triangles_round(t, 2), vertices = vertices_of(triangles);
   const Relaxer before = patch(triangles, vertices);
-  const Vec3 facing = facing_at(tip);
   const double near_enough = std::max(before.farthest(), least / size_at(m_.tris[t][0]));
   double best = before.badness() + spoils;
   Relaxer chosen = before;
@@ -121,22 +120,22 @@ bool Relaxer::go_to(const Place& tip, int t, double least) {
   // by a vertex of the triangle nearest to it, then by a new one on an edge of that
   for (int i = 0; i < 6; ++i) {
     const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
-    const bool edge_of_border = before.m_.hard[h] && before.m_.opp[h] < 0;
-    if (!goes_there(from) && !(i >= 3 && edge_of_border && goes_there(to))) continue;
-    const bool on_border = i < 3 ? held_[from] == slides : edge_of_border;
-    if (i >= 3 && !edge_of_border && (before.m_.hard[h] || held_[from] == slides)) continue;
+    const bool hard = before.m_.hard[h], crease = hard && before.m_.opp[h] >= 0;
+    const bool on_line = i < 3 ? held_[from] == slides : hard;
+    if (i >= 3 && (hard ? crease && this->on_line(from, to) < 0 : held_[from] == slides)) continue;
+    if (!goes_there(from) && !(i >= 3 && hard && goes_there(to))) continue;
     Relaxer after = before;
     int v = after.m_.from(h);
     if (i >= 3) {
       v = (int)after.m_.out.size();
-      after.insert(h, tip, p, facing);
+      after.insert(h, tip, p, {});
     }
-    after.put(v, tip, p, facing);
-    after.held_[v] = on_border ? fixed : anchored;
+    after.put(v, tip, p, on_line && !after.m_.on_border(v) ? Vec3{} : facing_at(tip));
+    after.held_[v] = on_line ? fixed : anchored;
     after.listed_ = false;
     after.settle(2);
     if (const double bad = after.badness();
-        bad < best && after.least_agreeing() > 0 && after.farthest() < near_enough)
+        bad < best && after.least_agreeing() > 0 && after.farthest() <= near_enough)
       best = bad, chosen = after, found = true;
   }
   if (found) adopt(chosen, triangles, vertices);
@@ -263,16 +262,22 @@ double Relaxer::least_agreeing() const {
 /// How far the middles of edges and triangles are from the reference, at most, in units of the size.
 double Relaxer::farthest() const {
   double most = 0;
-  auto look = [&](int v, Vec3 p) {
-    const Place& from = lifted_.place[v];
-    most = std::max(most, norm(ground_->walk.point(ground_->walk.closest(from, p)) - p) / size_at(v));
+  // from each corner, whose sheet may end before the nearest place; a corner on a model edge knows but one
+  // side
+  auto look = [&](std::initializer_list<int> corners, Vec3 p) {
+    double least = 1e300;
+    for (int v : corners) {
+      const Place nearest = ground_->walk.closest(lifted_.place[v], p, true);
+      least = std::min(least, norm(ground_->walk.point(nearest) - p) / size_at(v));
+    }
+    most = std::max(most, least);
   };
   for (int t = 0; t < (int)m_.tris.size(); ++t) {
     if (m_.dead(t)) continue;
     const auto [a, b, c] = m_.tris[t];
-    look(a, (1.0 / 3) * (at(a) + at(b) + at(c)));
+    look({a, b, c}, (1.0 / 3) * (at(a) + at(b) + at(c)));
     for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (m_.opp[h] < h) look(m_.from(h), 0.5 * (at(m_.from(h)) + at(m_.to(h))));
+      if (m_.opp[h] < h) look({m_.from(h), m_.to(h)}, 0.5 * (at(m_.from(h)) + at(m_.to(h))));
   }
   return most;
 }
@@ -459,16 +464,23 @@ void Relaxer::mend_worst() {
   }
 }
 
-/// Where triangles of the result intersect, the surface is too thin or bends too much for their size: refine
-/// there, and ask for smaller triangles from then on. Ends with the fewest intersections it came to, when
-/// more rounds do not help.
+/// Where triangles of the result intersect, but not of the reference, the surface is too thin or bends too
+/// much for their size: refine there, and ask for smaller triangles from then on. Ends with the fewest
+/// intersections it came to, when more rounds do not help.
 void Relaxer::separate() {
   const int most = m_.live + m_.live / 4 + 1000;
   std::optional<Relaxer> best;
+  std::optional<Mesh> known;
   for (int round = 0, since_best = 0;; ++round) {
     std::vector<int> number;
     const Mesh now = compact(number);
     report_.intersections = self_intersections(now);
+    const int all = (int)report_.intersections.size();
+    if (all > 0) {
+      if (!known) known = contacts(ground_->surface, self_intersections(ground_->surface));
+      report_.intersections = new_intersections(now, report_.intersections, *known);
+    }
+    report_.intersections_of_reference = all - (int)report_.intersections.size();
     for (auto& [s, t] : report_.intersections) s = number[s], t = number[t];
     if (report_.intersections.empty()) return;
     const bool better = !best || report_.intersections.size() < best->report_.intersections.size();

@@ -118,10 +118,11 @@ class Relaxer {
   int on_line(int a, int b) const;
   void insert(int h, const Place& place, Vec3 p, Vec3 facing);
   void split_long(double above, double most);
-  bool collapse(int h, int gone, double worst, double longest);
+  bool collapse(int h, int gone, double worst, double longest, bool merge = false);
   bool collapse_either(int h, double worst, double longest);
   void collapse_short(double below, double least);
   void collapse_short_segments();
+  void merge_corners();
   void remove_irregular();
   bool may_flip(int h) const;
   double worst_now(int h) const;

@@ -17,7 +17,7 @@ namespace {
 /// Entries to compressed columns: two stable counting passes (by row, then by column), then equal places
 /// added up.
 template <class Scalar>
-Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& entries) {
+Eigen::SparseMatrix<Scalar> compress(int n, std::vector<Entry<Scalar>> entries) {
   auto sort_by = [n](const std::vector<Entry<Scalar>>& from, int Entry<Scalar>::*key,
                      std::vector<int>& start) {
     start.assign(n + 1, 0);
@@ -29,11 +29,11 @@ Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& en
     return to;
   };
   std::vector<int> start;
-  std::vector<Entry<Scalar>> sorted = sort_by(entries, &Entry<Scalar>::row, start);
-  sorted = sort_by(sorted, &Entry<Scalar>::col, start);
+  entries = sort_by(entries, &Entry<Scalar>::row, start);
+  entries = sort_by(entries, &Entry<Scalar>::col, start);
 
   Eigen::SparseMatrix<Scalar> m(n, n);
-  m.resizeNonZeros((Eigen::Index)sorted.size());
+  m.resizeNonZeros((Eigen::Index)entries.size());
   int* column = m.outerIndexPtr();
   int* row = m.innerIndexPtr();
   Scalar* value = m.valuePtr();
@@ -41,11 +41,11 @@ Eigen::SparseMatrix<Scalar> compress(int n, const std::vector<Entry<Scalar>>& en
   for (int c = 0; c < n; ++c) {
     column[c] = k;
     for (int e = start[c]; e < start[c + 1]; ++e) {
-      if (k > column[c] && row[k - 1] == sorted[e].row) {
-        value[k - 1] += sorted[e].value;
+      if (k > column[c] && row[k - 1] == entries[e].row) {
+        value[k - 1] += entries[e].value;
       } else {
-        row[k] = sorted[e].row;
-        value[k++] = sorted[e].value;
+        row[k] = entries[e].row;
+        value[k++] = entries[e].value;
       }
     }
   }
@@ -97,11 +97,11 @@ struct Factorisation<Scalar>::Impl {
 };
 
 template <class Scalar>
-Factorisation<Scalar>::Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle, SolveTime* time)
+Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time)
     : impl_(std::make_unique<Impl>()) {
   impl_->n = n;
   impl_->time = time;
-  Eigen::SparseMatrix<Scalar> m = compress(n, lower_triangle);
+  Eigen::SparseMatrix<Scalar> m = compress(n, std::move(lower_triangle));
   {
     Stopwatch watch(time ? &time->ordering : nullptr);
     impl_->ldlt.analyzePattern(m);
@@ -215,7 +215,7 @@ void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vec
   }
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
 
-  Factorisation<double>(n, matrix, time).solve(b);
+  Factorisation<double>(n, std::move(matrix), time).solve(b);
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) uv[v] = {b[unknown[v]], b[n + unknown[v]]};
 }

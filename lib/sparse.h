@@ -29,7 +29,7 @@ struct SolveTime {
 template <class Scalar>
 class Factorisation {
  public:
-  Factorisation(int n, const std::vector<Entry<Scalar>>& lower_triangle, SolveTime* time = nullptr);
+  Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr);
   ~Factorisation();
   Factorisation(Factorisation&&) noexcept;
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.

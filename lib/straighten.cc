@@ -211,7 +211,7 @@ std::vector<double> diffuse(const Bands& bands, std::vector<double> sign, const 
     if (bands.held[v] != Bands::free) diagonal[v] *= stiff;
     entries.push_back({v, v, diagonal[v]});
   }
-  const Factorisation<double> heat(n, entries);
+  const Factorisation<double> heat(n, std::move(entries));
   for (int step = 0; step < steps; ++step) {
     s.assign(n, 0);
     for (std::size_t k = 0; k < tris.size(); ++k)

@@ -34,7 +34,8 @@ Vec3 SurfaceWalk::point(const Place& p) const {
   return p.b0 * mesh_.points[v[0]] + p.b1 * mesh_.points[v[1]] + p.b2 * mesh_.points[v[2]];
 }
 
-Place SurfaceWalk::closest(const Place& from, Vec3 target) const {
+Place SurfaceWalk::closest(const Place& from, Vec3 target, bool through_walls) const {
+  const std::vector<int>& neighbour = through_walls ? opposite_ : neighbour_;
   auto project = [&](int face, double& d2) {
     const Tri& v = mesh_.tris[face];
     auto b = closest_on_triangle(target, mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]]);
@@ -62,7 +63,7 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target) const {
     };
     if (zeros == 1) {
       const int i = b[0] <= 0 ? 0 : b[1] <= 0 ? 1 : 2;  // on the edge opposite to corner i
-      int g = neighbour_[3 * place.face + (i + 1) % 3];
+      int g = neighbour[3 * place.face + (i + 1) % 3];
       if (g >= 0) look(g / 3);
     } else {
       // at a corner: all triangles round it, both ways when a wall is met
@@ -70,13 +71,13 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target) const {
       const int start = 3 * place.face + i;
       int h = start;
       do {
-        int g = neighbour_[prev(h)];
+        int g = neighbour[prev(h)];
         if (g < 0) break;
         look(g / 3);
         h = g;
       } while (h != start);
-      if (h != start || neighbour_[prev(start)] < 0)
-        for (int g = neighbour_[start]; g >= 0; g = neighbour_[next(g)]) {
+      if (h != start || neighbour[prev(start)] < 0)
+        for (int g = neighbour[start]; g >= 0; g = neighbour[next(g)]) {
           look(g / 3);
           if (next(g) == start) break;
         }

@@ -16,8 +16,8 @@ class SurfaceWalk {
   SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model);
   /// The place reached from `from` by steps to neighbouring triangles that come closer to `target`: it is
   /// connected to `from` on the surface, so the walk never jumps to another sheet. Never fails; a local
-  /// minimum is a valid answer.
-  Place closest(const Place& from, Vec3 target) const;
+  /// minimum is a valid answer. `through_walls`: as if there were no walls inside the surface.
+  Place closest(const Place& from, Vec3 target, bool through_walls = false) const;
   /// The place reached from `from`, which lies on a wall, by sliding along the wall towards `target`. Stops
   /// where the wall ends or others meet it. A place that is not on a wall is returned as it is.
   Place slide(const Place& from, Vec3 target) const;

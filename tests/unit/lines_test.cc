@@ -150,6 +150,26 @@ TEST(Lines, AreEquidistributedInTheSizeField) {
 
 // the border of a disk: a circle has no corner, however coarse the size, and closes with three segments at
 // least
+//   .--.      a strip bent to an arc, 1.3 sizes long: rounding down would cut the arc off, where one that is
+//  '    '     straight is a single segment
+TEST(Lines, BendsAreNotCutOff) {
+  auto bent = [](double x, double y) {
+    const double a = 1.3 * x - 0.65;
+    return Vec3{std::sin(a), std::cos(a) + 2 * y, 0};
+  };
+  auto straight = [](double x, double y) { return Vec3{1.3 * x, 2 * y, 0}; };
+  auto segments = [](const Surface& s) {
+    const Lines lines = make_lines(s, flat_charts(s, 1));
+    std::vector<int> count;
+    for (const Line& l : lines.lines) count.push_back(l.count - 1);
+    std::sort(count.begin(), count.end());
+    return count;
+  };
+  auto all = [](int, int) { return 0; };
+  EXPECT_EQ(segments(grid(20, 20, bent, all, 1)), (std::vector<int>{2, 2, 2, 2}));
+  EXPECT_EQ(segments(grid(20, 20, straight, all, 1)), (std::vector<int>{1, 1, 2, 2}));
+}
+
 TEST(Lines, CircleIsClosedAndStartsAtItsSmallestVertex) {
   auto ring = [](double a, double r) {
     return Vec3{(1 + r) * std::cos(2 * pi * a), (1 + r) * std::sin(2 * pi * a), 0};

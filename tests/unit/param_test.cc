@@ -370,7 +370,7 @@ TEST(Param, IntrinsicDelaunayFlipsNeedles) {
   auto worst = [&](const Filled& filled) {
     // of the inner edges, by their vertices: all belong to one pair here
     std::vector<std::pair<std::array<int, 2>, double>> edges;
-    auto w = cotangents(filled);
+    auto w = cotangents(filled.shape);
     for (int h = 0; h < (int)w.size(); ++h) {
       int a = origin(filled.tris, h), b = target(filled.tris, h);
       edges.push_back({{std::min(a, b), std::max(a, b)}, w[h]});

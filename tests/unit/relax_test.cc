@@ -138,7 +138,7 @@ TEST(Relax, DislocationsGo) {
 //        /|\.
 //       / | \.
 //   ___/__|__\___
-TEST(Relax, TipsAreReached) {
+Surface pyramid() {
   Mesh plate;
   const int n = 40;
   for (int j = 0; j <= n; ++j)
@@ -151,12 +151,46 @@ TEST(Relax, TipsAreReached) {
       const int a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
       plate.tris.push_back({a, b, d}), plate.tris.push_back({a, d, c});
     }
-  const Surface s = sized(plate, 700);
+  return sized(plate, 700);
+}
+
+double nearest_vertex(const LiftedMesh& m, Vec3 x) {
+  double nearest = 1e300;
+  for (Vec3 p : m.points) nearest = std::min(nearest, norm(p - x));
+  return nearest;
+}
+
+TEST(Relax, TipsAreReached) {
+  const Surface s = pyramid();
   LiftedMesh m = lifted_of(s);
   relax(m, s, {});
-  double nearest = 1e300;
-  for (Vec3 p : m.points) nearest = std::min(nearest, norm(p - Vec3{0, 0, 6}));
-  EXPECT_LT(nearest, 1e-9);
+  EXPECT_LT(nearest_vertex(m, {0, 0, 6}), 1e-9);
+  expect_on_surface(m, s);
+}
+
+// A model edge runs over the tip, from left to right through the middle.
+TEST(Relax, TipsOfModelEdgesAreReachedAlongThem) {
+  Surface s = pyramid();
+  std::vector<std::uint8_t> model(s.tris.size());
+  for (int t = 0; t < (int)s.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      if (s.points[s.tris[t][i]].y == 0 && s.points[s.tris[t][(i + 1) % 3]].y == 0) model[t] |= 1 << i;
+  s.face.set("model", model);
+  LiftedMesh m = lifted_of(s);
+  m.model = model;
+  relax(m, s, {});
+  EXPECT_LT(nearest_vertex(m, {0, 0, 6}), 1e-9);
+  double length = 0;
+  for (int t = 0; t < (int)m.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      if (m.model[t] >> i & 1) {
+        const Vec3 p = m.points[m.tris[t][i]], q = m.points[m.tris[t][(i + 1) % 3]];
+        EXPECT_EQ(p.y, 0);
+        EXPECT_EQ(q.y, 0);
+        length += 0.5 * norm(q - p);
+      }
+  // its three kinks cost little
+  EXPECT_NEAR(length, 28 + 12 * std::sqrt(2.0), 0.3);
   expect_on_surface(m, s);
 }
 

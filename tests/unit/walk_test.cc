@@ -40,6 +40,8 @@ TEST(SurfaceWalk, StopsAtTheBorderAndAtWalls) {
   SurfaceWalk walled(m, {0, 0b001, 0b100, 0, 0, 0, 0, 0});
   Vec3 x = walled.point(walled.closest({0, 1, 0, 0}, {2.1, 0.5, 1.5}));
   EXPECT_NEAR(x.x, 1, 1e-15);
+  x = walled.point(walled.closest({0, 1, 0, 0}, {2.1, 0.5, 1.5}, true));
+  EXPECT_NEAR(norm(x - Vec3{2, 0.5, 1.5}), 0, 1e-15);
 }
 
 }  // namespace
