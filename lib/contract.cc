@@ -72,11 +72,13 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
   if (name == "topology") {
     judge_topology(f, mesh, facts);
   } else if (name == "intersections") {
-    if ((int)f.intersections.size() > std::max(0, f.reference_intersections))
-      facts.push_back(
-          std::to_string(f.intersections.size()) + " pairs of triangles intersect, the reference has " +
-          std::to_string(f.reference_intersections) + "; the first is triangle " +
-          std::to_string(f.intersections[0].second) + " with " + triangle(mesh, f.intersections[0].first));
+    const std::size_t n = f.new_intersections.size();
+    if (n > 0)
+      facts.push_back(std::to_string(n) +
+                      (n == 1 ? " pair of triangles intersects" : " pairs of triangles intersect") +
+                      " where the reference does not; the first is triangle " +
+                      std::to_string(f.new_intersections[0].second) + " with " +
+                      triangle(mesh, f.new_intersections[0].first));
   } else if (name == "folds") {
     if (!f.folds.empty())
       facts.push_back(std::to_string(f.folds.size()) + (f.folds.size() == 1 ? " edge is" : " edges are") +
@@ -131,13 +133,14 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
       for (const auto* kind : {&f.mesh.degenerate, &f.mesh.nonmanifold, &f.mesh.turned, &f.mesh.pinched})
         for (int t : *kind) faults[t] |= fault_topology;
     if (r.name == "intersections")
-      for (auto [s, t] : f.intersections) faults[s] |= fault_intersects, faults[t] |= fault_intersects;
+      for (auto [s, t] : f.new_intersections) faults[s] |= fault_intersects, faults[t] |= fault_intersects;
     if (r.name == "folds")
       for (int h : f.folds) faults[h / 3] |= fault_folded, faults[f.mesh.opposite[h] / 3] |= fault_folded;
     for (std::size_t t = 0; t < faults.size(); ++t) {
       const Tri& v = mesh.tris[t];
       if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit)) faults[t] |= fault_kappa;
-      if (r.name == "vertices" && !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
+      if (r.name == "vertices" &&
+          !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
         faults[t] |= fault_vertex;
     }
   }
@@ -167,7 +170,8 @@ Contract parse_contract(const std::string& list) {
     const std::string number = item.substr(std::min(name.size() + 1, item.size()));
     double value = 0;
     const auto r = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (r.ec != std::errc() || r.ptr != number.data() + number.size() || !(value >= 0 && std::isfinite(value)))
+    if (r.ec != std::errc() || r.ptr != number.data() + number.size() ||
+        !(value >= 0 && std::isfinite(value)))
       throw BadUsage("requirement '" + item + "' needs a number, as in " + name + "=0.1");
     contract.push_back({name, value});
   }
@@ -206,6 +210,16 @@ Surface culprits(const Contract& contract, const Findings& findings, const Mesh&
   return s;
 }
 
+std::vector<double> severity_of(const Surface& culprits, std::size_t n) {
+  constexpr double crowded = 2, crossing = 1.2;  // sizes of three tenths and a half
+  std::vector<double> severity(n, 0);
+  const auto& triangle = culprits.face.get<int>("triangle");
+  const auto& fault = culprits.face.get<std::uint8_t>("fault");
+  for (std::size_t i = 0; i < triangle.size(); ++i)
+    severity[triangle[i]] = fault[i] & fault_kappa ? crowded : crossing;
+  return severity;
+}
+
 std::vector<Figure> figures(const Findings& f) {
   const Connectivity &m = f.mesh, &r = f.reference;
   const Quality &q = f.quality, &p = f.reference_quality;
@@ -225,6 +239,7 @@ std::vector<Figure> figures(const Findings& f) {
       {"pinched_vertices", "pinched vertices", count, (double)r.pinched.size(), (double)m.pinched.size()},
       {"self_intersections", "self-intersections", count,
        f.reference_intersections < 0 ? nan : f.reference_intersections, (double)f.intersections.size()},
+      {"new_intersections", "where reference has none", count, nan, (double)f.new_intersections.size()},
       {"folds", "folded edges", count, nan, (double)f.folds.size()},
       {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},
       {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},

@@ -29,11 +29,11 @@ using Contract = std::vector<Requirement>;
 extern const char* const default_contract;
 
 /// From a list as "topology,intersections,kappa=0.1". Throws BadUsage naming what is wrong in it.
-/// topology: sound, and components, genus and loops as the reference; intersections, folds: no more pairs
-/// than the reference has, no folds (find_folds); patches: every patch of the reference is there. More than
-/// the limit: kappa, kappa_off_wedges, kappa_mean, angle (degrees). No more than the limit: hausdorff (of the
-/// upper bound), boundary, features, mean and rms (over the diagonal), vertices (the largest Findings::off),
-/// size (edge deviation), trace (kappa_elsewhere - kappa_by_cuts).
+/// topology: sound, and components, genus and loops as the reference; intersections, folds: none where the
+/// reference has none (new_intersections), no folds (find_folds); patches: every patch of the reference is
+/// there. More than the limit: kappa, kappa_off_wedges, kappa_mean, angle (degrees). No more than the limit:
+/// hausdorff (of the upper bound), boundary, features, mean and rms (over the diagonal), vertices (the
+/// largest Findings::off), size (edge deviation), trace (kappa_elsewhere - kappa_by_cuts).
 Contract parse_contract(const std::string& list);
 
 struct Failure {
@@ -43,9 +43,18 @@ struct Failure {
 std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
 /// Why a triangle is at fault: bits.
-enum CulpritFault { fault_topology = 1, fault_intersects = 2, fault_folded = 4, fault_kappa = 8, fault_vertex = 16 };
+enum CulpritFault {
+  fault_topology = 1,
+  fault_intersects = 2,
+  fault_folded = 4,
+  fault_kappa = 8,
+  fault_vertex = 16
+};
 /// The triangles in which the contract finds a fault, with face columns int `triangle`, their number in the
 /// mesh, and uchar `fault`. Vertices stay, some unused.
 Surface culprits(const Contract& contract, const Findings& findings, const Mesh& mesh);
+/// For each of the mesh's n triangles, by what its size is too large for a sound mesh, in the sense of the
+/// errors of refined_size with limit 1; 0 where no culprit is.
+std::vector<double> severity_of(const Surface& culprits, std::size_t n);
 
 }  // namespace meshpipe

@@ -87,14 +87,14 @@ int EditMesh::split(int h) {
   return m;
 }
 
-bool EditMesh::can_collapse(int h, int gone) const {
+bool EditMesh::can_collapse(int h, int gone, bool merge) const {
   const int kept = from(h) == gone ? to(h) : from(h), g = opp[h];
   const int c = apex(h), d = g < 0 ? -1 : apex(g);
   int hard_edges = 0, last = 0;
   star(gone, [&](int e) { hard_edges += hard[e], last = e; });
   const bool border = opp[prev(last)] < 0;
   hard_edges += border;
-  if (hard_edges != 0 && (hard_edges != 2 || !hard[h])) return false;
+  if (!merge && hard_edges != 0 && (hard_edges != 2 || !hard[h])) return false;
   if (border && g >= 0) return false;
   bool ok = true;
   // the only neighbours of both ends are the apexes

@@ -59,8 +59,9 @@ struct EditMesh {
   /// triangles go. Precondition: can_collapse(h, gone).
   void collapse(int h, int gone);
   /// `gone` has no hard edge, or two of which h is one (it is taken out of its line), and the result is a
-  /// manifold of the same topology (link condition).
-  bool can_collapse(int h, int gone) const;
+  /// manifold of the same topology (link condition). With `merge`, any number of hard edges may meet in
+  /// `gone`.
+  bool can_collapse(int h, int gone, bool merge = false) const;
 };
 
 }  // namespace meshpipe

@@ -168,8 +168,11 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
   f.intersections = self_intersections(result, mesh_tree);
-  if (!f.intersections.empty())
-    f.reference_intersections = (int)self_intersections(reference, reference_tree).size();
+  if (!f.intersections.empty()) {
+    const auto before = self_intersections(reference, reference_tree);
+    f.reference_intersections = (int)before.size();
+    f.new_intersections = new_intersections(result, f.intersections, contacts(reference, before));
+  }
   add_progress(0.3);
   f.folds = find_folds(result, f.mesh.opposite, reference, reference_tree);
   f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);

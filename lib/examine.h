@@ -17,9 +17,10 @@ struct Findings {
   Distance distance;
   double boundary = 0;  ///< Hausdorff distance of the borders over the diagonal; infinite if only one has any
   std::optional<double> features;  ///< the same of borders and model edges, if both know their model edges
-  std::vector<std::pair<int, int>> intersections;  ///< pairs of the mesh's triangles
-  int reference_intersections = -1;                ///< counted only when the mesh has some
-  std::vector<int> folds;                          ///< half-edges of the mesh, see find_folds
+  std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
+  std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
+  int reference_intersections = -1;                    ///< counted only when the mesh has some
+  std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
   std::vector<double> off;      ///< of every vertex of the mesh: distance to the reference over its mean edge
   int farthest = -1;            ///< the vertex with the largest `off`
   double kappa_off_wedges = 0;  ///< see lib/check.h; kappa_min if no model edges are known
@@ -41,8 +42,8 @@ std::vector<int> find_folds(const Mesh& mesh, const std::vector<int>& opposite, 
 
 /// Mean kappa of the triangles whose centre is within an edge (their mean one) of an interface line, and of
 /// all others; triangles that touch the border or a model edge (bit i of `model`, which may be empty) are in
-/// neither, since those cost quality of their own; none where there are no such triangles. Where a result shows no trace of the cuts the two means
-/// are the same. The lines lie on `surface`.
+/// neither, since those cost quality of their own; none where there are no such triangles. Where a result
+/// shows no trace of the cuts the two means are the same. The lines lie on `surface`.
 std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(
     const Mesh& mesh, const Bvh& tree, const Quality& quality, const std::vector<int>& opposite,
     const std::vector<std::uint8_t>& model, const Lines& lines, const Mesh& surface);

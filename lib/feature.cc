@@ -18,8 +18,9 @@ constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in good chains
-constexpr double gap = 0.05;  ///< of the strong edges, by length: weaker ones that leave a gap between
-constexpr double room = 1.5;  ///< target lengths between creases, on average
+constexpr double gap = 0.05;     ///< of the strong edges, by length: weaker ones that leave a gap between
+constexpr double room = 1.5;     ///< target lengths between creases, on average
+constexpr double sliver = 0.02;  ///< target lengths: no mesh shows which way a strip faces that is as thin
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 class Creases {
@@ -28,7 +29,8 @@ class Creases {
           const std::vector<char>* given)
       : s_(surface), opposite_(opposite_halfedges(surface.tris, (int)surface.points.size())) {
     const int n = (int)opposite_.size();
-    const std::vector<Vec3> normal = sound_normals(s_, opposite_);
+    size_ = options.size > 0 ? options.size : size_for_count(total_area(s_), (double)s_.tris.size());
+    const std::vector<Vec3> normal = sound_normals(s_, opposite_, sliver * size_);
     angle_.assign(n, 0);
     on_.assign(n, 0);
     patch_.assign(n, 0);
@@ -55,7 +57,6 @@ class Creases {
     // coarse model of few triangles has no longer chains than a tenth of itself
     const double mean = n ? sum / n : 0, most = 0.1 * diagonal(s_);
     telling_ = std::min(5 * mean, most);
-    size_ = options.size > 0 ? options.size : size_for_count(total_area(s_), (double)s_.tris.size());
     short_ = std::min(3 * (options.size > 0 ? options.size : mean), most);
   }
 
@@ -294,8 +295,9 @@ class Creases {
 
 }  // namespace
 
-std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite) {
-  const double least = 3e-6 * diagonal(mesh);
+std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite, double thin) {
+  constexpr double slender = 0.05;
+  const double rounding = 3e-6 * diagonal(mesh);
   const int n = (int)mesh.tris.size();
   std::vector<Vec3> normal(n);
   std::vector<int> heir(n, -1);
@@ -311,6 +313,7 @@ std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposi
         longest = h;
       }
     normal[t] = normalized(a);
+    const double least = std::max(rounding, std::min(thin, slender * length));
     if (norm(a) < least * length) heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
   }
   for (int t = 0; t < n; ++t) {

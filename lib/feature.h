@@ -12,8 +12,9 @@ struct FeatureOptions {
 };
 
 /// Unit normals of the triangles. A triangle so thin that rounding of single-precision coordinates turns its
-/// normal has that of the neighbour across its longest edge, in whose plane it lies.
-std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite);
+/// normal has that of the neighbour across its longest edge, in whose plane it lies; so has one that is
+/// thinner than `thin` and than a twentieth of its length.
+std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite, double thin = 0);
 
 struct FeatureReport {
   int model_edges = 0, patch_edges = 0, given_edges = 0, crease_edges = 0, corners = 0;

@@ -104,6 +104,30 @@ bool disjoint_triangles_meet(const Corners& s, const Corners& t) {
          segment_meets(t.b, t.c, t1, t2, s) || segment_meets(t.c, t.a, t2, t0, s);
 }
 
+/// The end points of the segment that two triangles share, or any points near it.
+std::pair<Vec3, Vec3> contact(const Mesh& mesh, int s, int t) {
+  std::vector<Vec3> found;
+  for (auto [f, g] : {std::pair{corners(mesh, s), corners(mesh, t)}, {corners(mesh, t), corners(mesh, s)}}) {
+    const Vec3 n = normalized(area_vector(g.a, g.b, g.c)), p[4] = {f.a, f.b, f.c, f.a};
+    for (int i = 0; i < 3; ++i) {
+      const double d0 = dot(p[i] - g.a, n), d1 = dot(p[i + 1] - g.a, n), longest = norm(p[i + 1] - p[i]);
+      if (d0 * d1 > 0 || d0 == d1) continue;
+      const Vec3 x = lerp(p[i], p[i + 1], d0 / (d0 - d1));
+      const auto b = closest_on_triangle(x, g.a, g.b, g.c);
+      if (norm(b[0] * g.a + b[1] * g.b + b[2] * g.c - x) <= 1e-6 * longest) found.push_back(x);
+    }
+  }
+  if (found.empty()) {
+    const Box a = box_of(mesh, s), b = box_of(mesh, t);
+    found.push_back(lerp(upper(a.lo, b.lo), lower(a.hi, b.hi), 0.5));
+  }
+  std::pair<Vec3, Vec3> ends{found[0], found[0]};
+  for (Vec3 x : found)
+    for (Vec3 y : found)
+      if (norm(y - x) > norm(ends.second - ends.first)) ends = {x, y};
+  return ends;
+}
+
 }  // namespace
 
 bool triangles_intersect(const Mesh& mesh, int s, int t) {
@@ -165,6 +189,36 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
   });
   std::sort(all.begin(), all.end());
   return all;
+}
+
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
+  Mesh segments;
+  for (auto [s, t] : pairs) {
+    const auto [a, b] = contact(mesh, s, t);
+    const int n = (int)segments.points.size();
+    segments.points.insert(segments.points.end(), {a, b});
+    segments.tris.push_back({n, n + 1, n + 1});
+  }
+  return segments;
+}
+
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Mesh& known) {
+  if (known.tris.empty()) return pairs;
+  const Bvh tree(known);
+  std::vector<std::pair<int, int>> found;
+  for (auto [s, t] : pairs) {
+    double longest = 0;
+    for (int u : {s, t})
+      for (int i = 0; i < 3; ++i)
+        longest =
+            std::max(longest, norm(mesh.points[mesh.tris[u][(i + 1) % 3]] - mesh.points[mesh.tris[u][i]]));
+    const auto [a, b] = contact(mesh, s, t);
+    const auto is_known = [&](Vec3 p) { return tree.nearest(p).distance <= 2 * longest; };
+    if (!is_known(lerp(a, b, 0.5)) && !is_known(a) && !is_known(b)) found.push_back({s, t});
+  }
+  return found;
 }
 
 }  // namespace meshpipe

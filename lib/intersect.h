@@ -19,4 +19,14 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 /// The same with the mesh's tree at hand.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
 
+/// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
+/// plane, the middle of what their boxes share.
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
+
+/// Those of the intersecting pairs that meet farther than two of their edges from `known`, the contacts of
+/// another mesh of the same surface: that one does not intersect there.
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Mesh& known);
+
 }  // namespace meshpipe

@@ -15,7 +15,10 @@ struct RelaxOptions {
 
 struct RelaxReport {
   int splits = 0, collapses = 0, flips = 0, moves = 0;
-  std::vector<std::pair<int, int>> intersections;  ///< pairs of triangles left in the result, sorted
+  int corners_merged = 0;  ///< corners of the model that went to another, which was much nearer than the size
+  /// Pairs of triangles left in the result that intersect where the reference does not, sorted.
+  std::vector<std::pair<int, int>> intersections;
+  int intersections_of_reference = 0;  ///< pairs of the result where the reference intersects, too
   double kappa_min = 0, kappa_mean = 0;
 };
 

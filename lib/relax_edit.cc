@@ -44,7 +44,8 @@ Place Relaxer::place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing)
 bool Relaxer::split(int h) {
   const int g = m_.opp[h], a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
   if (g < 0 && options_.keep_border) return false;
-  if (g < 0 && held_[a] == frozen && held_[b] == frozen) return false;  // the rim of a patch, as a rule
+  // the rim of a patch, as a rule, or a seam
+  if (g < 0 && held_[a] >= frozen && held_[b] >= frozen) return false;
   const Vec3 middle = lerp(at(a), at(b), 0.5);
   Place place;
   Vec3 facing{};
@@ -117,12 +118,13 @@ void Relaxer::split_long(double above, double most) {
 /// Takes the vertex `gone` of the edge of h out, into the edge's other end (or a better point if that is
 /// free), when the star stays unfolded, sound in shape (energy at most `worst`, or no worse than now) and no
 /// edge gets longer than `longest` times the size. A vertex on a border or model edge goes only along it, and
-/// only if the line hardly changes.
-bool Relaxer::collapse(int h, int gone, double worst, double longest) {
+/// only if the line hardly changes. With `merge` it is a corner that goes into another.
+bool Relaxer::collapse(int h, int gone, double worst, double longest, bool merge) {
   const int kept = m_.from(h) == gone ? m_.to(h) : m_.from(h), g = m_.opp[h];
   if (held_[kept] == frozen) return false;  // may be joined outside the patch
-  if (held_[gone] >= fixed || (held_[gone] == slides && !m_.hard[h]) || !m_.can_collapse(h, gone))
+  if (merge ? held_[gone] != fixed : held_[gone] >= fixed || (held_[gone] == slides && !m_.hard[h]))
     return false;
+  if (!m_.can_collapse(h, gone, merge)) return false;
   const int c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
   if (g >= 0 && m_.valence(gone) + m_.valence(kept) - 4 > 9) return false;
   if (d >= 0 && held_[c] && held_[d] && held_[kept] && !m_.hard[h]) return false;
@@ -188,6 +190,27 @@ void Relaxer::collapse_short(double below, double least) {
 void Relaxer::collapse_short_segments() {
   for (int h = 0; h < (int)m_.opp.size(); ++h)
     if (!m_.dead(h / 3) && m_.hard[h] && h > m_.opp[h] && ratio(h) < 0.6) collapse_either(h, 4, 1.6);
+}
+
+/// Corners that a line of the model joins and that are so close that no triangle there could be good without
+/// being tiny become one.
+void Relaxer::merge_corners() {
+  constexpr double close = 0.05;
+  for (int h = 0; h < (int)m_.opp.size(); ++h) {
+    if (m_.dead(h / 3) || !m_.hard[h] || h < m_.opp[h] || !(ratio(h) < close)) continue;
+    const int a = m_.from(h), b = m_.to(h);
+    if (held_[a] != fixed || held_[b] != fixed) continue;
+    if (options_.keep_border && (m_.on_border(a) || m_.on_border(b))) continue;
+    // two lines may become one only where they are as close, and not round the last triangle of a patch
+    auto joins_lines = [&](int e) {
+      if (e < 0 || !m_.hard[next(e)] || !m_.hard[prev(e)]) return false;
+      const int t = m_.opp[next(e)] / 3;
+      return m_.opp[next(e)] < 0 || m_.opp[prev(e)] < 0 || lifted_.patch[t] != lifted_.patch[e / 3] ||
+             !(ratio(next(e)) < close && ratio(prev(e)) < close);
+    };
+    if (joins_lines(h) || joins_lines(m_.opp[h])) continue;
+    if (collapse(h, a, 4, 1.6, true) || collapse(h, b, 4, 1.6, true)) ++report_.corners_merged;
+  }
 }
 
 /// Inside vertices of valence 3 and 4 go: their star becomes one or two triangles.

@@ -126,9 +126,10 @@ bool Relaxer::go_to(const Place& tip, int t, double least) {
   // by a vertex of the triangle nearest to it, then by a new one on an edge of that
   for (int i = 0; i < 6; ++i) {
     const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
-    const bool hard = before.m_.hard[h], crease = hard && before.m_.opp[h] >= 0;
+    const bool hard = before.m_.hard[h], seam = held_[from] == paired && held_[to] == paired;
+    const bool stays = seam || (before.m_.opp[h] >= 0 && this->on_line(from, to) < 0);
     const bool on_line = i < 3 ? held_[from] == slides : hard;
-    if (i >= 3 && (hard ? crease && this->on_line(from, to) < 0 : held_[from] == slides)) continue;
+    if (i >= 3 && (hard ? stays : held_[from] == slides)) continue;
     if (!goes_there(from) && !(i >= 3 && hard && goes_there(to))) continue;
     Relaxer after = before;
     int v = after.m_.from(h);
@@ -372,7 +373,7 @@ std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool t
     return trials;
   };
   const Relaxer before = patch(triangles, vertices_of(triangles));
-  const double good_enough = 0.9 * before.badness();
+  const double bad = before.badness(), good_enough = bad - std::min(0.1 * bad, 0.05);
   const std::vector<Trial> trials = try_all(before, before.edits_round(0, thorough));
   if (trials.empty()) return {};
   Trial best = trials.front();
@@ -470,16 +471,23 @@ void Relaxer::mend_worst() {
   }
 }
 
-/// Where triangles of the result intersect, the surface is too thin or bends too much for their size: refine
-/// there, and ask for smaller triangles from then on. Ends with the fewest intersections it came to, when
-/// more rounds do not help.
+/// Where triangles of the result intersect, but not of the reference, the surface is too thin or bends too
+/// much for their size: refine there, and ask for smaller triangles from then on. Ends with the fewest
+/// intersections it came to, when more rounds do not help.
 void Relaxer::separate() {
   const int most = m_.live + m_.live / 4 + 1000;
   std::optional<Relaxer> best;
+  std::optional<Mesh> known;
   for (int round = 0, since_best = 0;; ++round) {
     std::vector<int> number;
     const Mesh now = compact(number);
     report_.intersections = self_intersections(now);
+    const int all = (int)report_.intersections.size();
+    if (all > 0) {
+      if (!known) known = contacts(ground_->surface, self_intersections(ground_->surface));
+      report_.intersections = new_intersections(now, report_.intersections, *known);
+    }
+    report_.intersections_of_reference = all - (int)report_.intersections.size();
     for (auto& [s, t] : report_.intersections) s = number[s], t = number[t];
     if (report_.intersections.empty()) return;
     const bool better = !best || report_.intersections.size() < best->report_.intersections.size();

@@ -246,8 +246,10 @@ std::string recorded(const CLI::App& app) {
     if (!out.empty()) out += ' ';
     out += o->get_name(!o->nonpositional());
     if (o->get_expected_min() == 0) continue;
+    const bool file = o->get_type_name().starts_with("FILE");  // its name depends on where the program ran
     char between = '=';
     for (const std::string& r : o->results()) {
+      if (file && r != "none") continue;
       out += between + r;
       between = ',';
     }
@@ -475,10 +477,13 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
     // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
     const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
-    const bool said =
-        culprit != program && std::getenv("MESHPIPE_DRIVER");  // by the culprit, and mremesh ran it
-    if (!said && (!pass_on || culprit == program))
-      std::fprintf(stderr, "%s: error: %s\n", program, why.c_str());
+    // the driver tells what a program failed with, once, unless it can do better: the variable is a file
+    const char* driver = std::getenv("MESHPIPE_DRIVER");
+    if (culprit == program || (!driver && !pass_on)) {
+      std::FILE* told = driver ? std::fopen(driver, "a") : nullptr;
+      std::fprintf(told ? told : stderr, "%s: error: %s\n", program, why.c_str());
+      if (told) std::fclose(told);
+    }
     if (pass_on) {
       std::string line = "mply-failed " + culprit + ' ' + std::to_string(status) + '\n';
       (void)!::write(STDOUT_FILENO, line.data(), line.size());
@@ -533,7 +538,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
       write_report();
     } catch (const CannotWrite&) {
       struct stat info {};
-      if (::stat(io.finished_.c_str(), &info) == 0 && !in_place(io.finished_, info)) ::unlink(io.finished_.c_str());
+      if (::stat(io.finished_.c_str(), &info) == 0 && !in_place(io.finished_, info))
+        ::unlink(io.finished_.c_str());
       throw;
     }
     return 0;

@@ -73,22 +73,27 @@ void tell(Io& io, const Findings& f) {
   report["reference"] = reference;
 }
 
-/// The result with the sizes that would meet the largest error allowed.
-void write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o) {
+/// The result with sizes that would be small enough where it is too far from the reference, and smaller ones
+/// where it is at fault; none if that is nowhere.
+void write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o,
+                   const Surface& faulty) {
   Stream refined;
   static_cast<Mesh&>(refined.surface) = stream.surface;
-  const auto errors = triangle_errors(reference, Bvh(reference), refined.surface, Bvh(refined.surface));
-  const auto& size = stream.surface.vertex.get<double>("size");
-  refined.surface.face.rows = refined.surface.tris.size();
-  refined.surface.vertex.set("size",
-                             refined_size(refined.surface, size, errors, o.max_error * diagonal(reference)));
+  const auto& given = stream.surface.vertex.get<double>("size");
+  std::vector<double> size = given;
+  if (o.max_error > 0) {
+    const auto errors = triangle_errors(reference, Bvh(reference), refined.surface, Bvh(refined.surface));
+    size = refined_size(refined.surface, size, errors, o.max_error * diagonal(reference));
+  }
+  size = refined_size(refined.surface, size, severity_of(faulty, refined.surface.tris.size()), 1);
+  if (size == given) return;
+  refined.surface.vertex.set("size", std::move(size));
   io.write_to(o.refine, refined);
 }
 
 void check(Io& io, const Options& o) {
   Contract contract = parse_contract(o.require);
   if (o.max_error > 0) contract.push_back({"hausdorff", o.max_error});
-  if (!o.refine.empty() && !(o.max_error > 0)) throw BadUsage("--refine needs --max-error");
   if (!o.histogram.empty()) io.expect_report("--histogram", o.histogram);
   if (!o.culprits.empty()) io.expect_report("--culprits", o.culprits, true);
   if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
@@ -110,8 +115,8 @@ void check(Io& io, const Options& o) {
     io.say("failed: " + x.requirement + ": " + x.fact);
     io.report["failed"].push_back({{"requirement", x.requirement}, {"fact", x.fact}});
   }
-  const bool far = f.distance.hausdorff + f.distance.bound > o.max_error;
-  if (!o.refine.empty() && far) write_refined(io, stream, reference, o);
+  if (!o.refine.empty() && !failures.empty())
+    write_refined(io, stream, reference, o, culprits(contract, f, stream.surface));
   if (failures.empty() || o.accept) io.write(stream);
   if (failures.empty()) return;
   throw ContractMissed(
@@ -140,7 +145,7 @@ int main(int argc, char** argv) {
     report("--samples", o.samples, "points on each surface for the distance (default 10000)")
         ->check(CLI::Range(1, 100000000));
     report("--histogram", o.histogram, "draw kappa and angles of both meshes")->type_name("FILE.svg");
-    report("--refine", o.refine, "if --max-error is missed, write the sizes that would meet it")
+    report("--refine", o.refine, "if the contract is missed, write the sizes that may meet it")
         ->type_name("FILE");
     report("--culprits", o.culprits, "write the triangles at fault")->type_name("FILE");
   };

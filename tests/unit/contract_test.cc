@@ -147,8 +147,9 @@ TEST(contract, a_crossing_and_a_lost_name) {
   const Mesh good = sphere(500);
   Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);
   f.lost_patches = {"inlet"};
-  f.intersections = {{4, 9}};
-  f.reference_intersections = 0;
+  f.intersections = {{4, 9}, {5, 8}};
+  f.new_intersections = {{4, 9}};
+  f.reference_intersections = 1;
   const Contract contract = parse_contract(default_contract);
   const auto failures = judge(contract, f, good);
   ASSERT_EQ(failures.size(), 2u);

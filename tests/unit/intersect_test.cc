@@ -75,5 +75,28 @@ TEST(intersect, triangles_without_area_are_left_out) {
   EXPECT_TRUE(self_intersections(m).empty());
 }
 
+// two spheres through each other, meshed twice: the finer mesh has more pairs, but none that is new
+TEST(intersect, new_are_those_where_the_reference_has_none) {
+  auto two = [](int n, double apart) {
+    Mesh m = sphere(n);
+    const int points = (int)m.points.size(), tris = (int)m.tris.size();
+    for (int v = 0; v < points; ++v) m.points.push_back(m.points[v] + Vec3{apart, 0, 0});
+    for (int t = 0; t < tris; ++t)
+      m.tris.push_back({m.tris[t][0] + points, m.tris[t][1] + points, m.tris[t][2] + points});
+    return m;
+  };
+  const Mesh coarse = two(400, 0.6), fine = two(4000, 0.6), closer = two(4000, 0.1), apart = two(400, 3);
+  const auto pairs = self_intersections(coarse);
+  const Mesh known = contacts(coarse, pairs);
+  ASSERT_EQ(known.tris.size(), pairs.size());
+  for (const Vec3& p : known.points) EXPECT_NEAR(p.x, 0.3, 0.1);  // the circle where they meet
+  const auto more = self_intersections(fine);
+  EXPECT_GT(more.size(), pairs.size());
+  EXPECT_TRUE(new_intersections(fine, more, known).empty());
+  const auto other = self_intersections(closer);
+  EXPECT_GT(new_intersections(closer, other, known).size(), other.size() / 2);
+  EXPECT_EQ(new_intersections(fine, more, contacts(apart, self_intersections(apart))), more);
+}
+
 }  // namespace
 }  // namespace meshpipe

@@ -225,6 +225,40 @@ TEST(Relax, CornersOfABorderStayAndItsOtherVerticesSlide) {
   EXPECT_NEAR((double)m.tris.size(), 500, 15);
 }
 
+//   .-----.   two sheets that meet at right angles in an arc, but for a millionth: an open seam. The two
+//   borders
+//  /  ---  \  keep the points they share, so that their chords do not cross.
+TEST(Relax, OpenSeamsKeepTheirPoints) {
+  Mesh sheets;
+  const int n = 24;
+  for (int sheet = 0; sheet < 2; ++sheet) {
+    const int first = (int)sheets.points.size();
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        const double x = (double)i / n, y = (double)j / n, arc = 0.5 * x * (1 - x);
+        sheets.points.push_back(sheet ? Vec3{x, arc - 1e-6, -y} : Vec3{x, arc + y, 0});
+      }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const int a = first + j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+        if (sheet)
+          sheets.tris.push_back({a, d, b}), sheets.tris.push_back({a, c, d});
+        else
+          sheets.tris.push_back({a, b, d}), sheets.tris.push_back({a, d, c});
+      }
+  }
+  const Surface s = sized(sheets, 2 * n * n);
+  LiftedMesh m = lifted_of(s);
+  const RelaxReport r = relax(m, s, {});
+  EXPECT_TRUE(r.intersections.empty());
+  int found[2] = {0, 0};
+  for (Vec3 p : m.points)
+    for (int sheet : {0, 1})
+      if (norm(p - Vec3{p.x, 0.5 * p.x * (1 - p.x) - sheet * 1e-6, 0}) < 1e-9) ++found[sheet];
+  EXPECT_EQ(found[0], found[1]);
+  EXPECT_EQ(found[0], n + 1);
+}
+
 TEST(PlaceOn, BordersGoToBordersAndTheRestToTheSurface) {
   Mesh coarse = tube(4, 10, false), fine = tube(4, 24, false);
   ASSERT_FALSE(coarse.tris.empty());
