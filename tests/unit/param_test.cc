@@ -475,3 +475,39 @@ TEST(Param, ALimbWithFewEdgesRoundIsCutAlong) {
   creased.face.set("model", std::move(model));
   EXPECT_EQ(map_surface(creased, 1, {}, reports).size(), 1u);
 }
+
+// The same tube with a ring of its own at one end: the cut ends on the ring's border, whose map stays.
+TEST(Param, TheMapOfANeighbourOfACutStays) {
+  constexpr int n = 24, m = 27, rows = 24;
+  auto tube = grid(
+      n, m, true,
+      [](double s, double t) {
+        double a = 2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), 2.3 * pi * t};
+      },
+      all);
+  Surface s;
+  static_cast<Mesh&>(s) = tube;
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  std::vector<int> part(s.tris.size(), 0);
+  for (std::size_t t = 0; t < part.size(); ++t) part[t] = t >= 2 * n * rows;
+  s.face.set("part", std::move(part));
+  std::vector<ParamReport> reports;
+  Surface strict = s;
+  const Chart before = map_surface(strict, 2, {.strict = true}, reports)[1];
+  const std::vector<Chart> charts = map_surface(s, 2, {}, reports);
+  ASSERT_EQ(charts.size(), 3u);
+  const Chart& after = charts[1];
+  EXPECT_EQ(after.uv.size(), before.uv.size() + 2);
+  EXPECT_TRUE(one_to_one(after.mesh, after.uv));
+  for (std::size_t i = 0; i < before.uv.size(); ++i) {
+    const auto& vertex = after.mesh.vertex;
+    const auto k = std::find(vertex.begin(), vertex.end(), before.mesh.vertex[i]) - vertex.begin();
+    ASSERT_LT(k, std::ssize(vertex));
+    EXPECT_EQ(after.uv[k].x, before.uv[i].x);
+    EXPECT_EQ(after.uv[k].y, before.uv[i].y);
+  }
+  const ParamReport again = distortion(after.mesh, after.uv);
+  EXPECT_EQ(reports[1].anisotropy_p99, again.anisotropy_p99);
+}
