@@ -45,6 +45,13 @@ std::vector<int> patches_of_word(const std::string& word, const std::vector<int>
   return found;
 }
 
+/// Is it the name of a patch of which cleaning has left nothing?
+bool is_lost(const std::string& word, const Stream& stream) {
+  return std::any_of(stream.names.begin(), stream.names.end(), [&](const Name& n) {
+    return n.dim == 2 && fnmatch(word.c_str(), n.text.c_str(), 0) == 0;
+  });
+}
+
 }  // namespace
 
 std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& where, const Stream& stream) {
@@ -65,11 +72,12 @@ std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& w
     }
     for (const std::string& word : words) {
       const std::vector<int> found = patches_of_word(word, labels, stream);
-      if (found.empty()) text.fail("no patch has the name or number " + quoted(word));
+      if (found.empty() && !is_lost(word, stream))
+        text.fail("no patch has the name or number " + quoted(word));
       group.patches.insert(group.patches.end(), found.begin(), found.end());
     }
-    if (group.patches.empty()) text.fail("a group of 0 patches");
-    groups.push_back(std::move(group));
+    if (words.empty()) text.fail("a group of 0 patches");
+    if (!group.patches.empty()) groups.push_back(std::move(group));
   }
   return groups;
 }

@@ -16,7 +16,8 @@ struct PatchGroup {
 
 /// A group a line: patches by name or number, parted by blanks; before them NAME = if the group is to have
 /// another name. A word in double quotes may hold blanks. * ? [ ] in a name stand for others as in the shell.
-/// Lines that begin with # are skipped. Throws BadInput with the line if a word names no patch of the stream.
+/// Lines that begin with # are skipped; a word may name a patch that has no faces any more. Throws BadInput with
+/// the line if it names none.
 std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& where, const Stream& stream);
 
 }  // namespace meshpipe

@@ -69,12 +69,14 @@ void solve_patches(const SubMesh& part, const Disk& disk, int rings, std::vector
   solve_dirichlet(tris, weights, fixed, uv);
 }
 
-/// Cuts a part along its limbs if its triangles then keep their shape much better in every piece; not across
+/// Cuts a limb along its length if its triangles then keep their shape much better in every piece; not across
 /// model edges, which would meet the cut at any angle. Returns the new number of parts; n_parts, with nothing
 /// changed, if it did not.
 int cut_if_flatter(Surface& surface, const SubMesh& part_mesh, int part, int n_parts,
                    const ParamOptions& options, const ParamReport& whole) {
   constexpr double much = 0.6;  // what may be left of the median of sigma1/sigma2 above 1
+  constexpr double least_aspect = 2;
+  if (topology_of(part_mesh).eta_geo < least_aspect) return n_parts;
   if (surface.face.has("model")) {
     const auto& model = surface.face.get<std::uint8_t>("model");
     const auto opposite = opposite_halfedges(part_mesh.tris, (int)part_mesh.points.size());
@@ -101,6 +103,42 @@ int cut_if_flatter(Surface& surface, const SubMesh& part_mesh, int part, int n_p
   return n;
 }
 
+/// The same map of a part after a cut of its neighbours, which put vertices on the edges of its border; empty
+/// if that is not how the part has changed, or if the map is not one-to-one to rounding.
+std::vector<Vec2> same_map(const Chart& before, const SubMesh& part, std::size_t n_surface) {
+  std::vector<int> place(n_surface, -1);
+  for (std::size_t i = 0; i < before.uv.size(); ++i) place[before.mesh.vertex[i]] = (int)i;
+  std::vector<Vec2> uv(part.points.size());
+  std::size_t added = 0;
+  for (std::size_t v = 0; v < uv.size(); ++v) {
+    int at = place[part.vertex[v]];
+    if (at >= 0)
+      uv[v] = before.uv[at];
+    else
+      ++added;
+  }
+  auto is_new = [&](int v) { return place[part.vertex[v]] < 0; };
+  const std::vector<int> opposite = opposite_halfedges(part.tris, (int)part.points.size());
+  for (const auto& loop : boundary_loops(opposite)) {
+    auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
+    std::size_t a = 0;
+    while (a < loop.size() && is_new(vertex(a))) ++a;
+    if (a == loop.size()) return {};
+    for (const std::size_t end = a + loop.size(); a < end;) {
+      std::size_t b = a + 1;
+      while (is_new(vertex(b))) ++b;
+      const int from = vertex(a), to = vertex(b);
+      const double length = norm(part.points[to] - part.points[from]);
+      for (std::size_t i = a + 1; i < b; ++i, --added)
+        uv[vertex(i)] = lerp(uv[from], uv[to],
+                             norm(part.points[vertex(i)] - part.points[from]) / std::max(length, 1e-300));
+      a = b;
+    }
+  }
+  if (added > 0 || count_inverted(part.tris, uv) > 0 || !border_is_simple(part.tris, opposite, uv)) return {};
+  return uv;
+}
+
 /// What maps of one part share, and the search for one that is one-to-one.
 class Search {
  public:
@@ -112,7 +150,7 @@ class Search {
   }
 
   std::vector<Vec2> plain(MapKind kind) {
-    if (kind != MapKind::conformal) return on_circle(kind);
+    if (kind != MapKind::conformal) return on_circle(kind, options_.neumann ? open() : round());
     if (options_.form == ConformalForm::boundary_first) return bent(0);
     const Filled filled = options_.neumann ? open() : flat();
     return options_.form == ConformalForm::spectral ? spectral_map(part_, disk_, filled, &report_.time)
@@ -144,7 +182,8 @@ class Search {
     }
     if (!valid && options_.map == MapKind::conformal) valid = try_bends(uv);
     for (MapKind kind : {MapKind::harmonic, MapKind::convex})
-      if (!valid && kind > options_.map) valid = try_circle(kind, uv);
+      if (!valid && (kind > options_.map || (kind == options_.map && options_.neumann)))
+        valid = try_circle(kind, uv);
     if (!valid && options_.map != MapKind::conformal) {
       // circles that shrink a limb below what doubles hold: a free border may not
       std::vector<Vec2> other;
@@ -208,16 +247,15 @@ class Search {
     return *open_;
   }
   const Filled& round() {
-    if (options_.neumann) return open();
     if (!round_) round_ = round_holes(part_, disk_);
     return *round_;
   }
   Filled flat() { return flat_holes(part_, disk_, &report_.time); }
 
-  std::vector<Vec2> on_circle(MapKind kind) {
+  std::vector<Vec2> on_circle(MapKind kind, const Filled& filled) {
     Weights weights = kind == MapKind::harmonic ? Weights::finite_element : options_.weights;
     std::vector<Vec2> uv =
-        extend_border(part_, round(), disk_, weights, circle_border(part_, disk_), &report_.time);
+        extend_border(part_, filled, disk_, weights, circle_border(part_, disk_), &report_.time);
     scale_to_area(part_, uv);
     return uv;
   }
@@ -290,7 +328,7 @@ class Search {
   bool try_circle(MapKind kind, std::vector<Vec2>& uv) {
     try {
       report_.used = kind;
-      uv = on_circle(kind);
+      uv = on_circle(kind, round());
       return valid_map(uv) || repaired(uv);
     } catch (const GoalMissed&) {
       return false;
@@ -358,7 +396,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
   constexpr int most_rounds = 24, limb_rounds = 2, stretched_rounds = 12;
   constexpr double too_uneven = 1e8, unresolved = 1e16;  // edges of 1e-8 of the chart keep half their digits
   constexpr double too_stretched = 4;                    // sigma1/sigma2, the mean over the area
-  constexpr double too_steep = 1.05, shrinks = 1e4;      // sigma1/sigma2, the median; and the area scale
+  constexpr double too_steep = 1.05;                     // sigma1/sigma2, the median
   constexpr std::size_t least_triangles = 50;            // of a part that is cut for the sake of its shape
   constexpr std::size_t least_of_a_limb = 500;
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
@@ -366,14 +404,18 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
   std::vector<char> waiting, whole;  // whole: too uneven, but nothing to be done about it
   reports.clear();
   for (int round = 0;; ++round) {
-    // a part is mapped anew if it was cut, or got vertices from the cut of a neighbour
+    // a part is mapped anew if it was cut, or if its map does not hold after the cut of a neighbour
     std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
     charts.resize(n_parts);
     reports.resize(n_parts);
     waiting.resize(n_parts, 1);
     whole.resize(n_parts, 0);
     for (int p = 0; p < n_parts; ++p) {
-      if (parts[p].vertex != charts[p].mesh.vertex) waiting[p] = 1;
+      if (!waiting[p] && parts[p].vertex != charts[p].mesh.vertex) {
+        charts[p].uv = same_map(charts[p], parts[p], surface.points.size());
+        waiting[p] = charts[p].uv.empty();
+        if (!waiting[p]) measure_distortion(parts[p], charts[p].uv, reports[p]);
+      }
       charts[p].mesh = std::move(parts[p]);
     }
 
@@ -416,8 +458,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
           n_parts = cut_along_model_edges(surface, p, n_parts);
         if (n_parts == n && (limbs || stretched)) n_parts = cut_along_limbs(surface, p, n_parts);
         if (n_parts == n && !missed && !chosen && round < limb_rounds &&
-            reports[p].anisotropy_median > too_steep && reports[p].area_scale > shrinks &&
-            charts[p].mesh.tris.size() >= least_of_a_limb)
+            reports[p].anisotropy_median > too_steep && charts[p].mesh.tris.size() >= least_of_a_limb)
           n_parts = cut_if_flatter(surface, charts[p].mesh, p, n_parts, options, reports[p]);
         whole[p] = charts[p].uv.empty() && !missed && n_parts == n;
         if (n_parts == n && !whole[p] && (uneven > unresolved || stretched)) {

@@ -18,7 +18,8 @@ struct ParamOptions {
   MapKind map = MapKind::conformal;
   ConformalForm form = ConformalForm::boundary_first;
   Weights weights = Weights::cotangent;  ///< of the convex map
-  /// The paper's natural condition on all loops but the longest, instead of holes filled in the solve.
+  /// The paper's natural condition on all loops but the longest, instead of holes filled in the solve: of the
+  /// map asked for, not of those that take its place.
   /// BadUsage with boundary_first, which has to know how much each hole turns.
   bool neumann = false;
   int optimize = 0;     ///< steps of lower_distortion (lib/param_optimize.h) at the end
@@ -71,8 +72,9 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 /// the part, where these bound simple pieces: it costs the mesh nothing there, and is made above 4 (p99) too;
 /// else along its limbs; else by a short line between the places that should not be in one chart
 /// (lib/bisect.h). A limb with N edges round that is mapped to a ring changes its scale by exp(2 pi / N) over
-/// each of them, which shears its triangles to about 1 + 3.6 / N: where the median is above 1.05 and the area
-/// scale above 1e4, a part without model edges is cut along its limbs if that is much better in all pieces.
+/// each of them, which shears its triangles to about 1 + 3.6 / N: where the median is above 1.05 and the
+/// geodesic aspect ratio above 2, a part without model edges is cut along its limbs if that is much better in
+/// all pieces.
 /// Ears of parts that go to a circle, triangles with two edges on the longest loop, are split through their
 /// third edge, since a circle flattens them. Both append vertices and split triangles, and
 /// rewrite face column `part`; with `strict` there is neither. reports has one entry a part.

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lib/progress.h"
 #include "lib/relaxer.h"
 #include "lib/size.h"
+#include "lib/weld.h"
 
 namespace meshpipe {
 
@@ -81,7 +83,25 @@ Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& 
   }
 }
 
+/// Where one border runs along another so closely that it is a seam left open, mlines has divided both alike.
+/// Chords that differ would cross, so those vertices stay.
+void Relaxer::hold_pairs() {
+  constexpr double close = 1e-3;  // of the size
+  std::vector<char> on_border(points_.size());
+  double size = 0;
+  std::size_t n = 0;
+  for (int v = 0; v < (int)points_.size(); ++v)
+    if (m_.out[v] >= 0 && m_.on_border(v)) on_border[v] = 1, size += size_at(v), ++n;
+  if (n == 0) return;
+  std::vector<int> same(points_.size());
+  std::iota(same.begin(), same.end(), 0);
+  merge_near(points_, on_border, close * size / (double)n, same);
+  for (int v = 0; v < (int)points_.size(); ++v)
+    if (same[v] != v) held_[v] = held_[same[v]] = paired;
+}
+
 RelaxReport Relaxer::run() {
+  hold_pairs();
   const double target = options_.target_triangles > 0 ? options_.target_triangles
                         : ground_->sizes              ? count_for_size(ground_->surface, *ground_->sizes)
                                                       : m_.live;
@@ -154,7 +174,7 @@ RelaxReport Relaxer::finish() {
   for (std::size_t v = 0; v < m_.out.size(); ++v) {
     if (m_.out[v] < 0) continue;
     number[v] = n;
-    const bool on_line = held_[v] == slides || held_[v] == fixed;
+    const bool on_line = held_[v] == slides || held_[v] == fixed || held_[v] == paired;
     r.place[n] = r.place[v], r.size[n] = r.size[v];
     r.kind[n] = on_line ? r.kind[v] : 0, r.line[n] = on_line ? r.line[v] : -1;
     points_[n++] = points_[v];

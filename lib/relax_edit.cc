@@ -44,7 +44,8 @@ Place Relaxer::place_near(Vec3 p, std::initializer_list<int> round, Vec3 facing)
 bool Relaxer::split(int h) {
   const int g = m_.opp[h], a = m_.from(h), b = m_.to(h), c = m_.apex(h), d = g < 0 ? -1 : m_.apex(g);
   if (g < 0 && options_.keep_border) return false;
-  if (g < 0 && held_[a] == frozen && held_[b] == frozen) return false;  // the rim of a patch, as a rule
+  // the rim of a patch, as a rule, or a seam
+  if (g < 0 && held_[a] >= frozen && held_[b] >= frozen) return false;
   const Vec3 middle = lerp(at(a), at(b), 0.5);
   Place place;
   Vec3 facing{};

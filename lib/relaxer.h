@@ -67,7 +67,7 @@ class Relaxer {
   LiftedMesh take_mesh() { return std::move(lifted_); }
 
  private:
-  enum Hold : char { loose = 0, slides = 1, fixed = 2, anchored = 3, frozen = 4 };
+  enum Hold : char { loose = 0, slides = 1, fixed = 2, anchored = 3, frozen = 4, paired = 5 };
   /// A change of connectivity, as it was done.
   struct Edit {
     enum Kind { flip, split, collapse } kind;
@@ -95,6 +95,7 @@ class Relaxer {
   Mesh compact(std::vector<int>& number) const;
 
   // relax.cc
+  void hold_pairs();
   void meet_count(double target);
   RelaxReport finish();
 
@@ -167,8 +168,8 @@ class Relaxer {
   RelaxReport report_;
   std::vector<Vec3> points_;
   std::vector<Vec3> facing_;   ///< the reference's normal at each vertex's place; zero on model edges
-  std::vector<char> held_;     ///< per vertex: free, on a border or model edge, a corner, put on a tip, or at
-                               ///< the rim of a patch
+  std::vector<char> held_;     ///< per vertex: free, on a border or model edge, a corner, put on a tip, at
+                               ///< the rim of a patch, or on a seam
   std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
   std::vector<int> tried_, changed_;  ///< when a vertex was last tried to move, and when it last changed
   int clock_ = 0;

@@ -80,8 +80,7 @@ TEST(check, quality_is_that_of_the_definitions) {
 }
 
 TEST(check, cuts_are_undone) {
-  Surface s;
-  static_cast<Mesh&>(s) = torus(0.4, 900);
+  Surface s = surface_of(torus(0.4, 900));
   const Mesh before = s;
   std::vector<int> origin(s.tris.size());
   for (std::size_t t = 0; t < origin.size(); ++t) origin[t] = (int)t;

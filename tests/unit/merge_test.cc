@@ -84,8 +84,8 @@ TEST(Merge, BordersThatVanish) {
 TEST(Merge, GroupsOfAFile) {
   Stream stream;
   stream.surface = profile(45);
-  stream.names = {{2, 1, "left wing"}, {2, 2, "right wing"}, {2, 3, "chamfer"}};
-  const auto g = read_groups("# comment\nwings = *wing 3\n\n\"left wing\" 4\n", "f", stream);
+  stream.names = {{2, 1, "left wing"}, {2, 2, "right wing"}, {2, 3, "chamfer"}, {2, 7, "lost"}};
+  const auto g = read_groups("# comment\nwings = *wing 3\nlost\n\"left wing\" lost 4\n", "f", stream);
   ASSERT_EQ(g.size(), 2u);
   EXPECT_EQ(g[0].name, "wings");
   EXPECT_EQ(g[0].patches, (std::vector<int>{1, 2, 3}));

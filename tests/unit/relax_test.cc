@@ -40,11 +40,17 @@ LiftedMesh lifted_of(const Surface& s) {
 }
 
 Surface sized(const Mesh& mesh, double triangles) {
-  Surface s;
-  static_cast<Mesh&>(s) = mesh;
-  s.face.rows = mesh.tris.size();
+  Surface s = surface_of(mesh);
   const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
   s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
+  return s;
+}
+
+/// To be meshed with half as many triangles.
+Surface slivered_sphere(int triangles, double share, int seed) {
+  Surface s = sized(sphere(triangles), triangles / 2);
+  add_slivers(s, share, seed);
+  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
   return s;
 }
 
@@ -75,9 +81,7 @@ TEST(Relax, ATorusBecomesRegularAndStaysATorus) {
 }
 
 TEST(Relax, SliversAndNoiseGo) {
-  Surface s = sized(sphere(4000), 2000);
-  add_slivers(s, 0.3, 1);
-  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  const Surface s = slivered_sphere(4000, 0.3, 1);
   LiftedMesh m = lifted_of(s);
   EXPECT_GT(relax(m, s, {}).kappa_min, 0.6);
   EXPECT_EQ(topology_of(m).genus, 0);
@@ -195,9 +199,7 @@ TEST(Relax, TipsOfModelEdgesAreReachedAlongThem) {
 }
 
 TEST(Relax, NoTriangleIsLeftBadOnASmoothSurface) {
-  Surface s = sized(sphere(6000), 3000);
-  add_slivers(s, 0.25, 3);
-  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  const Surface s = slivered_sphere(6000, 0.25, 3);
   LiftedMesh m = lifted_of(s);
   const RelaxReport r = relax(m, s, {});
   EXPECT_GE(r.kappa_min, 0.75);
@@ -221,6 +223,40 @@ TEST(Relax, CornersOfABorderStayAndItsOtherVerticesSlide) {
   relax(m, s, {}, corner);
   EXPECT_NEAR(total_area(m), n * n, 1e-9);
   EXPECT_NEAR((double)m.tris.size(), 500, 15);
+}
+
+//   .-----.   two sheets that meet at right angles in an arc, but for a millionth: an open seam. The two
+//   borders
+//  /  ---  \  keep the points they share, so that their chords do not cross.
+TEST(Relax, OpenSeamsKeepTheirPoints) {
+  Mesh sheets;
+  const int n = 24;
+  for (int sheet = 0; sheet < 2; ++sheet) {
+    const int first = (int)sheets.points.size();
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        const double x = (double)i / n, y = (double)j / n, arc = 0.5 * x * (1 - x);
+        sheets.points.push_back(sheet ? Vec3{x, arc - 1e-6, -y} : Vec3{x, arc + y, 0});
+      }
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const int a = first + j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+        if (sheet)
+          sheets.tris.push_back({a, d, b}), sheets.tris.push_back({a, c, d});
+        else
+          sheets.tris.push_back({a, b, d}), sheets.tris.push_back({a, d, c});
+      }
+  }
+  const Surface s = sized(sheets, 2 * n * n);
+  LiftedMesh m = lifted_of(s);
+  const RelaxReport r = relax(m, s, {});
+  EXPECT_TRUE(r.intersections.empty());
+  int found[2] = {0, 0};
+  for (Vec3 p : m.points)
+    for (int sheet : {0, 1})
+      if (norm(p - Vec3{p.x, 0.5 * p.x * (1 - p.x) - sheet * 1e-6, 0}) < 1e-9) ++found[sheet];
+  EXPECT_EQ(found[0], found[1]);
+  EXPECT_EQ(found[0], n + 1);
 }
 
 TEST(PlaceOn, BordersGoToBordersAndTheRestToTheSurface) {
