@@ -9,6 +9,7 @@
 #include "formats/columns.h"
 #include "formats/model_lines.h"
 #include "formats/polygons.h"
+#include "formats/rows.h"
 #include "formats/text.h"
 #include "lib/error.h"
 
@@ -342,9 +343,9 @@ class InriaReader {
 };
 
 /// Writes sections in either encoding.
-class InriaWriter {
+class InriaWriter : public Rows {
  public:
-  explicit InriaWriter(bool ascii) : ascii_(ascii) {
+  explicit InriaWriter(bool ascii) : Rows(ascii) {
     if (ascii) {
       out = "MeshVersionFormatted 2\nDimension 3\n";
       return;
@@ -357,18 +358,13 @@ class InriaWriter {
   /// A section of n rows; `bytes` a row in binary, and `more` before them. Files of version 3 have positions
   /// of 64 bits.
   void section(const char* name, Keyword keyword, std::size_t n, std::size_t bytes, std::size_t more = 0) {
-    if (ascii_) {
+    if (ascii()) {
       out += std::string("\n") + name + '\n' + std::to_string(n) + '\n';
       return;
     }
     put(out, static_cast<int>(keyword));
     put(out, static_cast<std::int64_t>(out.size() + 12 + more + n * bytes));
     put(out, static_cast<int>(n));
-  }
-  void integer(int v) { ascii_ ? word(static_cast<long long>(v)) : put(out, v); }
-  void real(double v) { ascii_ ? word(v) : put(out, v); }
-  void end_row() {
-    if (ascii_) out.back() = '\n';
   }
   void numbers(const char* name, Keyword keyword, const std::vector<int>& v) {
     if (v.empty()) return;
@@ -379,7 +375,7 @@ class InriaWriter {
     }
   }
   std::string finish() {
-    if (ascii_) {
+    if (ascii()) {
       out += "\nEnd\n";
     } else {
       put(out, static_cast<int>(file_end));
@@ -387,16 +383,6 @@ class InriaWriter {
     }
     return std::move(out);
   }
-
-  std::string out;
-
- private:
-  template <class T>
-  void word(T v) {
-    append(out, v);
-    out += ' ';
-  }
-  bool ascii_;
 };
 
 /// Numbers from 1 on of the rows that a column of uchar marks.

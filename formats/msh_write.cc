@@ -7,6 +7,7 @@
 #include "formats/model_lines.h"
 #include "formats/msh.h"
 #include "formats/polygons.h"
+#include "formats/rows.h"
 #include "formats/second_order.h"
 #include "formats/text.h"
 #include "lib/error.h"
@@ -14,40 +15,22 @@
 namespace meshpipe {
 namespace {
 
-/// Writes rows of a section, in text or binary.
-class Rows {
+/// Writes sections.
+class Sections : public Rows {
  public:
-  explicit Rows(bool ascii) : ascii_(ascii) {}
-
-  void integer(long long v) { ascii_ ? word(v) : put(out, static_cast<int>(v)); }
-  /// What version 4 writes in eight bytes.
-  void wide(long long v) { ascii_ ? word(v) : put(out, v); }
-  void real(double v) { ascii_ ? word(v) : put(out, v); }
-  void end_row() {
-    if (ascii_) out.back() = '\n';
-  }
+  using Rows::Rows;
   /// A count that is text in either encoding.
   void line(std::size_t n) { out += std::to_string(n) + '\n'; }
   void end(const char* section) {
-    out += ascii_ ? "$End" : "\n$End";
+    out += ascii() ? "$End" : "\n$End";
     out += section;
     out += '\n';
   }
-
-  std::string out;
-
- private:
-  template <class T>
-  void word(T v) {
-    append(out, v);
-    out += ' ';
-  }
-  bool ascii_;
 };
 
-void head(Rows& sink, const char* version, bool ascii) {
-  sink.out = std::string("$MeshFormat\n") + version + (ascii ? " 0 8\n" : " 1 8\n");
-  if (!ascii) {
+void head(Sections& sink, const char* version) {
+  sink.out = std::string("$MeshFormat\n") + version + (sink.ascii() ? " 0 8\n" : " 1 8\n");
+  if (!sink.ascii()) {
     put(sink.out, 1);
     sink.out += '\n';
   }
@@ -85,7 +68,7 @@ Curves curves_of(const Stream& stream) {
   return c;
 }
 
-void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
+void names(Sections& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
   std::string named;
   int n_named = 0;
   auto add = [&](int dim, int tag, long long shown) {
@@ -99,6 +82,27 @@ void names(Rows& sink, const Stream& stream, const ByPatch& by, long long shift,
   if (n_named)
     sink.out += "$PhysicalNames\n" + (std::to_string(n_named) + '\n') + named + "$EndPhysicalNames\n";
 }
+
+/// What either version is written from, and the sections that begin both.
+struct Begun {
+  SecondOrder second;
+  ByPatch by;
+  long long shift;
+  Curves curves;
+  Sections sink;
+
+  Begun(const Stream& stream, const char* version, bool ascii)
+      : second(stream),
+        by(by_patch(stream)),
+        shift(checked_shift(by)),
+        curves(curves_of(stream)),
+        sink(ascii) {
+    const Surface& s = second.surface();
+    head(sink, version);
+    sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
+    names(sink, stream, by, shift, curves);
+  }
+};
 
 int triangle_type(const SecondOrder& second) { return second ? 9 : 2; }
 int line_type(const SecondOrder& second) { return second ? 8 : 1; }
@@ -116,7 +120,7 @@ void for_each_node(const LineEdge& e, const SecondOrder& second, const Visit& vi
 }
 
 /// Data of all triangles; elements of curves have zeros, since readers want data for all elements or none.
-void data(Rows& sink, const char* section, const Table& table, const Curves& curves) {
+void data(Sections& sink, const char* section, const Table& table, const Curves& curves) {
   const std::size_t more = table.name == "face" ? curves.edges.size() : 0;
   for (const Group& g : groups_of(table)) {
     if (g.name == "patch" || (g.name == "model" && curves.all)) continue;
@@ -145,16 +149,12 @@ void data(Rows& sink, const char* section, const Table& table, const Curves& cur
 }  // namespace
 
 std::string write_msh2(const Stream& stream, bool ascii) {
-  const SecondOrder second(stream);
+  Begun begun(stream, "2.2", ascii);
+  Sections& sink = begun.sink;
+  const SecondOrder& second = begun.second;
   const Surface& s = second.surface();
+  const Curves& curves = begun.curves;
   const std::vector<int> patch = patches_of(stream);
-  const ByPatch by = by_patch(stream);
-  const long long shift = checked_shift(by);
-  const Curves curves = curves_of(stream);
-  Rows sink(ascii);
-  head(sink, "2.2", ascii);
-  sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
-  names(sink, stream, by, shift, curves);
   sink.out += "$Nodes\n";
   sink.line(s.points.size());
   for (std::size_t i = 0; i < s.points.size(); ++i) {
@@ -178,7 +178,7 @@ std::string write_msh2(const Stream& stream, bool ascii) {
   };
   begin(triangle_type(second), s.tris.size());
   for (std::size_t t = 0; t < s.tris.size(); ++t) {
-    element(t, triangle_type(second), patch[t] + shift);
+    element(t, triangle_type(second), patch[t] + begun.shift);
     for_each_node(s.tris[t], second, [&](int v) { sink.integer(v + 1LL); });
     sink.end_row();
   }
@@ -195,19 +195,15 @@ std::string write_msh2(const Stream& stream, bool ascii) {
 }
 
 std::string write_msh4(const Stream& stream, bool ascii) {
-  const SecondOrder second(stream);
+  Begun begun(stream, "4.1", ascii);
+  Sections& sink = begun.sink;
+  const SecondOrder& second = begun.second;
   const Surface& s = second.surface();
-  const ByPatch by = by_patch(stream);
-  const long long shift = checked_shift(by);
-  const Curves curves = curves_of(stream);
-  Rows sink(ascii);
-  head(sink, "4.1", ascii);
-  sink.out.reserve(s.points.size() * 70 + s.tris.size() * 48);
-  names(sink, stream, by, shift, curves);
+  const Curves& curves = begun.curves;
 
   // one surface a patch; nodes must be on one, and a mesh without triangles still has its nodes
   std::vector<long long> surface;
-  for (int tag : by.tags) surface.push_back(tag + shift);
+  for (int tag : begun.by.tags) surface.push_back(tag + begun.shift);
   if (surface.empty()) surface.push_back(1);
   sink.out += "$Entities\n";
   for (std::size_t n : {std::size_t{0}, curves.tags.size(), surface.size(), std::size_t{0}})
@@ -239,9 +235,9 @@ std::string write_msh4(const Stream& stream, bool ascii) {
     entity(curves.tags[k]);
   }
   for (std::size_t k = 0; k < surface.size(); ++k) {
-    const std::size_t end = by.tags.empty() ? 0 : by.first[k + 1];
-    for (std::size_t i = by.tags.empty() ? 0 : by.first[k]; i < end; ++i)
-      for (int v : s.tris[by.order[i]]) cover(v);
+    const std::size_t end = begun.by.tags.empty() ? 0 : begun.by.first[k + 1];
+    for (std::size_t i = begun.by.tags.empty() ? 0 : begun.by.first[k]; i < end; ++i)
+      for (int v : s.tris[begun.by.order[i]]) cover(v);
     entity(surface[k]);
   }
   sink.end("Entities");
@@ -266,16 +262,16 @@ std::string write_msh4(const Stream& stream, bool ascii) {
 
   sink.out += "$Elements\n";
   const auto n_elements = n_tris + static_cast<long long>(curves.edges.size());
-  for (long long v : {static_cast<long long>(by.tags.size() + curves.tags.size()), n_elements,
+  for (long long v : {static_cast<long long>(begun.by.tags.size() + curves.tags.size()), n_elements,
                       std::min(1LL, n_elements), n_elements})
     sink.wide(v);
   sink.end_row();
-  for (std::size_t k = 0; k < by.tags.size(); ++k) {
+  for (std::size_t k = 0; k < begun.by.tags.size(); ++k) {
     for (long long v : {2LL, surface[k], static_cast<long long>(triangle_type(second))}) sink.integer(v);
-    sink.wide(static_cast<long long>(by.first[k + 1] - by.first[k]));
+    sink.wide(static_cast<long long>(begun.by.first[k + 1] - begun.by.first[k]));
     sink.end_row();
-    for (std::size_t i = by.first[k]; i < by.first[k + 1]; ++i) {
-      const int t = by.order[i];
+    for (std::size_t i = begun.by.first[k]; i < begun.by.first[k + 1]; ++i) {
+      const int t = begun.by.order[i];
       sink.wide(t + 1LL);
       for_each_node(s.tris[t], second, [&](int v) { sink.wide(v + 1LL); });
       sink.end_row();

@@ -112,6 +112,7 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
   std::vector<double> mass = lumped_area(mesh);
+  if (!(std::accumulate(mass.begin(), mass.end(), 0.0) > 0)) return false;
   Factorisation<double> laplacian = free_laplacian(mesh, mass);
   std::vector<std::vector<double>> fields;
   for (auto [source, sink] : apart) {
@@ -221,8 +222,8 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   } catch (const GoalMissed&) {
     return n_parts;
   }
-  constexpr int most = 4;  // a ragged part keeps its aspect ratio through many cuts
-  if (pieces > most) return n_parts;
+  constexpr int most = 4;                           // a ragged part keeps its aspect ratio through many cuts
+  if (pieces < 2 || pieces > most) return n_parts;  // halves may have been joined again
   std::vector<int> label = work.face.get<int>("whole");
   const auto& piece = work.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)

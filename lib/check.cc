@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "lib/bvh.h"
 #include "lib/edges.h"
 #include "lib/topology.h"
 
@@ -209,6 +210,79 @@ std::vector<int> bins(std::span<const float> values, double low, double high, in
   return counts;
 }
 
+std::vector<NeedleTip> needle_tips(const Mesh& mesh, std::span<const int> opposite,
+                                   const std::vector<std::uint8_t>& model) {
+  constexpr double least = 3 / degree;
+  std::vector<NeedleTip> tips;
+  auto marked = [&](int h) { return opposite[h] < 0 || (!model.empty() && (model[h / 3] >> h % 3 & 1)); };
+  auto corner = [&](int g) {
+    const Vec3& p = mesh.points[origin(mesh.tris, g)];
+    return angle(mesh.points[target(mesh.tris, g)] - p, mesh.points[origin(mesh.tris, prev(g))] - p);
+  };
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) {
+    const bool wedge = marked(h);
+    const double limit = wedge ? least : 3 * least;
+    double sum = corner(h);
+    int first = h;  // of all round
+    bool all_round = false;
+    for (int g = h; sum < limit && !marked(prev(g)) && !all_round;) {
+      g = opposite[prev(g)];
+      first = std::min(first, g);
+      all_round = g == h;
+      if (!all_round) sum += corner(g);
+    }
+    // a fan that ends at a marked edge is looked at from its other one
+    if (sum < limit && (wedge || (all_round && first == h)))
+      tips.push_back({mesh.points[origin(mesh.tris, h)], wedge ? sum : sum / 3});
+  }
+  return tips;
+}
+
+std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kappas,
+                                 const std::vector<NeedleTip>& tips) {
+  constexpr double touches = 0.1;  // of its longest edge
+  std::vector<char> forced(mesh.tris.size(), 0);
+  std::vector<int> bad;
+  for (int t = 0; t < (int)kappas.size(); ++t)
+    if (!(kappas[t] > 0.1F)) bad.push_back(t);
+  if (bad.empty() || tips.empty()) return forced;
+  auto point = [&](int t, int i) { return mesh.points[mesh.tris[t][i]]; };
+  std::vector<double> length(bad.size());
+  std::vector<std::pair<int, int>> corners;  // vertex, place in `bad`
+  for (int i = 0; i < (int)bad.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      length[i] = std::max(length[i], norm(point(bad[i], (k + 1) % 3) - point(bad[i], k)));
+      corners.push_back({mesh.tris[bad[i]][k], i});
+    }
+  std::sort(corners.begin(), corners.end());
+  std::vector<int> reached, seen(bad.size(), -1);
+  for (int tip = 0; tip < (int)tips.size(); ++tip) {
+    const auto [p, room] = tips[tip];
+    reached.clear();
+    for (int i = 0; i < (int)bad.size(); ++i) {
+      const Vec3 a = point(bad[i], 0), b = point(bad[i], 1), c = point(bad[i], 2);
+      if (norm(a - p) > 2 * length[i]) continue;
+      const auto w = closest_on_triangle(p, a, b, c);
+      if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= touches * length[i])
+        reached.push_back(i), seen[i] = tip;
+    }
+    for (std::size_t k = 0; k < reached.size(); ++k) {
+      const int t = bad[reached[k]];
+      forced[t] = 1;
+      for (int v : mesh.tris[t])
+        for (auto at = std::lower_bound(corners.begin(), corners.end(), std::pair{v, -1});
+             at != corners.end() && at->first == v; ++at) {
+          const int i = at->second;
+          const Vec3 centre = 1.0 / 3 * (point(bad[i], 0) + point(bad[i], 1) + point(bad[i], 2));
+          if (seen[i] == tip || norm(centre - p) * room > length[i]) continue;
+          seen[i] = tip;
+          reached.push_back(i);
+        }
+    }
+  }
+  return forced;
+}
+
 double kappa_off_wedges(const Mesh& mesh, std::span<const int> opposite,
                         const std::vector<std::uint8_t>& model, const Quality& quality, int& worst) {
   constexpr double limit = 40 / degree;
@@ -251,7 +325,18 @@ bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners)
   }
   std::sort(v.begin(), v.end());
   v.erase(std::unique(v.begin(), v.end()), v.end());
-  if (v.size() > 64) return false;
+  if (v.size() > 64) {
+    // the farthest point of a triangle from any other is a corner, and so is the farthest from a side
+    auto farthest = [&](auto distance) {
+      return *std::max_element(v.begin(), v.end(), [&](int i, int j) { return distance(i) < distance(j); });
+    };
+    auto from = [&](int a) { return farthest([&](int i) { return norm(mesh.points[i] - mesh.points[a]); }); };
+    auto area = [&](int a, int b, int c) {
+      return dot(area_vector(mesh.points[a], mesh.points[b], mesh.points[c]), whole);
+    };
+    const int a = from(v[0]), b = from(a), c = farthest([&](int i) { return std::abs(area(a, b, i)); });
+    v = {a, b, c};
+  }
   double best = 0;
   for (std::size_t i = 0; i < v.size(); ++i)
     for (std::size_t j = i + 1; j < v.size(); ++j)

@@ -42,6 +42,21 @@ Quality quality_of(const Mesh& mesh, std::span<const int> opposite, const std::v
 /// How many values fall into each of n equal parts of [low, high]; the others are left out.
 std::vector<int> bins(std::span<const float> values, double low, double high, int n);
 
+/// A point of a surface where it leaves so little room that kappa of a triangle with that corner is 0.1 at
+/// best: borders, and edges marked by bit i of `model`, less than 3 degrees apart, or none and 9 degrees all
+/// round.
+struct NeedleTip {
+  Vec3 point;
+  double room;  ///< radians, a third of what there is all round
+};
+std::vector<NeedleTip> needle_tips(const Mesh& mesh, std::span<const int> opposite,
+                                   const std::vector<std::uint8_t>& model);
+
+/// The triangles with kappa up to 0.1 that tips of the surface force to be so, as flags: joined to one by
+/// others like them, and so near to it that the room there is narrower than they are long.
+std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kappas,
+                                 const std::vector<NeedleTip>& tips);
+
 /// The smallest kappa of the triangles that do not touch, nor have a neighbour at a vertex that touches, a
 /// vertex where two marked edges (bit i of `model`: edge i; borders always) meet at less than 40 degrees over
 /// the surface: such a wedge leaves no room for good triangles. `worst` becomes the triangle, or -1.

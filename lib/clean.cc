@@ -453,10 +453,7 @@ CleanReport clean(Surface& surface, const CleanOptions& options) {
 }
 
 Mesh sheets_apart(const Mesh& mesh) {
-  Surface s;
-  static_cast<Mesh&>(s) = mesh;
-  s.face.rows = mesh.tris.size();
-  s.vertex.rows = mesh.points.size();
+  Surface s = surface_of(mesh);
   const CleanReport r = clean(s);
   if (s.tris.size() != mesh.tris.size() || r.flipped || r.degenerate || r.duplicate)
     throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " triangles turned round, " +

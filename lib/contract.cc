@@ -101,7 +101,8 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
     if (value <= r.limit) return;
     facts.push_back(text(value) + where + ", above " + text(r.limit));
   };
-  if (r.name == "kappa") return above(q.kappa_min, q.worst);
+  if (r.name == "kappa")
+    return above(f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced], f.worst_unforced);
   if (r.name == "kappa_off_wedges") return above(f.kappa_off_wedges, f.worst_off_wedges);
   if (r.name == "kappa_mean") return above(q.kappa_mean, -1);
   if (r.name == "angle") return above(q.min_angle, -1);
@@ -138,7 +139,8 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
       for (int h : f.folds) faults[h / 3] |= fault_folded, faults[f.mesh.opposite[h] / 3] |= fault_folded;
     for (std::size_t t = 0; t < faults.size(); ++t) {
       const Tri& v = mesh.tris[t];
-      if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit)) faults[t] |= fault_kappa;
+      if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit) && (f.forced.empty() || !f.forced[t]))
+        faults[t] |= fault_kappa;
       if (r.name == "vertices" &&
           !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
         faults[t] |= fault_vertex;
@@ -244,6 +246,8 @@ std::vector<Figure> figures(const Findings& f) {
       {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},
       {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},
       {"kappa_mean", "kappa mean", 4, p.kappa_mean, q.kappa_mean},
+      {"needles", "needles at sharp tips", count, nan,
+       (double)std::count(f.forced.begin(), f.forced.end(), 1)},
       {"kappa_off_wedges", "kappa min off wedges", 4, nan, f.kappa_off_wedges},
       {"kappa_by_cuts", "kappa mean by the cuts", 4, nan, f.kappa_by_cuts.value_or(nan)},
       {"kappa_elsewhere", "kappa mean elsewhere", 4, nan, f.kappa_elsewhere.value_or(nan)},

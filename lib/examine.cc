@@ -8,6 +8,7 @@
 #include "lib/curved.h"
 #include "lib/intersect.h"
 #include "lib/progress.h"
+#include "lib/topology.h"
 
 namespace meshpipe {
 namespace {
@@ -71,6 +72,22 @@ void lower_to_curved(const Surface& result, const Surface& reference, std::vecto
     const Vec3 p = smooth.point({face[v], 1 - b1[v] - b2[v], b1[v], b2[v]});
     distance[v] = std::min(distance[v], norm(result.points[v] - p));
   }
+}
+
+/// The triangles that sharp tips of the reference make as bad as they are.
+void find_needles(Findings& f, const Surface& result, const Surface& reference) {
+  f.worst_unforced = f.quality.worst;
+  if (!(f.quality.kappa_min <= 0.1) || !f.mesh.sound() || !f.reference.sound()) return;
+  const std::vector<int> opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
+  const bool marked = reference.face.has("model");
+  f.forced = forced_needles(
+      result, f.quality.kappas,
+      needle_tips(reference, opposite,
+                  marked ? reference.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>()));
+  f.worst_unforced = -1;
+  for (int t = 0; t < (int)f.forced.size(); ++t)
+    if (!f.forced[t] && (f.worst_unforced < 0 || f.quality.kappas[t] < f.quality.kappas[f.worst_unforced]))
+      f.worst_unforced = t;
 }
 
 bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
@@ -189,6 +206,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
   add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
   f.boundary = curve_distance(reference_curves, curves) / unit;
+  find_needles(f, result, given);
   f.kappa_off_wedges = f.quality.kappa_min;
   f.worst_off_wedges = f.quality.worst;
   if (result.face.has("model")) {

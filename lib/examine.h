@@ -23,6 +23,8 @@ struct Findings {
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
   std::vector<double> off;      ///< of every vertex of the mesh: distance to the reference over its mean edge
   int farthest = -1;            ///< the vertex with the largest `off`
+  std::vector<char> forced;     ///< per triangle, see forced_needles; empty if kappa is above 0.1
+  int worst_unforced = -1;      ///< the triangle with the smallest kappa of those that are not forced
   double kappa_off_wedges = 0;  ///< see lib/check.h; kappa_min if no model edges are known
   int worst_off_wedges = -1;
   std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines

@@ -31,6 +31,11 @@ class Creases {
     const int n = (int)opposite_.size();
     size_ = options.size > 0 ? options.size : size_for_count(total_area(s_), (double)s_.tris.size());
     const std::vector<Vec3> normal = sound_normals(s_, opposite_, sliver * size_);
+    for (std::size_t t = 0; t < s_.tris.size(); ++t) {
+      const Tri& v = s_.tris[t];
+      const Vec3 own = area_vector(s_.points[v[0]], s_.points[v[1]], s_.points[v[2]]);
+      slivers_ += angle(own, normal[t]) > continue_turn;
+    }
     angle_.assign(n, 0);
     on_.assign(n, 0);
     patch_.assign(n, 0);
@@ -159,6 +164,7 @@ class Creases {
 
   FeatureReport mark(std::vector<std::uint8_t>& model) const {
     FeatureReport r;
+    r.slivers = slivers_;
     std::vector<int> lines(s_.points.size(), 0);
     for (int h = 0; h < (int)opposite_.size(); ++h) {
       if (!on_[h] && !patch_[h]) continue;
@@ -290,6 +296,7 @@ class Creases {
   std::vector<char> anchor_;  ///< on a patch border, former ones too, or the surface's: chains may end there
   double short_ = 0;          ///< pieces below this length are dropped
   double size_ = 0;           ///< target edge length
+  int slivers_ = 0;           ///< triangles whose own normal tells nothing
   double telling_ = 0;        ///< chains above this length tell whether the surface is designed
 };
 
@@ -300,21 +307,32 @@ std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposi
   const double rounding = 3e-6 * diagonal(mesh);
   const int n = (int)mesh.tris.size();
   std::vector<Vec3> normal(n);
-  std::vector<int> heir(n, -1);
+  std::vector<int> heir(n, -1), second(n, -1);
   for (int t = 0; t < n; ++t) {
     const Tri& c = mesh.tris[t];
     const Vec3 a = area_vector(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    int longest = 3 * t;
-    double length = 0;
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (double l = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
-          l > length) {
-        length = l;
-        longest = h;
+    int longest = 3 * t, other = 3 * t + 1;
+    double length = 0, shorter = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double l = norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
+      if (l > length) {
+        other = longest, longest = h;
+        shorter = length, length = l;
+      } else if (l > shorter) {
+        other = h, shorter = l;
       }
+    }
     normal[t] = normalized(a);
     const double least = std::max(rounding, std::min(thin, slender * length));
-    if (norm(a) < least * length) heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
+    if (norm(a) >= least * length) continue;
+    heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
+    second[t] = opposite[other] >= 0 ? opposite[other] / 3 : -1;
+  }
+  // the two halves of a thin strip go with its two sides
+  if (thin > 0) {
+    const std::vector<int> first = heir;
+    for (int t = 0; t < n; ++t)
+      if (first[t] >= 0 && first[first[t]] == t) heir[t] = second[t];
   }
   for (int t = 0; t < n; ++t) {
     int u = t;

@@ -13,11 +13,13 @@ struct FeatureOptions {
 
 /// Unit normals of the triangles. A triangle so thin that rounding of single-precision coordinates turns its
 /// normal has that of the neighbour across its longest edge, in whose plane it lies; so has one that is
-/// thinner than `thin` and than a twentieth of its length.
+/// thinner than `thin` and than a twentieth of its length. Two of them that face each other, the halves of a
+/// strip, have those of the neighbours across their other long edges if `thin` is not 0.
 std::vector<Vec3> sound_normals(const Mesh& mesh, const std::vector<int>& opposite, double thin = 0);
 
 struct FeatureReport {
   int model_edges = 0, patch_edges = 0, given_edges = 0, crease_edges = 0, corners = 0;
+  int slivers = 0;  ///< triangles too thin for the target edge length to make a crease of their own
 };
 
 /// Sets face column `model`: bit i of triangle t is set if the edge from corner i to i+1 is a model edge (set

@@ -60,6 +60,14 @@ MESHPIPE_INSTANTIATE(int)
 MESHPIPE_INSTANTIATE(double)
 #undef MESHPIPE_INSTANTIATE
 
+Surface surface_of(Mesh mesh) {
+  Surface s;
+  static_cast<Mesh&>(s) = std::move(mesh);
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  return s;
+}
+
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n) {
   std::vector<SubMesh> parts(n);
   std::vector<int> count(n, 0);

@@ -61,6 +61,9 @@ struct Surface : Mesh {
   Table face{"face", 0, {}};
 };
 
+/// The mesh without columns: its tables have a row for each point and triangle.
+Surface surface_of(Mesh mesh);
+
 /// One part of a surface on its own numbers; `vertex[i]`, `face[i]` are the numbers in the whole.
 struct SubMesh : Mesh {
   std::vector<int> vertex;

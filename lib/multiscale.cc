@@ -450,10 +450,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    if (task.depth >= max_depth)
-      throw GoalMissed(name(task.part) + " still has aspect ratio " + std::to_string(is[task.part].eta_geo) +
-                       " above " + std::to_string(options.max_aspect) + " after " +
-                       std::to_string(task.depth) + " cuts");
+    if (task.depth >= max_depth) continue;  // cuts do not make it shorter
     const std::vector<int>& label = surface.face.get<int>("part");
     std::vector<int> mine(label.size());
     std::vector<char> active(label.size());
@@ -489,8 +486,11 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       throw GoalMissed(message);
     };
     Halves made;
-    if (!expected.valid || !(made = split(surface, part, field, active, expected.loops)).loops)
-      fail("cannot be cut into 2 connected halves");
+    if (!expected.valid || !(made = split(surface, part, field, active, expected.loops)).loops) {
+      if (options.method == CutMethod::maxcut) fail("cannot be cut into 2 connected halves");
+      if (cuts) cuts->pop_back();
+      continue;
+    }
     for (const Topology& half : made.is)
       if (options.method == CutMethod::maxcut && half.eta_geo > options.max_aspect)
         fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +

@@ -48,11 +48,11 @@ struct MultiscaleCut {
 /// vertex-manifold, touches itself nowhere, has genus 0, N_B >= 1. Triangles are split along the cut
 /// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves are joined
 /// to neighbours where the union is admissible. Precondition: parts of genus 0 with a boundary.
-/// Triangles of no part (-1) are left alone, and then nothing is joined. Throws GoalMissed if a part cannot
-/// be cut; with maxcut, also if one cut does not make two admissible halves, or its map loses more than a
-/// hundredth of the triangles. Returns the number of parts; `cuts`, if given, receives what was done, in
-/// order, the cut that failed last.
-/// `topology`, if given, receives that of the parts.
+/// Triangles of no part (-1) are left alone, and then nothing is joined. A part that cannot be cut, or that
+/// twelve cuts do not make short enough, stays; with maxcut throws GoalMissed, also if one cut does not make
+/// two admissible halves, or its map loses more than a hundredth of the triangles. Returns the number of
+/// parts; `cuts`, if given, receives what was done, in order, the cut that failed last. `topology`, if given,
+/// receives that of the parts.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr);
 

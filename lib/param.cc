@@ -150,7 +150,7 @@ class Search {
   }
 
   std::vector<Vec2> plain(MapKind kind) {
-    if (kind != MapKind::conformal) return on_circle(kind);
+    if (kind != MapKind::conformal) return on_circle(kind, options_.neumann ? open() : round());
     if (options_.form == ConformalForm::boundary_first) return bent(0);
     const Filled filled = options_.neumann ? open() : flat();
     return options_.form == ConformalForm::spectral ? spectral_map(part_, disk_, filled, &report_.time)
@@ -182,7 +182,8 @@ class Search {
     }
     if (!valid && options_.map == MapKind::conformal) valid = try_bends(uv);
     for (MapKind kind : {MapKind::harmonic, MapKind::convex})
-      if (!valid && kind > options_.map) valid = try_circle(kind, uv);
+      if (!valid && (kind > options_.map || (kind == options_.map && options_.neumann)))
+        valid = try_circle(kind, uv);
     if (!valid && options_.map != MapKind::conformal) {
       // circles that shrink a limb below what doubles hold: a free border may not
       std::vector<Vec2> other;
@@ -246,16 +247,15 @@ class Search {
     return *open_;
   }
   const Filled& round() {
-    if (options_.neumann) return open();
     if (!round_) round_ = round_holes(part_, disk_);
     return *round_;
   }
   Filled flat() { return flat_holes(part_, disk_, &report_.time); }
 
-  std::vector<Vec2> on_circle(MapKind kind) {
+  std::vector<Vec2> on_circle(MapKind kind, const Filled& filled) {
     Weights weights = kind == MapKind::harmonic ? Weights::finite_element : options_.weights;
     std::vector<Vec2> uv =
-        extend_border(part_, round(), disk_, weights, circle_border(part_, disk_), &report_.time);
+        extend_border(part_, filled, disk_, weights, circle_border(part_, disk_), &report_.time);
     scale_to_area(part_, uv);
     return uv;
   }
@@ -328,7 +328,7 @@ class Search {
   bool try_circle(MapKind kind, std::vector<Vec2>& uv) {
     try {
       report_.used = kind;
-      uv = on_circle(kind);
+      uv = on_circle(kind, round());
       return valid_map(uv) || repaired(uv);
     } catch (const GoalMissed&) {
       return false;

@@ -18,7 +18,8 @@ struct ParamOptions {
   MapKind map = MapKind::conformal;
   ConformalForm form = ConformalForm::boundary_first;
   Weights weights = Weights::cotangent;  ///< of the convex map
-  /// The paper's natural condition on all loops but the longest, instead of holes filled in the solve.
+  /// The paper's natural condition on all loops but the longest, instead of holes filled in the solve: of the
+  /// map asked for, not of those that take its place.
   /// BadUsage with boundary_first, which has to know how much each hole turns.
   bool neumann = false;
   int optimize = 0;     ///< steps of lower_distortion (lib/param_optimize.h) at the end

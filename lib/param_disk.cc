@@ -213,14 +213,16 @@ std::vector<Vec2> polygon_of(const SubMesh& part, const std::vector<int>& loop,
     if (!(stretch > 0)) return {};
     at = at + stretch * length[i] * direction[i];
   }
+  if (!std::isfinite(at.x) || !std::isfinite(at.y)) return {};
   return polygon;
 }
 
 void scale_to_area(const SubMesh& part, std::vector<Vec2>& uv) {
   double area = 0;
   for (const Tri& t : part.tris) area += 0.5 * cross(uv[t[1]] - uv[t[0]], uv[t[2]] - uv[t[0]]);
-  if (!(area > 0)) return;
-  double s = std::sqrt(total_area(part) / area);
+  const double space = total_area(part);
+  if (!(area > 0 && space > 0)) return;
+  double s = std::sqrt(space / area);
   for (Vec2& p : uv) p = s * p;
 }
 

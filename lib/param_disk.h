@@ -64,11 +64,11 @@ std::vector<double> turns(const Filled& filled, const std::vector<double>& weigh
 
 /// The polygon of a loop with these turns (per vertex) and edge lengths (per edge of the loop); places in the
 /// order of the loop. It closes but for discretisation: the lengths l are changed to l (1 - c . direction),
-/// the least change over l that closes it. Empty if a length would not stay positive.
+/// the least change over l that closes it. Empty if a length would not stay positive, or is beyond doubles.
 std::vector<Vec2> polygon_of(const SubMesh& part, const std::vector<int>& loop,
                              const std::vector<double>& turn, const std::vector<double>& length);
 
-/// Scales a map to the area that the part has in space; nothing if its area is not positive.
+/// Scales a map to the area that the part has in space; nothing if either is not positive.
 void scale_to_area(const SubMesh& part, std::vector<Vec2>& uv);
 
 }  // namespace meshpipe

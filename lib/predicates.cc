@@ -99,7 +99,8 @@ Expansion<2 * N * M> operator*(const Expansion<N>& a, const Expansion<M>& b) {
 template <class... Doubles>
 double scale_to_one(Doubles... x) {
   double m = std::max({std::abs(x)...});
-  return m > 0 ? std::ldexp(1.0, -std::ilogb(m)) : 1;
+  constexpr int most = 1000;  // the power for the smallest doubles would be infinite itself
+  return m > 0 ? std::ldexp(1.0, std::min(-std::ilogb(m), most)) : 1;
 }
 
 int exact_orient2d(Vec2 a, Vec2 b, Vec2 c) {

@@ -38,6 +38,7 @@ std::vector<Place> Ground::likely_tips(double h) const {
       }
     }
   }
+  tips.shrink_to_fit();
   return tips;
 }
 
@@ -49,18 +50,23 @@ bool Relaxer::reach_tips(std::vector<Place>& tips) {
   const Mesh now = compact(number);
   if (now.tris.empty() || tips.empty()) return false;
   bool reached = false;
-  const Bvh tree(now);
   const double h = size_for_count(total_area(now), now.tris.size());
   const int n = (int)tips.size();
-  std::vector<Bvh::Hit> hit(n);
+  std::vector<std::pair<double, int>> nearest(n);  // of each tip: distance and triangle
+  {
+    const Bvh tree(now);
 #pragma omp parallel for schedule(static) if (n > 10000)
-  for (int i = 0; i < n; ++i) hit[i] = tree.nearest(ground_->walk.point(tips[i]));
+    for (int i = 0; i < n; ++i) {
+      const Bvh::Hit hit = tree.nearest(ground_->walk.point(tips[i]));
+      nearest[i] = {hit.distance, hit.place.face};
+    }
+  }
   double farthest = 0;
-  for (int i = 0; i < n; ++i) farthest = std::max(farthest, hit[i].distance);
+  for (const auto& [distance, t] : nearest) farthest = std::max(farthest, distance);
   const double far_enough = std::max(0.1 * h, 0.7 * farthest);
   std::vector<std::pair<double, int>> far;
   for (int i = 0; i < n; ++i)
-    if (hit[i].distance > 0.4 * far_enough) far.push_back({-hit[i].distance, i});
+    if (nearest[i].first > 0.4 * far_enough) far.push_back({-nearest[i].first, i});
   std::sort(far.begin(), far.end());
   int left = (int)now.tris.size() / 400;  // more would cost the mesh its regularity
   std::vector<Place> kept;
@@ -68,7 +74,7 @@ bool Relaxer::reach_tips(std::vector<Place>& tips) {
     kept.push_back(tips[i]);
     if (-minus_distance <= far_enough || left == 0) continue;
     int alive = -1;
-    for (int w : now.tris[hit[i].place.face])
+    for (int w : now.tris[nearest[i].second])
       if (m_.out[w] >= 0) alive = m_.out[w] / 3;
     if (alive >= 0 && reach(tips[i], alive, far_enough)) --left, reached = true;
   }

@@ -54,6 +54,12 @@ Eigen::SparseMatrix<Scalar> compress(int n, std::vector<Entry<Scalar>> entries) 
   return m;
 }
 
+template <class Matrix>
+void require_finite(const Matrix& x) {
+  if (!x.allFinite())
+    throw GoalMissed("the solution for " + std::to_string(x.rows()) + " unknowns is not finite");
+}
+
 /// Adds the time of its life to *seconds.
 class Stopwatch {
  public:
@@ -126,6 +132,7 @@ void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
   Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
       right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
   x = impl_->ldlt.solve(x).eval();
+  require_finite(x);
 }
 
 template class Factorisation<double>;
@@ -148,6 +155,7 @@ void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::ve
   Stopwatch watch(time ? &time->solve : nullptr);
   Eigen::Map<Eigen::MatrixXd> x(right_hand_side.data(), n, (Eigen::Index)right_hand_side.size() / n);
   x = lu.solve(x).eval();
+  require_finite(x);
 }
 
 std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor) {

@@ -35,6 +35,7 @@ class Factorisation {
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
   void refactor(const std::vector<Entry<Scalar>>& lower_triangle);
   /// Solves in place; call as often as needed. Several right-hand sides of n numbers each follow each other.
+  /// Throws GoalMissed if the solution is beyond doubles.
   void solve(std::vector<Scalar>& right_hand_side) const;
 
  private:

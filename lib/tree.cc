@@ -307,10 +307,7 @@ double aspect_of(const Tree& tree) {
 
 /// Cuts the surface beyond every end's plane off.
 void cut_ends(Mesh& mesh, const std::vector<End>& ends) {
-  Surface s;
-  static_cast<Mesh&>(s) = std::move(mesh);
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
+  Surface s = surface_of(std::move(mesh));
   std::vector<double> field(s.points.size(), -1);
   for (std::size_t v = 0; v < s.points.size(); ++v)
     for (const End& e : ends) {

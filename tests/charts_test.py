@@ -211,11 +211,18 @@ def one_part(rng):
     return [[scale * x for x in points[v]] for v in used], [tuple(used[v] for v in t) for t in tris]
 
 
-def write_parts(path, count, seed):
+def strip(rng):
+    """One row of triangles, all of them ears or with two vertices between ears, with coordinates of all magnitudes."""
+    n = rng.randint(3, 250)
+    points = [[x * 10 ** rng.uniform(-6, 0) for x in (0.5 * i, i % 2, rng.uniform(0, 0.3))] for i in range(n)]
+    return points, [(i + i % 2, i + 1 - i % 2, i + 2) for i in range(n - 2)]
+
+
+def write_parts(path, count, seed, make=one_part):
     rng = random.Random(seed)
     points, faces = [], []
     for part in range(count):
-        p, t = one_part(rng)
+        p, t = make(rng)
         faces += [f"3 {a + len(points)} {b + len(points)} {c + len(points)} {part}" for a, b, c in t]
         points += p
     with open(path, "w") as f:
@@ -226,10 +233,10 @@ def write_parts(path, count, seed):
         f.write("\n".join(faces) + "\n")
 
 
-def all_maps(parts, name, work, more=()):
+def all_maps(parts, name, work, more={}):
     """mparam with every map, and the check of its result."""
     for kind in MAPS:
-        for options in [[], *more] if kind == "conformal" else [[]]:
+        for options in [[], *more.get(kind, [])]:
             out = os.path.join(work, "charts.ply")
             label = " ".join([name, kind, *options])
             run = subprocess.run(["mparam", "-q", "--map", kind, *options, parts, "-o", out], capture_output=True, text=True)
@@ -252,7 +259,14 @@ def through_chain(source, parts):
 def generated(work):
     parts = os.path.join(work, "parts.ply")
     write_parts(parts, 500, 1)
-    all_maps(parts, "500 parts", work, [["--optimize", "3"], ["--conformal", "least-squares"], ["--conformal", "spectral"]])
+    more = {
+        "conformal": [["--optimize", "3"], ["--conformal", "least-squares"], ["--conformal", "spectral"]],
+        "harmonic": [["--boundary", "neumann"]],
+        "convex": [["--weights", "uniform"], ["--weights", "mean-value"]],
+    }
+    all_maps(parts, "500 parts", work, more)
+    write_parts(parts, 60, 2, strip)
+    all_maps(parts, "60 strips", work)
     for name, shape in [
         ("tree", "tree --triangles 4000 --slivers 0.25"),
         ("body", "body --triangles 1200"),

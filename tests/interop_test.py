@@ -203,6 +203,16 @@ def gmsh_checks(path, scratch):
     check(f"Gmsh, {path}", sum(e.split()[1] == "2" for e in elements), FACES)
 
 
+def gmsh_types(path, scratch):
+    """The types of the elements that Gmsh reads in a file, sorted."""
+    out = os.path.join(scratch, "gmsh.msh2")
+    subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+    with open(out) as file:
+        lines = file.read().split("\n")
+    return sorted(e.split()[1] for e in lines[lines.index("$Elements") + 2:lines.index("$EndElements")])
+
+
 def line_checks(mconvert, scratch):
     """Lines of the model and their names in the formats that hold them, as other programs read them."""
     sample = os.path.join(scratch, "lines.mply")
@@ -224,13 +234,7 @@ def line_checks(mconvert, scratch):
                     check(f"meshio, names of {path}", {n: [int(x) for x in v] for n, v in mesh.field_data.items()},
                           {"inlet": [1, 2], "crease": [3, 1]})
             if shutil.which("gmsh") and kind != "meshb":  # which Debian's is built without
-                out = os.path.join(scratch, "gmsh.msh2")
-                subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
-                with open(out) as file:
-                    lines = file.read().split("\n")
-                elements = [e.split() for e in lines[lines.index("$Elements") + 2:lines.index("$EndElements")]]
-                check(f"Gmsh, lines of {path}", sorted(e[1] for e in elements), ["1", "1", "2", "2"])
+                check(f"Gmsh, lines of {path}", gmsh_types(path, scratch), ["1", "1", "2", "2"])
 
 
 def second_order_checks(mconvert, scratch):
@@ -260,13 +264,7 @@ def second_order_checks(mconvert, scratch):
                 found = [[grid.GetCell(t).GetPointId(i) for i in range(6)] for t in range(grid.GetNumberOfCells())]
                 check(f"VTK, nodes of {path}", ([grid.GetCellType(0)], found), ([22], due))
             if shutil.which("gmsh") and kind != "vtu":
-                out = os.path.join(scratch, "gmsh.msh2")
-                subprocess.run(["gmsh", path, "-save_all", "-save", "-format", "msh2", "-o", out],
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
-                with open(out) as file:
-                    text = file.read().split("\n")
-                elements = [e.split() for e in text[text.index("$Elements") + 2:text.index("$EndElements")]]
-                check(f"Gmsh, types of {path}", sorted(e[1] for e in elements), ["8", "8", "9", "9"])
+                check(f"Gmsh, types of {path}", gmsh_types(path, scratch), ["8", "8", "9", "9"])
 
 
 def vtk_written(scratch):

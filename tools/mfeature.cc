@@ -114,6 +114,10 @@ int main(int argc, char** argv) {
                " between patches, " +
                (r.given_edges ? std::to_string(r.given_edges) + " given, " : std::string()) +
                std::to_string(r.crease_edges) + " on creases; " + std::to_string(r.corners) + " corners");
+        if (r.slivers > 0)
+          io.say(std::to_string(r.slivers) +
+                 " triangles thinner than a fiftieth of the size make no creases of their own");
+        io.report["slivers"] = r.slivers;
         io.report["model_edges"] = r.model_edges;
         io.report["patch_edges"] = r.patch_edges;
         io.report["given_edges"] = r.given_edges;

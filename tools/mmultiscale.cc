@@ -90,6 +90,10 @@ int main(int argc, char** argv) {
                                    {"turned_over", c.turned_over},
                                    {"halves", {c.halves[0], c.halves[1]}}});
     }
+    for (std::size_t p = 0; p < topology.size(); ++p)
+      if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
+        io.say("part " + std::to_string(p) + " keeps aspect ratio " + std::to_string(topology[p].eta_geo) +
+               ": no cut makes it shorter");
     const Interfaces cut = measure_interfaces(stream.surface);
     char text[200];
     std::snprintf(text, sizeof text,

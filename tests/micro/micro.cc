@@ -27,10 +27,7 @@ void connectivity(benchmark::State& state) {
 }
 
 void cut(benchmark::State& state) {
-  Surface s;
-  static_cast<Mesh&>(s) = torus(0.4, (int)state.range(0));
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
+  Surface s = surface_of(torus(0.4, (int)state.range(0)));
   std::vector<double> field;
   for (Vec3 p : s.points) field.push_back(p.x + 0.3 * p.y - 0.137);
   for (auto _ : state) {

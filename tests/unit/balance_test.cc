@@ -17,14 +17,6 @@ using namespace meshpipe;
 
 namespace {
 
-Surface surface_of(Mesh mesh) {
-  Surface s;
-  static_cast<Mesh&>(s) = std::move(mesh);
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
-  return s;
-}
-
 /// A square of n x n vertices, two triangles a cell, numbered row by row.
 ///
 ///   2  6---7---8

@@ -80,8 +80,7 @@ TEST(check, quality_is_that_of_the_definitions) {
 }
 
 TEST(check, cuts_are_undone) {
-  Surface s;
-  static_cast<Mesh&>(s) = torus(0.4, 900);
+  Surface s = surface_of(torus(0.4, 900));
   const Mesh before = s;
   std::vector<int> origin(s.tris.size());
   for (std::size_t t = 0; t < origin.size(); ++t) origin[t] = (int)t;
@@ -124,6 +123,34 @@ TEST(check, wedges_do_not_count) {
   const double k = kappa_off_wedges(m, c.opposite, std::vector<std::uint8_t>(m.tris.size(), 0), q, worst);
   EXPECT_GT(worst, 4);  // two rings away from the tip
   EXPECT_GT(k, q.kappa_min);
+}
+
+//   3-------2    a needle 0 1 2 of 1 degree, whose other side is a large triangle, and the pyramid of a spike
+//    \    /|
+//     \ /  |
+//      0---1
+TEST(check, needles_at_sharp_tips_are_forced) {
+  const double thin = std::tan(1 / 57.29577951308232);
+  const Mesh m{{{0, 0, 0}, {1, 0, 0}, {1, thin, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  const Connectivity c = connectivity_of(m);
+  // without a mark the room at 0 is a right angle, with one on the edge 2-0 it is a degree
+  EXPECT_TRUE(needle_tips(m, c.opposite, {0, 0}).empty());
+  const std::vector<NeedleTip> tips = needle_tips(m, c.opposite, {4, 1});
+  ASSERT_EQ(tips.size(), 1u);
+  EXPECT_NEAR(tips[0].room, 1 / 57.2957795, 1e-6);
+  const std::vector<float> kappas{0.03F, 0.8F};
+  EXPECT_EQ(forced_needles(m, kappas, tips), (std::vector<char>{1, 0}));
+  EXPECT_EQ(forced_needles(m, kappas, {{{5, 5, 5}, 0.01}}), (std::vector<char>{0, 0}));
+
+  Mesh spike{{{0, 0, 100}}, {}};
+  for (int i = 0; i < 6; ++i) spike.points.push_back({std::cos(i * 1.0472), std::sin(i * 1.0472), 0});
+  for (int i = 0; i < 6; ++i) spike.tris.push_back({0, 1 + i, 1 + (i + 1) % 6});
+  const Connectivity of_spike = connectivity_of(spike);
+  const std::vector<NeedleTip> top = needle_tips(spike, of_spike.opposite, {});
+  ASSERT_EQ(top.size(), 1u);
+  EXPECT_EQ(forced_needles(spike, std::vector<float>(6, 0.01F), top), std::vector<char>(6, 1));
+  spike.points[0].z = 3;
+  EXPECT_TRUE(needle_tips(spike, of_spike.opposite, {}).empty());
 }
 
 TEST(check, weld_joins_what_is_at_one_place) {

@@ -9,18 +9,10 @@
 namespace meshpipe {
 namespace {
 
-Surface as_surface(const Mesh& m) {
-  Surface s;
-  static_cast<Mesh&>(s) = m;
-  s.vertex.rows = m.points.size();
-  s.face.rows = m.tris.size();
-  return s;
-}
-
 /// What the default contract finds in a mesh that was made from `reference`.
 std::vector<Failure> verdict(const Mesh& mesh, const Mesh& reference,
                              const std::string& contract = default_contract) {
-  return judge(parse_contract(contract), examine(as_surface(mesh), as_surface(reference), nullptr, 2000),
+  return judge(parse_contract(contract), examine(surface_of(mesh), surface_of(reference), nullptr, 2000),
                mesh);
 }
 
@@ -43,7 +35,7 @@ TEST(contract, lists_are_read_and_refused) {
 
 TEST(contract, what_is_not_a_number_fails_and_what_there_is_not_does_not) {
   const Mesh m = sphere(500);
-  Findings f = examine(as_surface(m), as_surface(m), nullptr, 1000);
+  Findings f = examine(surface_of(m), surface_of(m), nullptr, 1000);
   const Contract c = parse_contract("features=1,trace=1,mean=1,boundary=1,vertices=1,size=1");
   EXPECT_TRUE(judge(c, f, m).empty());
   const double nan = std::nan("");
@@ -153,7 +145,7 @@ TEST(contract, a_moved_vertex) {
 
 TEST(contract, a_crossing_and_a_lost_name) {
   const Mesh good = sphere(500);
-  Findings f = examine(as_surface(good), as_surface(good), nullptr, 2000);
+  Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);
   f.lost_patches = {"inlet"};
   f.intersections = {{4, 9}, {5, 8}};
   f.new_intersections = {{4, 9}};

@@ -14,14 +14,6 @@ using namespace meshpipe;
 
 namespace {
 
-Surface surface_of(const Mesh& mesh) {
-  Surface s;
-  static_cast<Mesh&>(s) = mesh;
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
-  return s;
-}
-
 /// Places in a triangle, corners and middles of edges among them.
 const std::vector<std::array<double, 3>> places = {{1, 0, 0},      {0, 1, 0},     {0.5, 0.5, 0},
                                                    {0, 0.5, 0.5},  {0.2, 0, 0.8}, {1. / 3, 1. / 3, 1. / 3},

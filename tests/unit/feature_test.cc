@@ -143,3 +143,20 @@ TEST(Feature, TheNormalOfAFlatTriangleIsThatOfItsNeighbour) {
   EXPECT_EQ(r.crease_edges, 13);
   EXPECT_EQ(r.corners, 8);
 }
+
+//  a flat plate of 12 triangles: its rim is a thousandth of the size, so top and bottom meet in one crease
+//  instead of two; where the mesh is as fine as the rim is high, in two
+TEST(Feature, TheRimOfAThinPlateIsOneCrease) {
+  Surface s = cube();
+  for (Vec3& p : s.points) p = {10 * p.x, 10 * p.y, 0.005 * p.z};
+  FeatureOptions options;
+  options.size = 5;
+  FeatureReport r = mark_features(s, options);
+  EXPECT_GT(r.slivers, 0);
+  EXPECT_LE(r.crease_edges, 8);  // four sides, and at most a short one at each corner
+  EXPECT_GE(r.crease_edges, 4);
+  options.size = 0.005;
+  r = mark_features(s, options);
+  EXPECT_EQ(r.slivers, 0);
+  EXPECT_EQ(r.crease_edges, 12);
+}

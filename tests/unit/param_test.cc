@@ -159,6 +159,12 @@ TEST(Param, SmallAndWrongParts) {
   EXPECT_THROW(convex_map(closed), NotAdmissible);
 }
 
+static Surface one_part(const Mesh& mesh) {
+  Surface s = surface_of(mesh);
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  return s;
+}
+
 // A ramp that winds one and a half times round at the same radius: flat pieces of it overlap.
 static Surface ramp() {
   auto m = grid(
@@ -169,11 +175,7 @@ static Surface ramp() {
       },
       all);
   for (Tri& t : m.tris) std::swap(t[1], t[2]);
-  Surface s;
-  static_cast<Mesh&>(s) = m;
-  s.vertex.rows = m.points.size();
-  s.face.set("part", std::vector<int>(m.tris.size(), 0));
-  return s;
+  return one_part(m);
 }
 
 TEST(Param, ABorderThatCrossesItselfIsBent) {
@@ -205,10 +207,7 @@ TEST(Param, APartThatWouldShrinkToNothingIsCutAcross) {
       if (int v = origin(thimble.tris, h); thimble.points[v].z > 9)
         thimble.tris.push_back({target(thimble.tris, h), v, tip});
   thimble.points.push_back({0, 0, 10});
-  Surface s;
-  static_cast<Mesh&>(s) = thimble;
-  s.vertex.rows = s.points.size();
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  Surface s = one_part(thimble);
   std::vector<ParamReport> reports;
   Surface strict = s;
   ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
@@ -263,10 +262,7 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
       },
       all);
   for (std::vector<std::array<int, 2>> apart : {std::vector<std::array<int, 2>>{}, {{0, 40}}}) {
-    Surface s;
-    static_cast<Mesh&>(s) = strip;
-    s.vertex.rows = s.points.size();
-    s.face.set("part", std::vector<int>(s.tris.size(), 0));
+    Surface s = one_part(strip);
     ASSERT_TRUE(bisect_part(s, 0, 1, apart));
     for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
       EXPECT_EQ(t.components, 1);
@@ -288,10 +284,7 @@ TEST(Bisect, AtModelEdgesThatEncloseSomething) {
         return Vec3{10 * s, t, 0};
       },
       all);
-  Surface s;
-  static_cast<Mesh&>(s) = strip;
-  s.vertex.rows = s.points.size();
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  Surface s = one_part(strip);
   auto mark = [&](double up_to) {  // the edges at x = 5 below y
     std::vector<std::uint8_t> model(s.tris.size(), 0);
     for (std::size_t h = 0; h < 3 * s.tris.size(); ++h) {
@@ -314,11 +307,8 @@ TEST(Bisect, AtModelEdgesThatEncloseSomething) {
 }
 
 TEST(Bisect, AlongModelEdges) {
-  Surface s;
   const Body body = cube(120);
-  static_cast<Mesh&>(s) = body;
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
+  Surface s = surface_of(body);
   s.face.set("patch", body.patch);
   s.face.set("part", std::vector<int>(s.tris.size(), 0));
   EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // none are known
@@ -342,11 +332,8 @@ TEST(Bisect, AlongModelEdges) {
 }
 
 TEST(Param, SliversOfACadBodyAreCutAlongModelEdges) {
-  Surface s;
   const Body body = cad_body(3, 3, 500);
-  static_cast<Mesh&>(s) = body;
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
+  Surface s = surface_of(body);
   s.face.set("patch", body.patch);
   mark_features(s, {});
   std::vector<ParamReport> reports;
@@ -424,10 +411,7 @@ TEST(Param, ACoarseTubeIsCutOpen) {
         return Vec3{std::cos(a), std::sin(a), 6 * t};
       },
       all);
-  Surface s;
-  static_cast<Mesh&>(s) = prism;
-  s.vertex.rows = s.points.size();
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  Surface s = one_part(prism);
   std::vector<ParamReport> reports;
   Surface strict = s;
   ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
@@ -450,11 +434,7 @@ TEST(Param, ALimbWithFewEdgesRoundIsCutAlong) {
         return Vec3{std::cos(a), std::sin(a), 1.9 * pi * t};
       },
       all);
-  Surface s;
-  static_cast<Mesh&>(s) = tube;
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  Surface s = one_part(tube);
   std::vector<ParamReport> reports;
   Surface strict = s, creased = s;
   map_surface(strict, 1, {.strict = true}, reports);

@@ -109,6 +109,15 @@ TEST(Predicates, Orient3dIsExactOnNearlyCoplanarPoints) {
   EXPECT_GT(zeros, 100);
 }
 
+TEST(Predicates, TheSmallestDoubles) {
+  const double d = 5e-324;
+  EXPECT_EQ(orient2d({0, 0}, {d, 0}, {0, d}), 1);
+  EXPECT_EQ(orient2d({0, 0}, {0, d}, {d, 0}), -1);
+  EXPECT_EQ(orient2d({0, 0}, {d, d}, {3 * d, 3 * d}), 0);
+  EXPECT_EQ(incircle({0, 0}, {4 * d, 0}, {0, 4 * d}, {d, d}), 1);
+  EXPECT_EQ(orient3d({0, 0, 0}, {d, 0, 0}, {0, d, 0}, {0, 0, -d}), 1);
+}
+
 TEST(Predicates, SignsFollowTheConvention) {
   EXPECT_EQ(orient2d({0, 0}, {1, 0}, {0, 1}), 1);
   EXPECT_EQ(incircle({0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}), 1);

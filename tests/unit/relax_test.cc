@@ -40,11 +40,17 @@ LiftedMesh lifted_of(const Surface& s) {
 }
 
 Surface sized(const Mesh& mesh, double triangles) {
-  Surface s;
-  static_cast<Mesh&>(s) = mesh;
-  s.face.rows = mesh.tris.size();
+  Surface s = surface_of(mesh);
   const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
   s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
+  return s;
+}
+
+/// To be meshed with half as many triangles.
+Surface slivered_sphere(int triangles, double share, int seed) {
+  Surface s = sized(sphere(triangles), triangles / 2);
+  add_slivers(s, share, seed);
+  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
   return s;
 }
 
@@ -75,9 +81,7 @@ TEST(Relax, ATorusBecomesRegularAndStaysATorus) {
 }
 
 TEST(Relax, SliversAndNoiseGo) {
-  Surface s = sized(sphere(4000), 2000);
-  add_slivers(s, 0.3, 1);
-  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  const Surface s = slivered_sphere(4000, 0.3, 1);
   LiftedMesh m = lifted_of(s);
   EXPECT_GT(relax(m, s, {}).kappa_min, 0.6);
   EXPECT_EQ(topology_of(m).genus, 0);
@@ -195,9 +199,7 @@ TEST(Relax, TipsOfModelEdgesAreReachedAlongThem) {
 }
 
 TEST(Relax, NoTriangleIsLeftBadOnASmoothSurface) {
-  Surface s = sized(sphere(6000), 3000);
-  add_slivers(s, 0.25, 3);
-  s.vertex.set("size", std::vector<double>(s.points.size(), s.vertex.get<double>("size")[0]));
+  const Surface s = slivered_sphere(6000, 0.25, 3);
   LiftedMesh m = lifted_of(s);
   const RelaxReport r = relax(m, s, {});
   EXPECT_GE(r.kappa_min, 0.75);

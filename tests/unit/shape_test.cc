@@ -113,8 +113,7 @@ TEST(shape, tree_depends_on_its_seed_only) {
 }
 
 TEST(shape, slivers_keep_the_surface) {
-  Surface s;
-  static_cast<Mesh&>(s) = sphere(500);
+  Surface s = surface_of(sphere(500));
   s.face.set("patch", std::vector<int>(s.tris.size(), 7));
   const double before = volume(s);
   const std::size_t n = s.tris.size();

@@ -48,14 +48,6 @@ std::vector<double> curvature_of(const Mesh& m) {
   return face_curvature(m, opposite_halfedges(m.tris, (int)m.points.size()), {});
 }
 
-Surface surface_of(const Mesh& m) {
-  Surface s;
-  static_cast<Mesh&>(s) = m;
-  s.vertex.rows = m.points.size();
-  s.face.rows = m.tris.size();
-  return s;
-}
-
 void expect_graded(const Mesh& m, const std::vector<double>& h, double slope) {
   for (const Tri& t : m.tris)
     for (int i = 0; i < 3; ++i) {

@@ -165,8 +165,7 @@ TEST(Topology, AspectRatioOfATubeIsHeightOverDiameter) {
 }
 
 TEST(Topology, TableOfPartsHasARowAPart) {
-  Surface s;
-  static_cast<Mesh&>(s) = wrapped(16, 8, false, 4);
+  Surface s = surface_of(wrapped(16, 8, false, 4));
   std::vector<int> part;  // the lower and the upper half
   for (int t = 0; t < (int)s.tris.size(); ++t) part.push_back(t < (int)s.tris.size() / 2 ? 0 : 1);
   s.face.set("part", part);
