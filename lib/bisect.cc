@@ -26,15 +26,16 @@ std::vector<double> lumped_area(const Mesh& mesh) {
 
 /// L + s M with free borders, s M far below the first eigenvalue of L that is not zero, (pi / length)^2, and
 /// enough to make the matrix definite. Positive weights: its fields have no extremes but where they are
-/// driven.
-Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass) {
+/// driven. `even`: of the graph, with the same weight for all triangles, whatever their shapes.
+Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass, bool even) {
   int n = (int)mesh.points.size();
   std::vector<double> diagonal(n);
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
   for (int v = 0; v < n; ++v) diagonal[v] = 0.01 * mass[v] / area;
   std::vector<Entry<double>> matrix;
   for (const Tri& t : mesh.tris) {
-    auto w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
+    std::array<double, 3> w{0.5, 0.5, 0.5};
+    if (!even) w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
     for (int i = 0; i < 3; ++i) {
       int a = t[i], b = t[(i + 1) % 3];
       matrix.push_back({std::max(a, b), std::min(a, b), -w[i]});
@@ -106,14 +107,15 @@ bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
 
 }  // namespace
 
-bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart) {
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
+                 bool even) {
   const auto& label = surface.face.get<int>("part");
   std::vector<int> only(label.size());
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
-  std::vector<double> mass = lumped_area(mesh);
+  std::vector<double> mass = even ? std::vector<double>(mesh.points.size(), 1) : lumped_area(mesh);
   if (!(std::accumulate(mass.begin(), mass.end(), 0.0) > 0)) return false;
-  Factorisation<double> laplacian = free_laplacian(mesh, mass);
+  Factorisation<double> laplacian = free_laplacian(mesh, mass, even);
   std::vector<std::vector<double>> fields;
   for (auto [source, sink] : apart) {
     auto& field = fields.emplace_back(mesh.points.size(), 0);
@@ -146,7 +148,9 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
     for (int v : order) {
       below += mass[v];
       for (; next_share < shares && below >= next_share * area / shares; ++next_share) {
-        double smaller = area * std::min(next_share, shares - next_share) / shares;
+        const int share = std::min(next_share, shares - next_share);
+        if (even && share < shares / 3) continue;
+        double smaller = area * share / shares;
         lines.push_back({level_length(mesh, field, field[v]) / std::sqrt(smaller), f, field[v]});
       }
     }
@@ -215,6 +219,7 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   for (int& label : only) label = label == part ? 0 : -1;
   MultiscaleOptions options;
   options.max_aspect = 0.9 * topology_of(split_by_label(work, only, 1)[0]).eta_geo;
+  options.most_parts = 4;  // a ragged part keeps its aspect ratio through many cuts
   work.face.set("part", std::move(only));
   int pieces = 0;
   try {
@@ -222,8 +227,7 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   } catch (const GoalMissed&) {
     return n_parts;
   }
-  constexpr int most = 4;                           // a ragged part keeps its aspect ratio through many cuts
-  if (pieces < 2 || pieces > most) return n_parts;  // halves may have been joined again
+  if (pieces < 2) return n_parts;  // halves may have been joined again
   std::vector<int> label = work.face.get<int>("whole");
   const auto& piece = work.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)

@@ -15,8 +15,11 @@ namespace meshpipe {
 /// of the free part), which cross its long direction. The line taken is the shortest over the root of the
 /// smaller side's area that leaves two connected halves without pinched vertices; both kinds of field have
 /// connected sides but for rounding. The triangles above the level get the label `new_part`; neighbours are
-/// split conformingly. Returns false, and changes nothing, if no line will do.
-bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
+/// split conformingly. `even` counts vertices instead of areas, gives all triangles the same weight, and
+/// takes no line with less than a third on one side: for parts of which their shape only ever lets a few
+/// triangles be cut off. Returns false, and changes nothing, if no line will do.
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
+                 bool even = false);
 
 /// Cuts `part` along the model edges (face column `model`) inside it, which the mesh keeps in any case:
 /// pieces that have no map to the plane are joined to a neighbour. Pieces above the first get the labels

@@ -451,6 +451,9 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     const Task task = tasks.back();
     tasks.pop_back();
     if (task.depth >= max_depth) continue;  // cuts do not make it shorter
+    if (options.most_parts > 0 && n_parts >= options.most_parts)
+      throw GoalMissed("more than " + std::to_string(options.most_parts) +
+                       " parts are needed for aspect ratios below " + std::to_string(options.max_aspect));
     const std::vector<int>& label = surface.face.get<int>("part");
     std::vector<int> mine(label.size());
     std::vector<char> active(label.size());

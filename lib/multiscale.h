@@ -19,6 +19,7 @@ struct MultiscaleOptions {
   double min_area = 1e-10;  ///< A_min, relative to the level's disk
   int min_set = 10;         ///< smaller sets of small triangles stay good (the paper's footnote)
   int directions = 4;       ///< root directions tried
+  int most_parts = 0;       ///< more are a failure (0: any number)
   bool keep_maps = false;   ///< fill MultiscaleCut::maps
 };
 
@@ -49,10 +50,10 @@ struct MultiscaleCut {
 /// (lib/cut.h). The cut follows the model's branches along opposite sides (lib/balance.h). Halves are joined
 /// to neighbours where the union is admissible. Precondition: parts of genus 0 with a boundary.
 /// Triangles of no part (-1) are left alone, and then nothing is joined. A part that cannot be cut, or that
-/// twelve cuts do not make short enough, stays; with maxcut throws GoalMissed, also if one cut does not make
-/// two admissible halves, or its map loses more than a hundredth of the triangles. Returns the number of
-/// parts; `cuts`, if given, receives what was done, in order, the cut that failed last. `topology`, if given,
-/// receives that of the parts.
+/// twelve cuts do not make short enough, stays. Throws GoalMissed if more than most_parts are needed; with
+/// maxcut also if one cut does not make two admissible halves, or its map loses more than a hundredth of the
+/// triangles. Returns the number of parts; `cuts`, if given, receives what was done, in order, the cut that
+/// failed last. `topology`, if given, receives that of the parts.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr);
 

@@ -393,7 +393,7 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports) {
-  constexpr int most_rounds = 24, limb_rounds = 2, stretched_rounds = 12;
+  constexpr int most_rounds = 24, limb_rounds = 2, stretched_rounds = 12, even_rounds = 12;
   constexpr double too_uneven = 1e8, unresolved = 1e16;  // edges of 1e-8 of the chart keep half their digits
   constexpr double too_stretched = 4;                    // sigma1/sigma2, the mean over the area
   constexpr double too_steep = 1.05;                     // sigma1/sigma2, the median
@@ -466,7 +466,9 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
           // helped
           std::vector<std::array<int, 2>> choice[2] = {reports[p].apart, {}};
           if (round >= limb_rounds) std::swap(choice[0], choice[1]);
-          if (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]))
+          const bool peeled = missed && round >= even_rounds;  // little by little
+          if ((peeled && bisect_part(surface, p, n_parts, {}, true)) ||
+              bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]))
             ++n_parts;
         }
       }

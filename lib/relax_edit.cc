@@ -186,10 +186,15 @@ void Relaxer::collapse_short(double below, double least) {
 }
 
 /// Segments of borders and model edges much shorter than the size: an interface that ended close to a corner
-/// leaves them.
+/// leaves them. Of a border that is to be kept all those with a vertex that the input does not have.
 void Relaxer::collapse_short_segments() {
-  for (int h = 0; h < (int)m_.opp.size(); ++h)
-    if (!m_.dead(h / 3) && m_.hard[h] && h > m_.opp[h] && ratio(h) < 0.6) collapse_either(h, 4, 1.6);
+  for (int h = 0; h < (int)m_.opp.size(); ++h) {
+    if (m_.dead(h / 3) || !m_.hard[h] || h < m_.opp[h]) continue;
+    if (options_.keep_border && m_.opp[h] < 0)
+      collapse_either(h, 2000, 3);
+    else if (ratio(h) < 0.6)
+      collapse_either(h, 4, 1.6);
+  }
 }
 
 /// Corners that a line of the model joins and that are so close that no triangle there could be good without

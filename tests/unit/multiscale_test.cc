@@ -191,6 +191,10 @@ TEST(Multiscale, ShortPartsStayAsTheyAre) {
   EXPECT_EQ(s.tris, tris);
   MultiscaleOptions options;
   options.max_aspect = 2;
+  options.most_parts = 1;
+  EXPECT_THROW(multiscale_cut(s, options), GoalMissed);
+  EXPECT_EQ(s.tris, tris);
+  options.most_parts = 2;
   EXPECT_EQ(multiscale_cut(s, options), 2);
 }
 

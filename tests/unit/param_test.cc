@@ -274,6 +274,22 @@ TEST(Bisect, AcrossTheLongDirectionOrBetweenTwoPlaces) {
   }
 }
 
+// Columns a tenth as wide each as the one before: half of the area is the first, half of the graph is not.
+TEST(Bisect, EvenHalvesTheGraph) {
+  auto strip = grid(
+      20, 4, false,
+      [](double s, double t) {
+        return Vec3{-std::pow(10, -20 * s), t, 0};
+      },
+      all);
+  Surface s = one_part(strip);
+  ASSERT_TRUE(bisect_part(s, 0, 1, {}, true));
+  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
+    EXPECT_EQ(t.components, 1);
+    EXPECT_GT(t.faces, 160 / 4);
+  }
+}
+
 //  +-----+-----+
 //  |     |     |    a model line across: two parts, no new vertex
 //  +-----+-----+
