@@ -38,6 +38,11 @@ std::vector<int> patches_of_word(const std::string& word, const std::vector<int>
     if (const std::string name = stream.name_of(2, label);
         !name.empty() && fnmatch(word.c_str(), name.c_str(), 0) == 0)
       found.push_back(label);
+  // patches without a name go by their number
+  if (word.find_first_of("*?[") != std::string::npos)
+    for (int label : labels)
+      if (stream.name_of(2, label).empty() && fnmatch(word.c_str(), std::to_string(label).c_str(), 0) == 0)
+        found.push_back(label);
   long long number = 0;
   if (found.empty() && parse_integer(word, number))
     for (int label : labels)
@@ -61,6 +66,7 @@ std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& w
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   Text text(bytes, where);
   std::vector<PatchGroup> groups;
+  std::vector<std::pair<std::string, std::size_t>> named;  // and on which line
   while (text.next_line()) {
     const std::string_view line = text.rest();
     if (line.empty() || line[0] == '#') continue;
@@ -68,6 +74,10 @@ std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& w
     PatchGroup group;
     if (words.size() > 1 && words[1] == "=") {
       group.name = words[0];
+      for (const auto& [name, line_number] : named)
+        if (name == group.name)
+          text.fail("group " + quoted(name) + " again, which line " + std::to_string(line_number) + " has");
+      named.emplace_back(group.name, text.line());
       words.erase(words.begin(), words.begin() + 2);
     }
     for (const std::string& word : words) {

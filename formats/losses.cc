@@ -20,6 +20,7 @@ enum Holds {
   colors = 64,  ///< of vertices
   face_colors = 128,
   marks = 256,  ///< .mesh: ref, corner, required
+  nodes = 512,  ///< of second order
 };
 
 struct Format {
@@ -31,10 +32,10 @@ constexpr Format formats[] = {
     {".stl", patches | names},  // as text
     {".obj", patches | names | colors},
     {".off", colors | face_colors},
-    {".msh", patches | labels | names | lines | line_names | data},
-    {".msh2", patches | labels | names | lines | line_names | data},
-    {".msh4", patches | labels | names | lines | line_names | data},
-    {".vtu", patches | labels | names | data},
+    {".msh", patches | labels | names | lines | line_names | data | nodes},
+    {".msh2", patches | labels | names | lines | line_names | data | nodes},
+    {".msh4", patches | labels | names | lines | line_names | data | nodes},
+    {".vtu", patches | labels | names | data | nodes},
     {".vtp", patches | labels | names | data},
     {".vtk", patches | labels | names | data},
     {".mesh", patches | labels | lines | marks},
@@ -107,6 +108,8 @@ std::string lost_in(const Stream& stream, const std::string& path, bool ascii) {
     if (!of_lines.empty()) add(count_of(distinct(of_lines), "labelled line", "labelled lines"));
   }
   if (!(holds & line_names)) add_names(1, "name of a line", "names of lines");
+  if (const Table* middle = stream.find("mid_vertex"); middle && !(holds & nodes))
+    add(count_of(middle->rows, "node within an edge", "nodes within edges") + " (second order)");
   const bool remeshed = stream.find("ref_vertex") != nullptr;
   if (!(holds & data)) {
     const std::string of_vertices = lost_columns(stream.surface.vertex, true, remeshed, holds),

@@ -6,6 +6,7 @@
 
 #include "formats/text.h"
 #include "lib/error.h"
+#include "lib/number.h"
 
 namespace meshpipe {
 namespace {
@@ -26,6 +27,12 @@ bool is_row(const std::vector<std::string_view>& words) {
   double value;
   return words.size() >= 4 && std::all_of(words.begin(), words.begin() + 4,
                                           [&](std::string_view w) { return parse_number(w, value); });
+}
+
+/// Is it a line of names above the columns?
+bool names_only(const std::vector<std::string_view>& words) {
+  double value;
+  return std::none_of(words.begin(), words.end(), [&](std::string_view w) { return parse_number(w, value); });
 }
 
 /// Points that no triangle holds become triangles of their own.
@@ -67,7 +74,7 @@ SizeField size_field_of(const Stream& mesh, const std::string& column, const std
   for (std::size_t v = 0; v < field.size.size(); ++v)
     if (!(field.size[v] > 0))
       throw BadInput(where + ": vertex " + std::to_string(v) + " has " + c->name + ' ' +
-                     std::to_string(field.size[v]) + ", but sizes are positive");
+                     shown(field.size[v]) + ", but sizes are positive");
   if (field.points.empty()) throw BadInput(where + ": no vertices");
   complete(field);
   return field;
@@ -84,12 +91,13 @@ SizeField read_size_table(std::string_view bytes, const std::string& where) {
   SizeField field;
   for (bool first = true; text.next_line(); first = false) {
     const std::vector<std::string_view> words = words_of(text.rest());
-    if (words.empty() || (first && !is_row(words))) continue;
-    if (words.size() < 4) text.fail("a row of " + std::to_string(words.size()) + " numbers, x y z h are due");
+    if (words.empty() || (first && names_only(words))) continue;
+    if (words.size() != 4)
+      text.fail("a row of " + std::to_string(words.size()) + " values, the 4 of x y z h are due");
     double x[4];
     for (int i = 0; i < 4; ++i)
       if (!parse_number(words[i], x[i])) text.fail("no number: " + quoted(words[i]));
-    if (!(x[3] > 0)) text.fail("size " + std::to_string(x[3]) + ", but sizes are positive");
+    if (!(x[3] > 0)) text.fail("size " + shown(x[3]) + ", but sizes are positive");
     field.points.push_back({x[0], x[1], x[2]});
     field.size.push_back(x[3]);
   }

@@ -22,8 +22,9 @@ SizeField size_field_of(const Stream& mesh, const std::string& column, const std
 /// True for a text whose first row that is no comment, or its second after a line of names, begins with
 /// numbers.
 bool is_size_table(std::string_view bytes);
-/// Rows of x y z h, parted by blanks, commas or semicolons; lines that begin with # and a first line of names
-/// are skipped. Throws BadInput with the line.
+/// Rows of x y z h, parted by blanks, commas or semicolons; what follows # in a line is skipped, and so is a
+/// first line without a number: names of the columns. Throws BadInput with the line, of a row that has other
+/// than four values too.
 SizeField read_size_table(std::string_view bytes, const std::string& where);
 
 }  // namespace meshpipe

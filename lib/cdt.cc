@@ -7,11 +7,12 @@
 #include <string>
 
 #include "lib/error.h"
+#include "lib/number.h"
 
 namespace meshpipe {
 namespace {
 
-std::string show(Vec2 p) { return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")"; }
+std::string show(Vec2 p) { return "(" + shown(p.x) + ", " + shown(p.y) + ")"; }
 
 // Place of a cell on Hilbert's curve of order 16.
 std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {

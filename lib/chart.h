@@ -31,13 +31,14 @@ struct Place {
 };
 
 /// Builds the charts of a surface from its part labels and the rows of the stream's chart_vertex table
-/// (part, vertex, u, v), not indexed. Throws BadInput if a row is missing, doubled or out of range, or a triangle
-/// is not positively oriented.
+/// (part, vertex, u, v), not indexed. Throws BadInput if a row is missing, doubled or out of range, or a
+/// triangle is not positively oriented.
 std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex, int n_parts);
 
 /// Finds the triangle of the chart that holds p, walking from triangle `hint` by exact orientation tests;
 /// where the walk is stopped by a border that is not convex, it looks p up in the grid. A point outside the
-/// chart gets the nearest place on its border (barycentrics clamped to [0,1]). Never fails.
+/// chart gets the nearest place on its border (barycentrics clamped to [0,1]). Precondition: the chart has
+/// triangles and its `opposite` is set (index_chart); `grid` may be empty. Then it never fails.
 Place locate(const Chart& chart, Vec2 p, int hint);
 
 }  // namespace meshpipe

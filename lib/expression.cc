@@ -12,6 +12,22 @@
 
 namespace meshpipe {
 
+namespace {
+
+/// Where the text has a = that is not part of == != <= >=, or npos.
+std::size_t assignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=')
+      ++i;
+    else if (i == 0 || (text[i - 1] != '!' && text[i - 1] != '<' && text[i - 1] != '>'))
+      return i;
+  }
+  return std::string::npos;
+}
+
+}  // namespace
+
 struct Expression::Impl {
   mu::Parser parser;
   std::vector<double> values;
@@ -25,6 +41,9 @@ Expression::Expression(const std::string& text, const std::vector<std::string>& 
     impl_->parser.DefineConst("inf", std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < variables.size(); ++i)
       impl_->parser.DefineVar(variables[i], &impl_->values[i]);
+    if (const std::size_t at = assignment(text); at != std::string::npos)
+      throw BadUsage("expression '" + text + "': assigns a value at position " + std::to_string(at + 1) +
+                     "; == compares");
     impl_->parser.SetExpr(text);
     int results = 0;
     impl_->parser.Eval(results);

@@ -11,11 +11,12 @@ namespace meshpipe {
 /// like, pi. Not for several threads at once.
 class Expression {
  public:
-  /// Throws BadUsage saying what is wrong and where.
+  /// Throws BadUsage saying what is wrong and where; an assignment is wrong.
   Expression(const std::string& text, const std::vector<std::string>& variables);
   ~Expression();
   Expression(const Expression&) = delete;
   Expression& operator=(const Expression&) = delete;
+  /// Whether the formula reads this variable.
   bool uses(const std::string& variable) const;
   /// The value for values of the variables in their order; NaN and infinity where the formula gives them.
   double operator()(const std::vector<double>& values);

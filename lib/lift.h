@@ -22,6 +22,10 @@ struct LiftedMesh : Mesh {
 /// triangles. Patch labels are given region by region (triangles joined across edges that are not model edges
 /// or borders), by the area-weighted majority of the reference patches below. Indexes the charts where it has
 /// to look for a place.
+/// Preconditions: vertex column `size` on the reference, a chart and a plane mesh a part, in the same order,
+/// meshes of these charts and lines (line_point a row of lines.points, place a triangle of the chart).
+/// Throws BadInput if a line point is on an edge that the reference has not; GoalMissed, with the vertex or
+/// the edge, if what was glued is no manifold, is pinched, or its border is not the border lines' segments.
 LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes);
 

@@ -9,6 +9,7 @@
 
 #include "lib/embed.h"
 #include "lib/error.h"
+#include "lib/number.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -282,7 +283,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   const auto& part = surface.face.get<int>("part");
   for (int v = 0; v < n_vertices; ++v)
     if (!(size[v] > 0))
-      throw BadInput("vertex " + std::to_string(v) + " has size " + std::to_string(size[v]) +
+      throw BadInput("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
                      ", but sizes are positive");
   for (int t = 0; t < static_cast<int>(part.size()); ++t)
     if (part[t] < 0 || part[t] >= static_cast<int>(charts.size()))

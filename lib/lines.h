@@ -50,7 +50,9 @@ std::vector<char> input_border(const Surface& surface);
 /// or would lose the shape of a loop, the lines are refined. A line's points are the same in every chart that
 /// uses it. Precondition: charts in part order, positively oriented. `tag`, if not null, is the label of each
 /// half-edge's edge: lines end where it changes. With keep_border borders have exactly the input's points,
-/// and those where lines meet them.
+/// and those where lines meet them. Needs vertex column `size` and face column `part`.
+/// Throws NotAdmissible if there are no sizes, BadInput naming the vertex whose size is not positive or the
+/// face whose part has no chart, GoalMissed naming two lines that could not be kept apart in a chart.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = 0.7,
                  const std::vector<int>* tag = nullptr, bool keep_border = false);
 

@@ -31,7 +31,10 @@ enum class Mesher { frontal, delaunay, meshadapt };
 /// `size` is per vertex of the chart's mesh; lengths and sizes are judged in space through the map's metric,
 /// averaged at vertices in log space. Exact predicates; location by walking with a hint.
 /// Every line segment is an edge of the result and the result covers exactly the region the lines bound.
-/// Throws GoalMissed with part and point if the segments cross (then nothing is meshed).
+/// Preconditions: the chart is indexed (index_chart); sizes are positive.
+/// Throws, with the part: GoalMissed, with a point, if segments cross or touch, points coincide, the borders
+/// are not closed, or bound no region (then nothing is meshed); NotAdmissible if a line point lies on an edge
+/// that the chart has not.
 PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
                      Mesher mesher = Mesher::frontal);
 

@@ -8,6 +8,7 @@
 
 #include "lib/curvature.h"
 #include "lib/error.h"
+#include "lib/number.h"
 #include "lib/split_edges.h"
 #include "lib/topology.h"
 
@@ -15,12 +16,6 @@ namespace meshpipe {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
 
 /// The field while it is made: wishes at the vertices, edges split where they are not linear.
 class FieldMaker {
@@ -31,7 +26,7 @@ class FieldMaker {
     if (o_.size > 0) cap_ = std::min(cap_, o_.size);
     if (!(o_.size > 0 || o_.triangles > 0 || o_.max > 0)) cap_ = 0.1 * diagonal_;
     connect();
-    if (o_.per_turn > 0 || o_.chord > 0 || o_.at)
+    if (o_.per_turn > 0 || o_.chord > 0 || (o_.at && o_.at_curvature))
       curvature_ = face_curvature(
           s_, opposite_,
           s_.face.has("model") ? s_.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>());
@@ -76,8 +71,8 @@ class FieldMaker {
   double asked(Vec3 p, double curvature) const {
     const double h = o_.at(p, curvature);
     if (!(h > 0))
-      throw BadInput("the size at " + number(p.x) + ' ' + number(p.y) + ' ' + number(p.z) + " is " +
-                     number(h) + ", but sizes are positive");
+      throw BadInput("the size at " + shown(p.x) + ' ' + shown(p.y) + ' ' + shown(p.z) + " is " + shown(h) +
+                     ", but sizes are positive");
     return h;
   }
 
@@ -98,7 +93,7 @@ class FieldMaker {
       const auto& data = s_.vertex.get<double>(o_.data);
       for (std::size_t v = 0; v < n; ++v) {
         if (!(data[v] > 0))
-          throw BadInput("vertex " + std::to_string(v) + " has " + o_.data + ' ' + number(data[v]) +
+          throw BadInput("vertex " + std::to_string(v) + " has " + o_.data + ' ' + shown(data[v]) +
                          ", but sizes are positive");
         wish_[v] = std::min(wish_[v], data[v]);
       }

@@ -32,6 +32,7 @@ struct SizeOptions {
   std::string data;      ///< a vertex column
   /// A size by the point and the largest absolute curvature there; infinite: none asked for.
   std::function<double(Vec3, double)> at;
+  bool at_curvature = true;  ///< `at` reads the curvature; else it gets 0, which takes less time
   double min = 0, max = 0;
   double gradation = 0.3;             ///< growth per unit of length
   double most_triangles = 715827882;  ///< half-edges are numbered by int

@@ -3,6 +3,7 @@
 
 #include "formats/groups.h"
 #include "formats/model_edges.h"
+#include "formats/stages.h"
 #include "lib/feature.h"
 #include "lib/merge.h"
 #include "lib/size.h"
@@ -34,12 +35,18 @@ void parse_angles(const std::string& text, FeatureOptions& options) {
 constexpr double tangent = 20 * 3.14159265358979324 / 180;  ///< patches that meet at less are tangent
 
 /// Gives the faces the patches that theirs have become, and the patches the names of their groups.
-void relabel(Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
+void relabel(const Io& io, Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
   for (int& label : stream.surface.face.get<int>("patch")) label = merge(label);
   std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && merge(n.tag) != n.tag; });
-  for (const PatchGroup& g : groups) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const PatchGroup& g = groups[i];
     if (g.name.empty()) continue;
     const int tag = merge(g.patches[0]);
+    const auto before = std::find_if(groups.begin(), groups.begin() + i, [&](const PatchGroup& other) {
+      return !other.name.empty() && merge(other.patches[0]) == tag;
+    });
+    if (before != groups.begin() + i)
+      io.say("groups '" + before->name + "' and '" + g.name + "' have become one patch, '" + g.name + "'");
     std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && n.tag == tag; });
     stream.names.push_back({2, tag, g.name});
   }
@@ -98,13 +105,18 @@ int main(int argc, char** argv) {
           for (const PatchGroup& g : groups) members.push_back(g.patches);
           merge_groups(merge, members);
           if (merge_auto) merge_automatically(merge, surface, length, tangent);
-          relabel(stream, merge, groups);
+          relabel(io, stream, merge, groups);
           io.say(std::to_string(merge.patch.size()) + " patches merged to " + std::to_string(merge.count()));
         }
         io.report["patches_before"] = merge.patch.size();
         io.report["patches"] = merge.count();
         ModelSegments lines = edge_file == "none" ? ModelSegments() : read_model_edges(stream);
-        if (!edge_file.empty() && edge_file != "none") append(lines, segments_of(io.read(edge_file)));
+        if (!edge_file.empty() && edge_file != "none") {
+          const ModelSegments more = segments_of(io.read(edge_file));
+          if (more.tris.empty()) io.say(edge_file + ": 0 lines");
+          append(lines, more);
+        }
+        drop_downstream(stream, Stage::features);
         write_model_edges(stream, lines);
         std::vector<char> given(3 * surface.tris.size());
         const std::vector<int> under = segments_under(surface, lines);

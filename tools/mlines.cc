@@ -3,6 +3,7 @@
 // field.
 #include "formats/line_tables.h"
 #include "formats/model_edges.h"
+#include "formats/stages.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
     const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag, keep_boundary);
+    drop_downstream(stream, Stage::lines);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;
     for (const Line& l : lines.lines) {

@@ -8,6 +8,7 @@
 #include "formats/chart_svg.h"
 #include "formats/line_tables.h"
 #include "formats/plane_tables.h"
+#include "lib/number.h"
 #include "lib/parallel.h"
 #include "lib/progress.h"
 #include "lib/size.h"
@@ -19,8 +20,7 @@ using namespace meshpipe;
 static std::vector<double> sizes_of(const Chart& chart, const std::vector<double>& size) {
   std::vector<double> h;
   for (int v : chart.mesh.vertex) {
-    if (!(size[v] > 0))
-      throw NotAdmissible("vertex " + std::to_string(v) + " has size " + std::to_string(size[v]));
+    if (!(size[v] > 0)) throw NotAdmissible("vertex " + std::to_string(v) + " has size " + shown(size[v]));
     h.push_back(size[v]);
   }
   return h;
@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
     app.add_option("--svg", pictures, "draw each chart in this directory, its mesh beside its map")
+        ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
         ->type_name("DIR")
         ->group("Reports");
   };

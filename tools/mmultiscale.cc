@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "formats/level_svg.h"
+#include "formats/stages.h"
 #include "lib/multiscale.h"
 #include "lib/partition.h"
 #include "lib/topology.h"
@@ -105,6 +106,7 @@ int main(int argc, char** argv) {
     io.report["junctions"] = cut.junctions;
     io.report["turning_angle"] = cut.turning_angle;
     io.report["largest_angle"] = cut.largest_angle;
+    drop_downstream(stream, Stage::parts);
     stream.set(part_table(topology));
     io.write(stream);
   };

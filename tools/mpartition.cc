@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mpartition: cut until every part has genus 0 and a boundary.
+#include "formats/stages.h"
 #include "lib/partition.h"
 #include "lib/topology.h"
 #include "tools/common.h"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
     io.report["cut_length"] = cut.length;
     io.report["junctions"] = cut.junctions;
     io.report["turning_angle"] = cut.turning_angle;
+    drop_downstream(stream, Stage::parts);
     stream.set(part_table(stream.surface, n_parts));
     io.write(stream);
   };

@@ -5,8 +5,10 @@
 
 #include "formats/inria.h"
 #include "formats/size_field.h"
+#include "formats/stages.h"
 #include "lib/bvh.h"
 #include "lib/expression.h"
+#include "lib/number.h"
 #include "lib/size.h"
 #include "tools/common.h"
 
@@ -76,6 +78,19 @@ void prepare_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Says what bounds of the size have made of what was asked for.
+void tell_missed(const Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
+  constexpr double much = 0.1;
+  if (counted && std::abs(r.triangles / o.triangles - 1) > much)
+    io.say("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
+           " triangles instead of the " + std::to_string(std::llround(o.triangles)) + " asked for");
+  if (o.size > 0 && r.smallest > o.size)
+    io.say("the size is " + shown(r.smallest) + " by --min, instead of the " + shown(o.size) + " asked for");
+  if (o.size > 0 && o.max > 0 && o.max < o.size)
+    io.say("the size is at most " + shown(o.max) + " by --max, instead of the " + shown(o.size) +
+           " asked for");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -94,10 +109,15 @@ int main(int argc, char** argv) {
         ->excludes(fixed);
     length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
     length("--chord", o.chord, "largest distance of an edge from its arc", "EPS");
-    app.add_option("--data", o.data, "the input's vertex data of this name")->type_name("NAME");
-    app.add_option("--field", field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h")
-        ->type_name("FILE[:NAME]");
-    app.add_option("--expression", formula, "size as a formula of x, y, z and curvature")->type_name("EXPR");
+    auto text = [&](const char* name, std::string& value, const char* what, const char* type) {
+      app.add_option(name, value, what)
+          ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
+          ->type_name(type);
+    };
+    text("--data", o.data, "the input's vertex data of this name", "NAME");
+    text("--field", field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h",
+         "FILE[:NAME]");
+    text("--expression", formula, "size as a formula of x, y, z and curvature", "EXPR");
     length("--min", o.min, "no size below this", "H");
     length("--max", o.max, "no size above this", "H");
     length("--gradation", o.gradation, "growth of the size per unit of length, where it varies (default 0.3)",
@@ -105,7 +125,7 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     if (o.min > 0 && o.max > 0 && o.min > o.max)
-      throw BadUsage("--min " + std::to_string(o.min) + " is larger than --max " + std::to_string(o.max));
+      throw BadUsage("--min " + shown(o.min) + " is larger than --max " + shown(o.max));
     SizeField sizes;
     std::unique_ptr<Bvh> tree;
     std::unique_ptr<Expression> expression;
@@ -119,6 +139,7 @@ int main(int argc, char** argv) {
       tree = std::make_unique<Bvh>(sizes);
     }
     if (!o.data.empty()) prepare_data(s, o.data);
+    o.at_curvature = expression && expression->uses("curvature");
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {
         double h = std::numeric_limits<double>::infinity();
@@ -129,6 +150,7 @@ int main(int argc, char** argv) {
         const double e = (*expression)({p.x, p.y, p.z, curvature});
         return e < h || std::isnan(e) ? e : h;
       };
+    const bool counted = o.triangles > 0;
     const bool other = o.per_turn > 0 || o.chord > 0 || !o.data.empty() || o.at;
     if (!(o.size > 0) && !(o.triangles > 0) && !other)
       o.triangles = stream.input_triangles > 0 ? stream.input_triangles : static_cast<double>(s.tris.size());
@@ -138,9 +160,9 @@ int main(int argc, char** argv) {
       if (t.name == "chart_vertex") chart = &t;
     o.most_triangles = most_triangles();
     const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
-    if (r.added > 0) {  // what points to faces is not true any more
-      for (const char* table : {"line", "line_use", "line_vertex", "chart_point", "chart_face"})
-        stream.erase(table);
+    drop_downstream(stream, Stage::sizes);
+    if (r.added > 0) {  // lines that came with the file are not along edges any more
+      for (const char* table : {"line", "line_vertex"}) stream.erase(table);
       for (Table& t : stream.tables)
         if (t.name == "part" && t.has("faces")) {
           auto& faces = t.get<int>("faces");
@@ -157,7 +179,8 @@ int main(int argc, char** argv) {
                     r.largest, r.triangles, r.added);
     io.say(text);
     if (r.scale != 1)
-      io.say("for this number of triangles the sizes asked for are multiplied by " + std::to_string(r.scale));
+      io.say("for this number of triangles the sizes asked for are multiplied by " + shown(r.scale));
+    tell_missed(io, o, r, counted);
     io.report["size"] = r.smallest;
     io.report["largest_size"] = r.largest;
     io.report["expected_triangles"] = r.triangles;

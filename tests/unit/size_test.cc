@@ -247,9 +247,10 @@ TEST(Expression, ValuesAndFailures) {
   Expression e("0.1 + x^2 * max(y, 2) + (z > 0 ? pi : 0)", {"x", "y", "z"});
   EXPECT_DOUBLE_EQ(e({3, 1, 0}), 18.1);
   EXPECT_DOUBLE_EQ(e({3, 1, 1}), 18.1 + std::acos(-1));
+  EXPECT_EQ(Expression("x == 1 || x != 2 && x <= 3 ? 4 : 5", {"x"})({1}), 4);
   EXPECT_TRUE(e.uses("x"));
   EXPECT_FALSE(Expression("x", {"x", "y"}).uses("y"));
-  for (const char* bad : {"", "x +", "w", "1, 2", "(x", "system(1)"})
+  for (const char* bad : {"", "x +", "w", "1, 2", "(x", "system(1)", "x = 0.1", "0.1 = x"})
     EXPECT_THROW(Expression(bad, {"x"}), BadUsage) << bad;
 }
 
@@ -258,7 +259,7 @@ TEST(SizeField, Tables) {
   EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
   EXPECT_FALSE(is_size_table("solid a\nfacet normal 0 0 1\n"));
   EXPECT_FALSE(is_size_table("OFF\n3 1 0\n0 0 0\n"));
-  const SizeField f = read_size_table("x;y;z;h\n0;0;0;1\n\n# more\n1;2;3;0.5;9\n", "t");
+  const SizeField f = read_size_table("x;y;z;h\n0;0;0;1\n\n# more\n1;2;3;0.5\n", "t");
   ASSERT_EQ(f.points.size(), 2u);
   EXPECT_EQ(f.points[1], (Vec3{1, 2, 3}));
   EXPECT_EQ(f.size[1], 0.5);
@@ -266,4 +267,6 @@ TEST(SizeField, Tables) {
   EXPECT_THROW(read_size_table("0 0 0 1\n0 0 0\n", "t"), BadInput);
   EXPECT_THROW(read_size_table("0 0 0 1\n0 0 a 1\n", "t"), BadInput);
   EXPECT_THROW(read_size_table("0 0 0 -1\n", "t"), BadInput);
+  for (const char* first : {"0 0 0", "0 0 0 1 5", "0 0 0 nan"})  // is no line of names
+    EXPECT_THROW(read_size_table(std::string(first) + "\n1 1 1 0.4\n", "t"), BadInput) << first;
 }

@@ -3,7 +3,10 @@
 
 #include "formats/lift_tables.h"
 #include "formats/line_tables.h"
+#include "formats/losses.h"
 #include "formats/plane_tables.h"
+#include "formats/second_order.h"
+#include "formats/stages.h"
 #include "lib/error.h"
 
 using namespace meshpipe;
@@ -130,4 +133,46 @@ TEST(LiftTables, ReadWhatTheyWrote) {
 
   stream.surface.vertex.get<double>("b1")[1] = 0.75;
   EXPECT_THROW(read_lifted(stream), BadInput);
+}
+
+namespace {
+
+std::string tables_after(Stage remade, bool lifted, bool of_a_file = false) {
+  Stream stream = square_with_lines();
+  if (of_a_file) stream.erase("line_use");
+  for (const char* name : {"chart_vertex", "chart_point", "chart_face", "own"})
+    stream.set(Table{name, 0, {}});
+  if (lifted) {
+    stream.set(Table{"ref_vertex", 0, {}});
+    stream.surface.vertex.set("line", std::vector<int>(4, 0));
+  }
+  drop_downstream(stream, remade);
+  std::string names;
+  for (const Table& t : stream.tables) names += t.name + ' ';
+  return names + (stream.surface.vertex.has("line") ? "vertex.line" : "");
+}
+
+}  // namespace
+
+TEST(Stages, DropWhatNoLongerHolds) {
+  EXPECT_EQ(tables_after(Stage::parts, false), "part own ");
+  EXPECT_EQ(tables_after(Stage::charts, false), "part chart_vertex own ");
+  EXPECT_EQ(tables_after(Stage::sizes, false), "part chart_vertex own ");
+  EXPECT_EQ(tables_after(Stage::features, false), "part chart_vertex own ");
+  EXPECT_EQ(tables_after(Stage::lines, false), "part line line_use line_vertex chart_vertex own ");
+  EXPECT_EQ(tables_after(Stage::sizes, false, true), "part line line_vertex chart_vertex own ");
+  EXPECT_EQ(tables_after(Stage::parts, true), "part own ");
+  EXPECT_EQ(tables_after(Stage::sizes, true),
+            "part line line_use line_vertex chart_vertex chart_point chart_face own ref_vertex vertex.line");
+}
+
+TEST(Losses, NodesWithinEdges) {
+  Stream stream = square_with_lines();
+  stream.erase("line");
+  write_mid_points(stream, {{0, 1, {0.5, 0, 0}}, {0, 2, {0.5, 0.5, 0}}});
+  for (const char* path : {"a.stl", "a.off", "a.obj", "a.vtk", "a.mesh", "a.ply"})
+    EXPECT_NE(lost_in(stream, path, true).find("2 nodes within edges (second order)"), std::string::npos)
+        << path;
+  for (const char* path : {"a.msh", "a.msh2", "a.msh4", "a.vtu", "a.mply"})
+    EXPECT_EQ(lost_in(stream, path, true).find("nodes"), std::string::npos) << path;
 }
