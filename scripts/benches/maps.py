@@ -42,7 +42,7 @@ def main(words):
         if args.only in (None, "distortion", "share"):
             surfaces = common.surfaces(args, work)
         for name, path, _ in surfaces:
-            subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q {path} | mtopo -q | mfeature -q | mpartition -q | "
+            subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q '{path}' | mtopo -q | mfeature -q | mpartition -q | "
                             f"mmultiscale -q -o {work}/{name}.parts.ply"], check=True)
         if args.only in (None, "distortion"):
             found["distortion"] = distortion(surfaces, work)
@@ -130,6 +130,8 @@ def growth(work, largest, times):
         best = None
         for _ in range(times):
             run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
+            if run.status:
+                raise SystemExit(f"{n} triangles: {run.text.strip()}")
             with open(f"{work}/report.json") as f:
                 report = json.load(f)
             if best is None or run.cpu < best["cpu"]:
