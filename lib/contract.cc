@@ -212,13 +212,16 @@ Surface culprits(const Contract& contract, const Findings& findings, const Mesh&
   return s;
 }
 
-std::vector<double> severity_of(const Surface& culprits, std::size_t n) {
-  constexpr double crowded = 2, crossing = 1.2;  // sizes of three tenths and a half
-  std::vector<double> severity(n, 0);
+std::vector<double> severity_of(const Surface& culprits, const Mesh& mesh) {
+  constexpr double crowded = 2, crossing = 1.7;  // sizes of three tenths, and a little more
+  std::vector<double> at(mesh.points.size(), 0), severity(mesh.tris.size(), 0);
   const auto& triangle = culprits.face.get<int>("triangle");
   const auto& fault = culprits.face.get<std::uint8_t>("fault");
   for (std::size_t i = 0; i < triangle.size(); ++i)
-    severity[triangle[i]] = fault[i] & fault_kappa ? crowded : crossing;
+    for (int v : mesh.tris[triangle[i]]) at[v] = std::max(at[v], fault[i] & fault_kappa ? crowded : crossing);
+  // the next mesh's triangles are others: theirs round them, too
+  for (std::size_t t = 0; t < severity.size(); ++t)
+    for (int v : mesh.tris[t]) severity[t] = std::max(severity[t], at[v]);
   return severity;
 }
 

@@ -53,8 +53,8 @@ enum CulpritFault {
 /// The triangles in which the contract finds a fault, with face columns int `triangle`, their number in the
 /// mesh, and uchar `fault`. Vertices stay, some unused.
 Surface culprits(const Contract& contract, const Findings& findings, const Mesh& mesh);
-/// For each of the mesh's n triangles, by what its size is too large for a sound mesh, in the sense of the
-/// errors of refined_size with limit 1; 0 where no culprit is.
-std::vector<double> severity_of(const Surface& culprits, std::size_t n);
+/// For each triangle, by what it is too large for a sound mesh, in the sense of the errors of refined_size
+/// with limit 1; 0 where neither it nor one that shares a vertex with it is a culprit.
+std::vector<double> severity_of(const Surface& culprits, const Mesh& mesh);
 
 }  // namespace meshpipe

@@ -451,13 +451,19 @@ int Relaxer::irregularity(int v) const {
 /// 5, 6, 7; only so many, since a mesh with more of them is not to be had by mending.
 void Relaxer::mend_worst() {
   const int most = 200 + m_.live / 100;
+  int before = 0;
   for (int round = 0; round < 4; ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
-    if ((int)bad.size() > most) bad.resize(most);
+    const int many = (int)bad.size();
+    // where the model forces them they do not get fewer
+    if (round > 1 && many > 100 && many > 0.98 * before) return;
+    before = many;
+    // far more than could be mended: what there is time for is the worst
+    if (const int few = many > 4 * most ? most / 2 : most; many > few) bad.resize(few);
     std::vector<int> triangles, irregular;
     for (auto [q, t] : bad) triangles.push_back(t);
     int changes = mend_each(triangles, round > 0, [this](int t) { return quality(t) < 1; });

@@ -85,7 +85,7 @@ void write_refined(const Io& io, const Stream& stream, const Surface& reference,
     const auto errors = triangle_errors(reference, Bvh(reference), refined.surface, Bvh(refined.surface));
     size = refined_size(refined.surface, size, errors, o.max_error * diagonal(reference));
   }
-  size = refined_size(refined.surface, size, severity_of(faulty, refined.surface.tris.size()), 1);
+  size = refined_size(refined.surface, size, severity_of(faulty, refined.surface), 1);
   if (size == given) return;
   refined.surface.vertex.set("size", std::move(size));
   io.write_to(o.refine, refined);

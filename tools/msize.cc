@@ -42,6 +42,28 @@ SizeField read_field(const Io& io, const std::string& text) {
                               : size_field_of(read_any(bytes, path), column, path);
 }
 
+/// The size at the nearest point of the field's mesh; where sheets of it are as good as equally near, the
+/// smallest.
+double size_near(const SizeField& field, const Bvh& tree, Vec3 p) {
+  constexpr double equally = 0.1;  // of the size
+  auto size_at = [&](int t, double b0, double b1, double b2) {
+    const Tri& v = field.tris[t];
+    return b0 * field.size[v[0]] + b1 * field.size[v[1]] + b2 * field.size[v[2]];
+  };
+  const Bvh::Hit hit = tree.nearest(p);
+  const double nearest = size_at(hit.place.face, hit.place.b0, hit.place.b1, hit.place.b2);
+  double least = nearest;
+  const double reach = hit.distance + equally * nearest;
+  tree.overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}}, [&](int t) {
+    const Vec3 a = field.points[field.tris[t][0]], b = field.points[field.tris[t][1]],
+               c = field.points[field.tris[t][2]];
+    const auto w = closest_on_triangle(p, a, b, c);
+    if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= reach)
+      least = std::min(least, size_at(t, w[0], w[1], w[2]));
+  });
+  return least;
+}
+
 /// The data as doubles: read as the size later.
 void prepare_data(Surface& s, const std::string& name) {
   const Column* c = s.vertex.find(name);
@@ -61,9 +83,7 @@ int main(int argc, char** argv) {
   std::string field, formula;
   auto add_options = [&](CLI::App& app) {
     auto length = [&](const char* name, double& value, const char* what, const char* type) {
-      return app.add_option(name, value, what)
-          ->check(positive_number())
-          ->type_name(type);
+      return app.add_option(name, value, what)->check(positive_number())->type_name(type);
     };
     auto* fixed = length("--size", o.size, "target edge length", "H");
     app.add_option(
@@ -103,9 +123,7 @@ int main(int argc, char** argv) {
       o.at = [&](Vec3 p, double curvature) {
         double h = std::numeric_limits<double>::infinity();
         if (tree) {
-          const Place q = tree->nearest(p).place;
-          const Tri& t = sizes.tris[q.face];
-          h = q.b0 * sizes.size[t[0]] + q.b1 * sizes.size[t[1]] + q.b2 * sizes.size[t[2]];
+          h = size_near(sizes, *tree, p);
         }
         if (!expression) return h;
         const double e = (*expression)({p.x, p.y, p.z, curvature});
