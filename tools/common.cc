@@ -336,6 +336,7 @@ Stream Io::read(const std::string& path) const {
   // told
   if (stream.history.empty())
     for (const std::string& remark : stream.remarks) say(remark);
+  if (!any_size_) expect_measurable(stream.surface);
   return stream;
 }
 
@@ -449,6 +450,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   }
   Io io;
   io.program = program;
+  io.any_size_ = usage.any_size;
   CLI::App app{summary, program};
   app.formatter(std::make_shared<Help>());
   app.get_formatter()->column_width(34);

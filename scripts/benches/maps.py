@@ -83,13 +83,18 @@ def distortion(surfaces, work):
                 continue
             charts = report["charts"]
             asked = "convex" if "convex" in options else "harmonic" if "harmonic" in options else "conformal"
+            form = options[1] if "--conformal" in options else "boundary-first"
+
+            def as_asked(chart, asked=asked, form=form):
+                return chart["map"] == asked and (asked != "conformal" or chart["form"] == form)
+
             r = {
                 "surface": name,
                 "map": label,
                 "charts": len(charts),
                 "cut": report["cut"],
-                "repaired": sum(c["map"] == asked and (c["flips_before"] > 0 or not c["border_was_simple"]) for c in charts),
-                "other": sum(c["map"] != asked for c in charts),
+                "repaired": sum(as_asked(c) and (c["flips_before"] > 0 or not c["border_was_simple"]) for c in charts),
+                "other": sum(not as_asked(c) for c in charts),
                 "median": max(c["anisotropy_median"] for c in charts),
                 "p99": max(c["anisotropy_p99"] for c in charts),
                 "area_scale": max(c["area_scale"] for c in charts),
