@@ -19,6 +19,24 @@ std::vector<Chart> read_charts(const Stream& stream) {
   return make_charts(stream.surface, rows, static_cast<int>(stream.need("part", "mparam").rows));
 }
 
+void write_charts(Stream& stream, const std::vector<Chart>& charts) {
+  std::vector<int> part, vertex;
+  std::vector<double> u, v;
+  for (std::size_t p = 0; p < charts.size(); ++p)
+    for (std::size_t i = 0; i < charts[p].uv.size(); ++i) {
+      part.push_back(static_cast<int>(p));
+      vertex.push_back(charts[p].mesh.vertex[i]);
+      u.push_back(charts[p].uv[i].x);
+      v.push_back(charts[p].uv[i].y);
+    }
+  Table table{"chart_vertex", 0, {}};
+  table.set("part", std::move(part));
+  table.set("vertex", std::move(vertex));
+  table.set("u", std::move(u));
+  table.set("v", std::move(v));
+  stream.set(std::move(table));
+}
+
 Lines read_lines(const Stream& stream) {
   const Table& line = stream.need("line", "mlines");
   const Table& use = stream.need("line_use", "mlines");

@@ -10,6 +10,9 @@ namespace meshpipe {
 /// missing.
 std::vector<Chart> read_charts(const Stream& stream);
 
+/// Adds or replaces the table chart_vertex.
+void write_charts(Stream& stream, const std::vector<Chart>& charts);
+
 /// The lines that mlines wrote; every index checked. They index the surface, or its reference once it was
 /// lifted. Throws NotAdmissible if the tables are not there, BadInput naming the row that is wrong.
 Lines read_lines(const Stream& stream);

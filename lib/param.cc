@@ -160,6 +160,7 @@ class Search {
   std::vector<Vec2> run(double most_uneven) {
     report_ = {};
     report_.used = options_.map;
+    report_.form = options_.form;
     std::vector<Vec2> uv;
     try {
       if (options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first) {
@@ -318,6 +319,7 @@ class Search {
         uv = bent(bend);
         if (uv.empty() || (!valid_map(uv) && !repaired(uv))) continue;
         report_.bend = bend;
+        report_.form = ConformalForm::boundary_first;
         return true;
       }
     } catch (const GoalMissed&) {

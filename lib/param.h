@@ -12,7 +12,7 @@ namespace meshpipe {
 enum class MapKind { conformal = 0, harmonic = 1, convex = 2 };
 
 /// How the conformal map is found (lib/param_conformal.h).
-enum class ConformalForm { boundary_first, least_squares, spectral };
+enum class ConformalForm { boundary_first = 0, least_squares = 1, spectral = 2 };
 
 struct ParamOptions {
   MapKind map = MapKind::conformal;
@@ -26,8 +26,10 @@ struct ParamOptions {
   bool strict = false;  ///< no repair, no other map, no cut
 };
 
+/// What became of one part. The map used is the one asked for if `used`, and `form` of a conformal one, are.
 struct ParamReport {
   MapKind used = MapKind::conformal;
+  ConformalForm form = ConformalForm::boundary_first;  ///< of a conformal map that was used
   double bend = 0;                ///< of a conformal map's border towards a circle (BoundaryFirst::polygon)
   int flips_before = 0;           ///< inverted or zero-area triangles of the map asked for
   int flips_after = 0;            ///< of that map after its repair; not 0: another map was taken

@@ -262,7 +262,7 @@ struct Help : CLI::Formatter {
   std::string make_option_opts(const CLI::Option* o) const override {
     if (o->get_type_size() == 0) return "";
     const std::string text = o->get_type_name();  // of the type, and of the checks after a colon
-    const std::size_t colon = text.find(':');
+    const std::size_t colon = text.ends_with("[:NAME]") ? text.npos : text.find(':');
     const std::string type = text.substr(0, colon), check = colon == text.npos ? "" : text.substr(colon + 1);
     if (type.empty()) return "";
     if (type == "TEXT" && check.starts_with('{') && check.ends_with('}')) {
@@ -336,6 +336,7 @@ Stream Io::read(const std::string& path) const {
   // told
   if (stream.history.empty())
     for (const std::string& remark : stream.remarks) say(remark);
+  if (!any_size_) expect_measurable(stream.surface);
   return stream;
 }
 
@@ -449,6 +450,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   }
   Io io;
   io.program = program;
+  io.any_size_ = usage.any_size;
   CLI::App app{summary, program};
   app.formatter(std::make_shared<Help>());
   app.get_formatter()->column_width(34);

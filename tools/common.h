@@ -15,7 +15,8 @@ namespace meshpipe {
 /// A program's input, output and reports, as the common options ask for them.
 class Io {
  public:
-  /// Reads FILE or standard input, in any format.
+  /// Reads FILE or standard input, in any format. Throws NotAdmissible if its size is not measurable
+  /// (lib/mesh.h), unless Usage says any_size.
   Stream read();
   /// Reads a second file (a reference, say); `path` as the user gave it.
   Stream read(const std::string& path) const;
@@ -55,6 +56,7 @@ class Io {
   bool needs_text(const std::string& path, const Stream& stream) const;
   friend int run_tool(int, char**, const char*, const char*, const std::function<void(CLI::App&)>&,
                       const std::function<void(Io&)>&, struct Usage);
+  bool any_size_ = false;
   std::string arguments_;
   std::vector<std::pair<std::string, std::string>> files_;  ///< that are to be written, by their options
   mutable bool written_ = false;  ///< something went to standard output: no failure line after it
@@ -67,6 +69,7 @@ struct Usage {
   bool writes_mesh = true;  ///< -o is a mesh, its format by extension
   bool passes = false;      ///< a few passes over all its input, in arrays of that size: most of its time would go
                             ///< into fresh pages, so that freed memory is kept for the next arrays
+  bool any_size = false;    ///< computes nothing of coordinates, which may be beyond what areas can be told of
 };
 
 /// A check of an option's value: above 0, and finite.

@@ -105,5 +105,5 @@ int main(int argc, char** argv) {
         else
           io.write_bytes(write_as(stream, io.output, ascii));
       },
-      {.passes = true});
+      {.passes = true, .any_size = true});
 }

@@ -2,6 +2,7 @@
 // mparam: a one-to-one map of every part to the plane.
 #include <algorithm>
 
+#include "formats/line_tables.h"
 #include "lib/param.h"
 #include "lib/param_svg.h"
 #include "lib/topology.h"
@@ -11,26 +12,22 @@ using namespace meshpipe;
 
 namespace {
 
-const char* name_of(MapKind kind) {
-  return kind == MapKind::conformal ? "conformal" : kind == MapKind::harmonic ? "harmonic" : "convex";
+const std::map<std::string, MapKind> maps{
+    {"conformal", MapKind::conformal}, {"harmonic", MapKind::harmonic}, {"convex", MapKind::convex}};
+const std::map<std::string, ConformalForm> forms{{"boundary-first", ConformalForm::boundary_first},
+                                                 {"least-squares", ConformalForm::least_squares},
+                                                 {"spectral", ConformalForm::spectral}};
+
+template <class T>
+std::string name_of(T value, const std::map<std::string, T>& names) {
+  for (const auto& [name, meaning] : names)
+    if (meaning == value) return name;
+  return {};
 }
 
-Table chart_table(const std::vector<Chart>& charts) {
-  std::vector<int> part, vertex;
-  std::vector<double> u, v;
-  for (std::size_t p = 0; p < charts.size(); ++p)
-    for (std::size_t i = 0; i < charts[p].uv.size(); ++i) {
-      part.push_back((int)p);
-      vertex.push_back(charts[p].mesh.vertex[i]);
-      u.push_back(charts[p].uv[i].x);
-      v.push_back(charts[p].uv[i].y);
-    }
-  Table table{"chart_vertex", 0, {}};
-  table.set("part", std::move(part));
-  table.set("vertex", std::move(vertex));
-  table.set("u", std::move(u));
-  table.set("v", std::move(v));
-  return table;
+/// Of a conformal map also how it was found.
+std::string name_of(const ParamReport& r) {
+  return name_of(r.used, maps) + (r.used == MapKind::conformal ? ", " + name_of(r.form, forms) : "");
 }
 
 void add_columns(Table& parts, const std::vector<ParamReport>& reports) {
@@ -40,6 +37,7 @@ void add_columns(Table& parts, const std::vector<ParamReport>& reports) {
     parts.set<T>(name, std::move(column));
   };
   add.template operator()<int>("map", [](auto& r) { return r.used; });
+  add.template operator()<int>("form", [](auto& r) { return r.form; });
   add.template operator()<double>("bend", [](auto& r) { return r.bend; });
   add.template operator()<int>("flips_before", [](auto& r) { return r.flips_before; });
   add.template operator()<int>("flips_after", [](auto& r) { return r.flips_after; });
@@ -53,9 +51,9 @@ void add_columns(Table& parts, const std::vector<ParamReport>& reports) {
 std::string line_of(const ParamReport& r, std::size_t triangles) {
   char text[400];
   std::snprintf(text, sizeof text,
-                "%zu triangles, %s map, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, area scale %.3g, "
+                "%zu triangles, map %s, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, area scale %.3g, "
                 "smallest area %.2e, order %.4f s, factorise %.4f s, solve %.4f s",
-                triangles, name_of(r.used), r.anisotropy_median, r.anisotropy_p99, r.anisotropy_max,
+                triangles, name_of(r).c_str(), r.anisotropy_median, r.anisotropy_p99, r.anisotropy_max,
                 r.area_scale, r.smallest_area, r.time.ordering, r.time.factorisation, r.time.solve);
   std::string line = text;
   if (r.bend > 0) line += ", border bent " + std::to_string((int)std::lround(100 * r.bend)) + " %";
@@ -70,7 +68,8 @@ std::string line_of(const ParamReport& r, std::size_t triangles) {
 nlohmann::ordered_json record_of(const ParamReport& r, int part, std::size_t triangles) {
   return {{"part", part},
           {"triangles", triangles},
-          {"map", name_of(r.used)},
+          {"map", name_of(r.used, maps)},
+          {"form", r.used == MapKind::conformal ? name_of(r.form, forms) : ""},
           {"bend", r.bend},
           {"flips_before", r.flips_before},
           {"flips_after", r.flips_after},
@@ -94,22 +93,21 @@ int main(int argc, char** argv) {
   std::string svg;
   auto add_options = [&](CLI::App& app) {
     auto name = [&]<class T>(const char* option, T& value, std::map<std::string, T> names, const char* help) {
-      app.add_option(option, value, help)->transform(CLI::CheckedTransformer(names))->type_name("NAME");
+      std::vector<std::string> words;
+      for (const auto& [word, meaning] : names) words.push_back(word);
+      app.add_option_function<std::string>(
+             option, [&value, names](const std::string& word) { value = names.at(word); }, help)
+          ->check(CLI::IsMember(words))
+          ->type_name("NAME");
     };
-    name("--map", options.map,
-         {{"conformal", MapKind::conformal}, {"harmonic", MapKind::harmonic}, {"convex", MapKind::convex}},
-         "conformal (default), harmonic or convex");
-    name("--conformal", options.form,
-         {{"boundary-first", ConformalForm::boundary_first},
-          {"least-squares", ConformalForm::least_squares},
-          {"spectral", ConformalForm::spectral}},
-         "how: boundary-first (default), least-squares or spectral");
+    name("--map", options.map, maps, "conformal (default), harmonic or convex");
+    name("--conformal", options.form, forms, "how: boundary-first (default), least-squares or spectral");
     name("--weights", options.weights,
-         {{"cotangent", Weights::cotangent},
-          {"mean-value", Weights::mean_value},
-          {"uniform", Weights::uniform}},
+         std::map<std::string, Weights>{{"cotangent", Weights::cotangent},
+                                        {"mean-value", Weights::mean_value},
+                                        {"uniform", Weights::uniform}},
          "of the convex map: cotangent (clamped, default), mean-value or uniform");
-    name("--boundary", options.neumann, {{"filled", false}, {"neumann", true}},
+    name("--boundary", options.neumann, std::map<std::string, bool>{{"filled", false}, {"neumann", true}},
          "holes: filled (default) in the solve, or left to the natural condition (neumann)");
     app.add_option("--optimize", options.optimize, "at most N steps that lower distortion (SLIM)")
         ->check(CLI::Range(0, 10000))
@@ -121,21 +119,23 @@ int main(int argc, char** argv) {
         ->group("Reports");
   };
   auto body = [&](Io& io) {
+    if (!svg.empty()) io.expect_report("--svg", svg);
     Stream stream = io.read();
     Surface& surface = stream.surface;
     if (!surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
-    const auto& part = surface.face.get<int>("part");
-    int n_before = part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1;
+    const int n_before = count_parts(surface);
     std::size_t faces_before = surface.tris.size();
 
     std::vector<ParamReport> reports;
     std::vector<Chart> charts = map_surface(surface, n_before, options, reports);
     int n_parts = (int)charts.size();
     const Table* known = stream.find("part");
-    Table parts = known && surface.tris.size() == faces_before && n_parts == n_before ? *known : part_table(surface, n_parts);
+    Table parts = known && surface.tris.size() == faces_before && n_parts == n_before
+                      ? *known
+                      : part_table(surface, n_parts);
     add_columns(parts, reports);
     stream.set(std::move(parts));
-    stream.set(chart_table(charts));
+    write_charts(stream, charts);
 
     double median = 1, p99 = 1, smallest = 1;
     int other = 0, repaired = 0;
@@ -149,15 +149,16 @@ int main(int argc, char** argv) {
       median = std::max(median, r.anisotropy_median);
       p99 = std::max(p99, r.anisotropy_p99);
       smallest = std::min(smallest, r.smallest_area);
-      other += r.used != options.map;
-      repaired += r.used == options.map && (r.flips_before > 0 || !r.border_was_simple);
+      const bool as_asked = r.used == options.map && (r.used != MapKind::conformal || r.form == options.form);
+      other += !as_asked;
+      repaired += as_asked && (r.flips_before > 0 || !r.border_was_simple);
     }
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "%d charts, %d cut here, %d repaired, %d on another map than %s; worst sigma1/sigma2 median "
-        "%.3f, p99 %.3f, smallest area %.2e",
-        n_parts, n_parts - n_before, repaired, other, name_of(options.map), median, p99, smallest);
+    std::snprintf(text, sizeof text,
+                  "%d charts, %d cut here, %d repaired, %d on another map than asked for; worst "
+                  "sigma1/sigma2 median %.3f, "
+                  "p99 %.3f, smallest area %.2e",
+                  n_parts, n_parts - n_before, repaired, other, median, p99, smallest);
     io.say(text);
     if (!svg.empty()) Io::write_file(svg, charts_svg(charts, reports));
     io.write(stream);

@@ -65,7 +65,6 @@ int main(int argc, char** argv) {
     if (o.reference.empty()) {
       mesh = read_lifted(stream);
       reference = read_reference(stream);
-      expect_measurable(stream.surface);
       expect_measurable(reference);
       const Lines lines = read_lines(stream);
       for (const Line& l : lines.lines) {

@@ -95,7 +95,6 @@ int main(int argc, char** argv) {
         if (!tsv_file.empty()) io.expect_report("--tsv", tsv_file);
         Stream stream = io.read();
         Surface& s = stream.surface;
-        expect_measurable(s);
         const bool cleaned = stream.input_triangles > 0;
         std::vector<int> component;
         auto components_of = [&](const Mesh& mesh) {

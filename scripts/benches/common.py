@@ -3,6 +3,7 @@
 import argparse
 import gzip
 import json
+import math
 import os
 import shutil
 import statistics
@@ -33,8 +34,7 @@ class Run:
 def run(command, timeout=None, output=None, watch=False):
     """Runs a command (a string: by the shell, with pipefail), its descendants included in CPU and memory. Its standard
     output goes to the file `output` if given; otherwise both outputs are in `text`. A timeout gives status -1. The memory
-    is the largest resident size of one process; with `watch` the largest sum of all that live at a time, which takes some
-    CPU time to look at."""
+    is the largest sum of all processes that live at a time, known only with `watch`: it takes some CPU time to look at."""
     words = ["bash", "-c", "set -o pipefail; " + command] if isinstance(command, str) else command
     with tempfile.TemporaryFile() as log:
         sink = open(output, "wb") if output else log
@@ -46,7 +46,7 @@ def run(command, timeout=None, output=None, watch=False):
             sink.close()
         log.seek(0)
         text = log.read().decode(errors="replace")
-    return Run(status, wall, usage.ru_utime + usage.ru_stime, most / 2**20 if watch else usage.ru_maxrss / 1024, text)
+    return Run(status, wall, usage.ru_utime + usage.ru_stime, most / 2**20 if watch else math.nan, text)
 
 
 def wait(child, timeout, watch):
@@ -91,18 +91,9 @@ def median(runs, key):
     return statistics.median(getattr(r, key) for r in runs)
 
 
-def interleaved(commands, times, timeout=None):
-    """Runs every command of the dictionary in turn, `times` times: name -> list of Run."""
-    runs = {name: [] for name in commands}
-    for _ in range(times):
-        for name, command in commands.items():
-            runs[name].append(run(command, timeout))
-    return runs
-
-
 def parser(doc):
     """An argument parser with what every benchmark takes; its help is the text `doc`."""
-    p = argparse.ArgumentParser(usage=doc, add_help=False)
+    p = argparse.ArgumentParser(usage=doc.replace("%", "%%"), add_help=False)
     p.add_argument("--bin", default=os.path.join(ROOT, "build", "bin"))
     p.add_argument("--json")
     p.add_argument("-h", "--help", action="store_true")
@@ -114,8 +105,15 @@ def parse(p, words):
     """The arguments; the programs of --bin come first on PATH."""
     args = p.parse_args(words)
     if args.help:
-        print(p.usage)
+        print(p.usage.replace("%%", "%"))
         raise SystemExit(0)
+    if not os.access(os.path.join(args.bin, "mclean"), os.X_OK):
+        raise SystemExit(f"--bin {args.bin}: no programs there")
+    if args.json:  # refused now, not after the work
+        try:
+            save(args, [])
+        except OSError as e:
+            raise SystemExit(f"--json {e.filename}: {e.strerror}")
     os.environ["PATH"] = os.path.abspath(args.bin) + os.pathsep + os.environ["PATH"]
     return args
 
@@ -168,7 +166,7 @@ def stages(path, count, work, threads=None):
     for command in commands.stdout.splitlines():
         program = command.split()[0]
         report = os.path.join(work, program + ".json")
-        done.append((program, run(f"{command} --json '{report}'")))
+        done.append((program, run(f"{command} --json '{report}'", watch=True)))
         if done[-1][1].status:
             break
     return done, out

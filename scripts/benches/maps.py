@@ -42,7 +42,7 @@ def main(words):
         if args.only in (None, "distortion", "share"):
             surfaces = common.surfaces(args, work)
         for name, path, _ in surfaces:
-            subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q {path} | mtopo -q | mfeature -q | mpartition -q | "
+            subprocess.run(["bash", "-c", f"set -o pipefail; mclean -q '{path}' | mtopo -q | mfeature -q | mpartition -q | "
                             f"mmultiscale -q -o {work}/{name}.parts.ply"], check=True)
         if args.only in (None, "distortion"):
             found["distortion"] = distortion(surfaces, work)
@@ -83,13 +83,18 @@ def distortion(surfaces, work):
                 continue
             charts = report["charts"]
             asked = "convex" if "convex" in options else "harmonic" if "harmonic" in options else "conformal"
+            form = options[1] if "--conformal" in options else "boundary-first"
+
+            def as_asked(chart, asked=asked, form=form):
+                return chart["map"] == asked and (asked != "conformal" or chart["form"] == form)
+
             r = {
                 "surface": name,
                 "map": label,
                 "charts": len(charts),
                 "cut": report["cut"],
-                "repaired": sum(c["map"] == asked and (c["flips_before"] > 0 or not c["border_was_simple"]) for c in charts),
-                "other": sum(c["map"] != asked for c in charts),
+                "repaired": sum(as_asked(c) and (c["flips_before"] > 0 or not c["border_was_simple"]) for c in charts),
+                "other": sum(not as_asked(c) for c in charts),
                 "median": max(c["anisotropy_median"] for c in charts),
                 "p99": max(c["anisotropy_p99"] for c in charts),
                 "area_scale": max(c["area_scale"] for c in charts),
@@ -130,6 +135,8 @@ def growth(work, largest, times):
         best = None
         for _ in range(times):
             run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
+            if run.status:
+                raise SystemExit(f"{n} triangles: {run.text.strip()}")
             with open(f"{work}/report.json") as f:
                 report = json.load(f)
             if best is None or run.cpu < best["cpu"]:

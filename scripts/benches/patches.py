@@ -41,7 +41,7 @@ def remesh(path, count, options, work):
     if os.path.exists(report):
         os.remove(report)
     size = ["--triangles", str(count)] if count else []
-    done = common.run(["mremesh", "-j", "1", *size, *options, "--report", report, path, "-o", out])
+    done = common.run(["mremesh", "-j", "1", *size, *options, "--report", report, path, "-o", out], watch=True)
     figures = {}
     if os.path.exists(report):
         with open(report) as f:

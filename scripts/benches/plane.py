@@ -67,12 +67,16 @@ def ours(mesher, stream, args, work):
     """The lifted mesh and the median rate; or None and why there is none."""
     plane, lifted = os.path.join(work, "plane.ply"), os.path.join(work, "lifted.off")
     rates = []
+    if os.path.exists(lifted):
+        os.remove(lifted)
     for _ in range(args.runs):
         done = common.run(["mmesh2d", "-v", "-j", "1", "--mesher", mesher, stream, "-o", plane])
         if done.status:
             return None, done.text.strip()
         rates.append(int(re.search(r"(\d+) triangles per second", done.text)[1]))
-    common.run(f"mlift -q '{plane}' | mconvert -q - -o '{lifted}'")
+    done = common.run(f"mlift -q '{plane}' | mconvert -q - -o '{lifted}'")
+    if done.status:
+        return None, done.text.strip()
     return lifted, statistics.median(rates)
 
 
@@ -118,6 +122,8 @@ def main(words):
                     rows.append({"surface": name, "mesher": mesher, "asked": count, "failed": rate})
                     continue
                 figures = whole.judge(args.evaluator, clean, made, work)
+                if not figures:
+                    raise SystemExit(f"{name}, {mesher}: the mesh cannot be judged")
                 triangles = int(figures.get("n_triangles", figures.get("triangles")))
                 mean, deviation = edges(made, size)
                 row(name, mesher, count, triangles, f"{figures['kappa_mean']:.4f}", f"{figures['kappa_min']:.3f}",

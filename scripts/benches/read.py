@@ -29,7 +29,7 @@ GEO = 'Merge "{}";\nCreateTopology;\n'
 
 
 def measure(command, times, timeout=None):
-    return common.interleaved({"": command}, times, timeout)[""]
+    return [common.run(command, timeout, watch=True) for _ in range(times)]
 
 
 def binary(args, work, rows):

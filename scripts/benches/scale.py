@@ -26,13 +26,17 @@ import tempfile
 from benches import common
 
 def exponent(pairs):
-    """Slope of log y over log x from 10^5 on."""
+    """Slope of log y over log x from 10^5 on; None if there are no two points."""
     large = [(math.log(x), math.log(y)) for x, y in pairs if x >= 0.9e5 and y > 0]
     points = large if len(large) > 1 else [(math.log(x), math.log(y)) for x, y in pairs if y > 0]
     if len(points) < 2:
-        return math.nan
+        return None
     mx, my = (sum(p[i] for p in points) / len(points) for i in (0, 1))
     return sum((x - mx) * (y - my) for x, y in points) / sum((x - mx) ** 2 for x, _ in points)
+
+
+def show(slope):
+    return "-" if slope is None else f"{slope:.2f}"
 
 
 def main(words):
@@ -65,12 +69,13 @@ def main(words):
                     by_stage.setdefault(stage, []).append((triangles, run.cpu, run.megabytes))
         good = [r for r in rows if r["status"] == 0]
         slopes = {key: exponent([(r["input_triangles"], r[key]) for r in good]) for key in ("wall", "cpu", "megabytes")}
-        row("exponent", "", "", *(f"{slopes[key]:.2f}" for key in ("wall", "cpu", "megabytes")), "")
+        row("exponent", "", "", *(show(slopes[key]) for key in ("wall", "cpu", "megabytes")), "")
     if by_stage:
         print()
         row = common.table(["stage", "exponent of CPU s", "of MB", "CPU s at the largest", "MB at the largest"])
         for stage, runs in by_stage.items():
             slopes[stage] = exponent([(n, cpu) for n, cpu, _ in runs])
-            row(stage, f"{slopes[stage]:.2f}", f"{exponent([(n, mb) for n, _, mb in runs]):.2f}", f"{runs[-1][1]:.2f}", f"{runs[-1][2]:.0f}")
+            row(stage, show(slopes[stage]), show(exponent([(n, mb) for n, _, mb in runs])), f"{runs[-1][1]:.2f}",
+                f"{runs[-1][2]:.0f}")
     common.save(args, {"rows": rows, "exponents": slopes})
     return 0

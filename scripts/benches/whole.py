@@ -50,7 +50,7 @@ Mesh 2; Save "{result}";
 
 
 def judge(evaluator, reference, result, work):
-    """Figures of a result: by the evaluator, or by mcheck."""
+    """Figures of a result: by the evaluator, or by mcheck; None if that could not read it."""
     if evaluator:
         text = subprocess.run(f"{evaluator} '{reference}' '{result}'", shell=True, capture_output=True, text=True).stdout
         figures = dict(line.split("=", 1) for line in text.splitlines() if "=" in line)
@@ -58,9 +58,15 @@ def judge(evaluator, reference, result, work):
         figures = {k: float(v) if v not in ("NA", "") else math.nan for k, v in figures.items()}
         figures["topology_same"] = "same" if figures.get("topology_same") == 1 else "CHANGED"
         figures["self_intersections"] = int(figures.get("self_intersections", -1))
+        if "kappa_mean" not in figures:
+            raise SystemExit(f"--evaluator {evaluator}: no figures of {result}")
         return figures
     report = os.path.join(work, "check.json")
+    if os.path.exists(report):
+        os.remove(report)
     common.run(["mcheck", result, "--reference", reference, "--json", report, "-q", "--accept", "-o", os.devnull])
+    if not os.path.exists(report):
+        return None
     with open(report) as f:
         figures = json.load(f)
     figures["topology_same"] = "same" if figures["topology_same"] else "CHANGED"
@@ -85,7 +91,8 @@ def triangles_of(path):
     if path.endswith(".stl"):
         return (os.path.getsize(path) - 84) // 50
     with open(path) as f:
-        return int(f.read(1000).split()[2])
+        head = f.read(1000).split()
+    return int(head[2]) if len(head) > 2 and head[2].isdigit() else 0
 
 
 class Program:
@@ -169,6 +176,11 @@ def main(words):
     p.add_argument("--slow", type=float, default=30)
     p.add_argument("--threads", type=int)
     args = common.parse(p, words)
+    if args.runs < 1:
+        raise SystemExit("--runs: at least 1")
+    for peer in args.peer:
+        if "=" not in peer:
+            raise SystemExit(f"--peer {peer}: not NAME=COMMAND")
     rows = []
     with tempfile.TemporaryDirectory() as work:
         row = common.table(["surface", "in", "program", "out", *(c[1] for c in COLUMNS), "s", "ratio", "CPU s", "ratio", "MB", "ratio"])
@@ -189,8 +201,11 @@ def main(words):
                 cells, made = ["-"] * len(COLUMNS), f"failed: {status if isinstance(status, str) else 'status %d' % status}"
                 if status == -1:
                     made = f"longer than {args.timeout:.0f} s"
-                if status == 0:
-                    figures.update(judge(args.evaluator, clean, program.result, work))
+                judged = judge(args.evaluator, clean, program.result, work) if status == 0 else None
+                if status == 0 and judged is None:
+                    made = "failed: no mesh"
+                if judged:
+                    figures.update(judged)
                     made = program.made
                     cells = [form.format(figures.get(key, math.nan)) for key, _, form in COLUMNS]
                 row(name, triangles, program.name, made, *cells, f"{cost[0]:.2f}", f"{ratio[0]:.2f}", f"{cost[1]:.2f}",
