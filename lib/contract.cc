@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "lib/error.h"
+#include "lib/number.h"
 
 namespace meshpipe {
 namespace {
@@ -23,13 +23,7 @@ bool among(const Names& names, const std::string& name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-std::string text(double x) {
-  char s[32];
-  std::snprintf(s, sizeof s, "%.6g", x);
-  return s;
-}
-
-std::string place(Vec3 p) { return "at (" + text(p.x) + " " + text(p.y) + " " + text(p.z) + ")"; }
+std::string place(Vec3 p) { return "at (" + shown(p.x) + " " + shown(p.y) + " " + shown(p.z) + ")"; }
 
 std::string triangle(const Mesh& mesh, int t) {
   const Tri& v = mesh.tris[t];
@@ -94,12 +88,12 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
   auto above = [&](double value, int worst) {
     if (value > r.limit) return;
     const std::string what =
-        worst < 0 ? text(value) : "smallest is " + text(value) + " in " + triangle(mesh, worst);
-    facts.push_back(what + ", not above " + text(r.limit));
+        worst < 0 ? shown(value) : "smallest is " + shown(value) + " in " + triangle(mesh, worst);
+    facts.push_back(what + ", not above " + shown(r.limit));
   };
   auto within = [&](double value, const std::string& where = "") {
     if (value <= r.limit) return;
-    facts.push_back(text(value) + where + ", above " + text(r.limit));
+    facts.push_back(shown(value) + where + ", above " + shown(r.limit));
   };
   if (r.name == "kappa")
     return above(f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced], f.worst_unforced);
@@ -108,7 +102,7 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
   if (r.name == "angle") return above(q.min_angle, -1);
   if (r.name == "hausdorff")
     return within(d.hausdorff + d.bound,
-                  " is the bound, " + text(d.hausdorff) + " the distance found " + place(d.place));
+                  " is the bound, " + shown(d.hausdorff) + " the distance found " + place(d.place));
   if (r.name == "mean") return within(d.mean);
   if (r.name == "rms") return within(d.rms);
   if (r.name == "boundary") return within(f.boundary);

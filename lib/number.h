@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in messages.
+// Numbers in messages and pictures.
 #pragma once
 #include <cstdio>
 #include <string>

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "lib/number.h"
+
 namespace meshpipe {
 namespace {
 
@@ -63,12 +65,6 @@ std::string shade(int k) {
   return text;
 }
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
-
 }  // namespace
 
 std::string charts_svg(const std::vector<Chart>& charts, const std::vector<ParamReport>& reports) {
@@ -114,9 +110,9 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
       for (int i = 0; i < 3; ++i) {
         Vec2 q = uv[c][charts[c].mesh.tris[t][i]];
         p += i == 0 ? 'M' : i == 1 ? 'L' : ' ';
-        p += number(x + unit * (q.x - box[c].low.x));
+        p += shown(x + unit * (q.x - box[c].low.x));
         p += ' ';
-        p += number(y + unit * (box[c].high.y - q.y));
+        p += shown(y + unit * (box[c].high.y - q.y));
       }
       p += "z";
     }
@@ -124,7 +120,7 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
     double edge = unit * std::sqrt((box[c].high.x - box[c].low.x) * (box[c].high.y - box[c].low.y) /
                                    (double)std::max<std::size_t>(1, scale[c].size()));
     body += "<g stroke=\"#000\" stroke-opacity=\"0.5\" stroke-width=\"" +
-            number(std::clamp(0.06 * edge, 0.01, 0.6)) + "\" stroke-linejoin=\"round\">\n";
+            shown(std::clamp(0.06 * edge, 0.01, 0.6)) + "\" stroke-linejoin=\"round\">\n";
     for (int k = 0; k < shades; ++k)
       if (!path[k].empty()) body += "<path fill=\"" + shade(k) + "\" d=\"" + path[k] + "\"/>\n";
     body += "</g>\n";
@@ -145,13 +141,13 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
   double height = y + row + caption + 2 * gap;
   std::string key;
   for (int k = 0; k < shades; ++k)
-    key += "<rect x=\"" + number(gap + 12 * k) + "\" y=\"" + number(height) +
+    key += "<rect x=\"" + shown(gap + 12 * k) + "\" y=\"" + shown(height) +
            "\" width=\"12\" height=\"12\" fill=\"" + shade(k) + "\"/>\n";
-  key += "<text x=\"" + number(gap + 12 * shades + 10) + "\" y=\"" + number(height + 11) +
-         "\">area scale 1/" + number(std::exp(range)) + " to " + number(std::exp(range)) + "</text>\n";
+  key += "<text x=\"" + shown(gap + 12 * shades + 10) + "\" y=\"" + shown(height + 11) + "\">area scale 1/" +
+         shown(std::exp(range)) + " to " + shown(std::exp(range)) + "</text>\n";
   height += 12 + gap;
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(width) + "\" height=\"" +
-         number(height) + "\" viewBox=\"0 0 " + number(width) + " " + number(height) +
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + shown(width) + "\" height=\"" +
+         shown(height) + "\" viewBox=\"0 0 " + shown(width) + " " + shown(height) +
          "\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
          "fill=\"#fff\"/>\n" +
          body + key + "</svg>\n";

@@ -81,7 +81,7 @@ void prepare_data(Surface& s, const std::string& name) {
 /// Says what bounds of the size have made of what was asked for.
 void tell_missed(const Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
   constexpr double much = 0.1;
-  if (counted && std::abs(r.triangles / o.triangles - 1) > much)
+  if (counted && std::abs(r.triangles - o.triangles) > std::max(1.0, much * o.triangles))
     io.say("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
            " triangles instead of the " + std::to_string(std::llround(o.triangles)) + " asked for");
   if (o.size > 0 && r.smallest > o.size)
