@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/line_tables.h"
+#include "formats/stages.h"
 #include "lib/param.h"
 #include "lib/param_svg.h"
 #include "lib/topology.h"
@@ -134,6 +135,7 @@ int main(int argc, char** argv) {
                       ? *known
                       : part_table(surface, n_parts);
     add_columns(parts, reports);
+    drop_downstream(stream, Stage::charts);
     stream.set(std::move(parts));
     write_charts(stream, charts);
 
