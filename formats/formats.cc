@@ -49,11 +49,11 @@ const std::vector<Reader>& readers() {
 
 const std::vector<Writer>& writers() {
   static const std::vector<Writer> all = {
-      {".mply", write_stream}, {".ply", write_ply},    {".stl", write_stl},      {".obj", write_obj},
-      {".off", write_off},     {".msh", write_msh2},   {".msh2", write_msh2},    {".msh4", write_msh4},
-      {".vtu", write_vtu},     {".vtp", write_vtp},    {".vtk", write_vtk_grid}, {".mesh", write_mesh},
-      {".meshb", write_meshb}, {".sol", write_sol},    {".solb", write_solb},    {".gts", write_gts},
-      {".bdf", write_nastran}, {".nas", write_nastran}, {".inp", write_abaqus}, {".poly", write_poly},
+      {".mply", write_stream}, {".ply", write_ply},     {".stl", write_stl},      {".obj", write_obj},
+      {".off", write_off},     {".msh", write_msh2},    {".msh2", write_msh2},    {".msh4", write_msh4},
+      {".vtu", write_vtu},     {".vtp", write_vtp},     {".vtk", write_vtk_grid}, {".mesh", write_mesh},
+      {".meshb", write_meshb}, {".sol", write_sol},     {".solb", write_solb},    {".gts", write_gts},
+      {".bdf", write_nastran}, {".nas", write_nastran}, {".inp", write_abaqus},   {".poly", write_poly},
   };
   return all;
 }

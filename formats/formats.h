@@ -11,8 +11,8 @@
 namespace meshpipe {
 
 /// Reads any known format, the stream included. Foreign meshes come as they are in the file (only STL, which
-/// does not number its vertices, is welded), polygons triangulated, with face column `patch` and its names. Throws
-/// BadInput with place and both numbers.
+/// does not number its vertices, is welded), polygons triangulated, with face column `patch` and its names.
+/// Throws BadInput with place and both numbers.
 Stream read_any(std::string_view bytes, const std::string& where);
 
 /// ".stl" of "a/part.STL": the last dot of the file's name and what follows, in lower case; empty without a

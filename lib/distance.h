@@ -35,9 +35,10 @@ std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, con
 std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                                     const Bvh& mesh_tree);
 
-/// The size (per vertex) that brings the mesh nearer to within `limit` of the reference: smaller in proportion
-/// where a triangle's error is larger, by no more than a factor of 4. (Where a surface is smooth the error goes
-/// with the square of the size, but on its ridges and tips only with the size.) Other sizes stay.
+/// The size (per vertex) that brings the mesh nearer to within `limit` of the reference: smaller in
+/// proportion where a triangle's error is larger, by no more than a factor of 4. (Where a surface is smooth
+/// the error goes with the square of the size, but on its ridges and tips only with the size.) Other sizes
+/// stay.
 std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
                                  const std::vector<double>& errors, double limit);
 

@@ -5,8 +5,8 @@
 
 namespace meshpipe {
 
-/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none), and
-/// what files of INRIA say of it (0 or 1).
+/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none),
+/// and what files of INRIA say of it (0 or 1).
 struct ModelSegments : Mesh {
   std::vector<int> tag, ridge, required;
 };

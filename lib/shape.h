@@ -42,9 +42,9 @@ void relax_on(Mesh& mesh, const Implicit& f, int rounds);
 Mesh genus_surface(int g, int n);
 /// A branching tree of tubes along z with an inlet of diameter 1: `generations` bifurcations, or as many as
 /// `outlets` ends (the inlet counts) ask for when that is not 0; a child's radius is `ratio` times its
-/// parent's. Its ends are cut flat and open. About n triangles. `aspect`: the branches are as long as gives the tree
-/// about the area of a tube of that length and diameter 1; 0: 5.5 times their radius.
-/// Throws GoalMissed if tubes touch.
+/// parent's. Its ends are cut flat and open. About n triangles. `aspect`: the branches are as long as gives
+/// the tree about the area of a tube of that length and diameter 1; 0: 5.5 times their radius. Throws
+/// GoalMissed if tubes touch.
 Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed, double aspect = 0);
 
 /// Moves every vertex by a random vector of length up to amount times the mean edge length.

@@ -13,7 +13,8 @@ class PointNumbers {
  public:
   /// Room for about this many distinct points; it grows.
   explicit PointNumbers(std::size_t expected);
-  /// The numbers of n more points. Best called with many at a time: what memory holds of them is fetched ahead.
+  /// The numbers of n more points. Best called with many at a time: what memory holds of them is fetched
+  /// ahead.
   void add(const Vec3* points, int n, int* numbers);
   /// The distinct points by their number.
   std::vector<Vec3> points;

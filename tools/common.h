@@ -35,8 +35,8 @@ class Io {
   /// Writes bytes to another file of the user's, beside it and renamed, or to standard output for "-".
   static void write_file(const std::string& path, std::string_view bytes);
   /// Before the work, not after it: throws CannotWrite if write_file would fail now for a further file, and
-  /// BadUsage if write_to would for the extension of a `mesh`, or if the file is that of -o, of --json, or one
-  /// that was expected before (`option` is for the message).
+  /// BadUsage if write_to would for the extension of a `mesh`, or if the file is that of -o, of --json, or
+  /// one that was expected before (`option` is for the message).
   void expect_report(const std::string& option, const std::string& path, bool mesh = false);
   /// A line on standard error, after the program's name; not with -q.
   void say(const std::string& line) const;
@@ -67,9 +67,9 @@ class Io {
 struct Usage {
   bool reads = true;        ///< takes FILE
   bool writes_mesh = true;  ///< -o is a mesh, its format by extension
-  bool passes = false;      ///< a few passes over all its input, in arrays of that size: most of its time would go
-                            ///< into fresh pages, so that freed memory is kept for the next arrays
-  bool any_size = false;    ///< computes nothing of coordinates, which may be beyond what areas can be told of
+  bool passes = false;  ///< a few passes over all its input, in arrays of that size: most of its time would
+                        ///< go into fresh pages, so that freed memory is kept for the next arrays
+  bool any_size = false;  ///< computes nothing of coordinates, which may be beyond what areas can be told of
 };
 
 /// A check of an option's value: above 0, and finite.

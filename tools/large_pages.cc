@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large arrays on large pages, used again when they are freed: a surface of millions of triangles is a few
-// arrays of hundreds of megabytes, and more than half of the time to read and weld it would go into fresh pages
-// of 4 KB.
+// arrays of hundreds of megabytes, and more than half of the time to read and weld it would go into fresh
+// pages of 4 KB.
 #include <malloc.h>
 #include <sys/mman.h>
 

@@ -81,7 +81,8 @@ int main(int argc, char** argv) {
         app.add_option("--color", o.color, "face columns red green blue by this label")
             ->check(CLI::IsMember({"part", "patch"}))
             ->type_name("part|patch");
-        app.add_option("--sol", o.sol, "add the values of this .sol or .solb file to the vertices")->type_name("FILE");
+        app.add_option("--sol", o.sol, "add the values of this .sol or .solb file to the vertices")
+            ->type_name("FILE");
         app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
         app.add_flag("--surface", o.surface, "leave out all but vertices, faces, patches and colours");
       },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of a text by std::from_chars and nothing else: what a reader of text is measured against. Prints the
-// CPU seconds that it takes, without reading the file.
+// The numbers of a text by std::from_chars and nothing else: what a reader of text is measured against.
+// Prints the CPU seconds that it takes, without reading the file.
 #include <charconv>
 #include <cstdio>
 #include <ctime>

@@ -36,7 +36,8 @@ TEST(weld, first_equal_leaves_out_what_is_not_used) {
 //  |  \|
 //  0---1
 TEST(weld, drops_vertices_that_no_triangle_uses) {
-  Mesh m{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}}, {{1, 2, 3}, {4, 5, 6}}};
+  Mesh m{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}},
+         {{1, 2, 3}, {4, 5, 6}}};
   weld(m);
   EXPECT_EQ(m.points.size(), 4u);
   EXPECT_EQ(m.tris, (std::vector<Tri>{{0, 1, 2}, {2, 1, 3}}));
