@@ -440,17 +440,21 @@ TEST(Param, ACoarseTubeIsCutOpen) {
   }
 }
 
+// Of radius 1, open at both ends: n edges round, m along.
+static Mesh round_tube(int n, int m, double length) {
+  return grid(
+      n, m, true,
+      [length](double s, double t) {
+        double a = 2 * pi * s;
+        return Vec3{std::cos(a), std::sin(a), length * t};
+      },
+      all);
+}
+
 // A tube open at both ends, admissible as it is, with few edges round: a ring would shear its triangles.
 TEST(Param, ALimbWithFewEdgesRoundIsCutAlong) {
   constexpr int n = 24, m = 22;
-  auto tube = grid(
-      n, m, true,
-      [](double s, double t) {
-        double a = 2 * pi * s;
-        return Vec3{std::cos(a), std::sin(a), 1.9 * pi * t};
-      },
-      all);
-  Surface s = one_part(tube);
+  Surface s = one_part(round_tube(n, m, 1.9 * pi));
   std::vector<ParamReport> reports;
   Surface strict = s, creased = s;
   map_surface(strict, 1, {.strict = true}, reports);
@@ -475,17 +479,7 @@ TEST(Param, ALimbWithFewEdgesRoundIsCutAlong) {
 // The same tube with a ring of its own at one end: the cut ends on the ring's border, whose map stays.
 TEST(Param, TheMapOfANeighbourOfACutStays) {
   constexpr int n = 24, m = 27, rows = 24;
-  auto tube = grid(
-      n, m, true,
-      [](double s, double t) {
-        double a = 2 * pi * s;
-        return Vec3{std::cos(a), std::sin(a), 2.3 * pi * t};
-      },
-      all);
-  Surface s;
-  static_cast<Mesh&>(s) = tube;
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
+  Surface s = surface_of(round_tube(n, m, 2.3 * pi));
   std::vector<int> part(s.tris.size(), 0);
   for (std::size_t t = 0; t < part.size(); ++t) part[t] = t >= 2 * n * rows;
   s.face.set("part", std::move(part));
