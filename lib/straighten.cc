@@ -305,14 +305,14 @@ std::vector<Fault> try_straighten(Surface& surface, std::vector<int>& opposite,
   constexpr auto band_column = "straighten band";
   s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
-  cut_along_line(s, line, active, side);
+  std::vector<int> after = opposite;
+  cut_along_line(s, line, active, side, &after);
   const std::vector<int> band = s.face.get<int>(band_column);
   s.face.erase(band_column);
   std::vector<int>& part = s.face.get<int>("part");
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
   keep_largest_pieces(s, after, band, curves, part, n_parts);
   std::vector<int> piece = part;
   std::vector<char> broken(n_parts, 0);
@@ -483,10 +483,9 @@ void straighten_corners(Surface& surface, std::vector<int>& opposite, const std:
 
 }  // namespace
 
-void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
-                           const std::vector<char>& chosen) {
+void straighten_interfaces(Surface& surface, std::vector<int>& opposite, int n_parts, double snap,
+                           int max_faces, const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
-  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   const std::vector<PairColour> pairs = colour_pairs(surface, find_curves(surface, opposite));
   constexpr double straight = 0.05;  // as a shortest line is
   auto model = [&](int h) { return is_model(surface, h); };
