@@ -238,7 +238,7 @@ CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
   const double n = part.mesh.tris.size();
   Coarse coarse;
-  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most), most_turn);
+  if (n > worth * enough) coarse = coarsen(part.mesh, part.opposite, model, std::max<int>(enough, n / at_most), most_turn);
   if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, options, share);
     field = cut.field;
