@@ -44,8 +44,8 @@ class HeatStep {
 
   /// s, which is where it begins, such that the step's operator makes `right` of it, by conjugate gradients.
   void solve(const std::vector<double>& right, std::vector<double>& s) {
-    constexpr double accuracy = 1e-6;
-    constexpr int most=5000;
+    constexpr double accuracy = 0.01;
+    constexpr int most = 200;
     const std::size_t n = s.size();
     x_.resize(n), r_.resize(n), d_.resize(n), q_.resize(n);
     for (std::size_t v = 0; v < n; ++v) x_[v] = held_[v] == not_held ? s[v] / scale_[v] : 0;
