@@ -35,13 +35,19 @@ inline double agreement(Vec3 p, Vec3 q, Vec3 r, Vec3 facing) {
 constexpr double least_agreement = 0.5;
 inline bool folds(double before, double after) { return after < std::min(before, least_agreement) - 1e-12; }
 
-/// What the energy of a vertex depends on, gathered: its triangles (p, y[i], z[i]).
+/// What the energy of a vertex depends on, gathered: its triangles (p, y[i], z[i]). By coordinates, so that
+/// the compiler takes several triangles at a time.
 struct Star {
   static constexpr int most = 32;
   int n = 0;
-  Vec3 y[most], z[most], facing[most];  ///< facing: the sum of the normals at the two other corners
-  double energy(Vec3 p, double size) const;
-  double agreement(Vec3 p, Vec3 normal) const;
+  double y[3][most], z[3][most];
+  double facing[3][most];  ///< the sum of the normals at the two other corners
+  double normal[3][most];  ///< area vectors of the triangles with the last p that was looked at
+  void look(Vec3 p);
+  double energy(Vec3 p, double size);
+  /// Do all triangles with the last p agree at least `least_agreement`, when its normal is `facing_p`?
+  bool unfolded(Vec3 facing_p) const;
+  double agreement(Vec3 p, Vec3 facing_p) const;
 };
 
 /// The reference surface, ready to be walked on.
