@@ -128,12 +128,12 @@ RelaxReport Relaxer::run() {
     add_progress(0.5 / options_.sweeps);
   }
   // what is mended is farther from some tips, what reaches them needs mending
-  constexpr int rounds = 4;
-  std::vector<Place> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
+  constexpr int rounds = 5;
+  std::vector<Tip> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
   for (int round = 0; round < rounds; ++round) {
     // on a smooth surface there are none, and the mesh has come to rest in the first round
     if (reach_tips(tips) || round == 0) {
-      smooth(2);
+      smooth(1);
       flip_to_shape();
       smooth(1);
     }

@@ -9,8 +9,9 @@
 namespace meshpipe {
 namespace {
 constexpr double size_weight = 0.012;
-constexpr double no_step = 3e-3;     ///< a step below this share of the size is none
-constexpr double beyond = 1.5;       ///< over-relaxation: what is uneven over many edges evens out sooner
+constexpr double no_step = 3e-3;  ///< a step below this share of the size is none
+// over-relaxation: what is uneven over many edges evens out sooner
+constexpr double beyond = 1.5, beyond_along = 1.3;
 constexpr int worth_threads = 2000;  ///< vertices of a colour
 }  // namespace
 
@@ -100,7 +101,7 @@ bool Relaxer::slide(int v) {
   const double now = star.energy(x, size), left = energy(-probe), right = energy(probe);
   const double bend = left - 2 * now + right;
   double s = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
-  s = std::clamp(s, -0.4 * reach, 0.4 * reach);
+  s = std::clamp(beyond_along * s, -0.4 * reach, 0.4 * reach);
   if (!(std::abs(s) >= no_step * size)) return false;
   const Place place = place_at(s);
   const Vec3 p = ground_->walk.point(place), facing = facing_on_line(v, place);

@@ -50,13 +50,19 @@ struct Star {
   double agreement(Vec3 p, Vec3 facing_p) const;
 };
 
+/// A place of the reference that the mesh is to be near to, and a triangle of the mesh that was near to it.
+struct Tip {
+  Place place;
+  int near = -1;
+};
+
 /// The reference surface, ready to be walked on.
 struct Ground {
   explicit Ground(const Surface& reference);
   /// Smooth unit normal at a place.
   Vec3 normal(const Place& p) const;
   double size(const Place& p) const;
-  std::vector<Place> likely_tips(double h) const;
+  std::vector<Tip> likely_tips(double h) const;
 
   const Surface& surface;
   const std::vector<double>* sizes;  ///< null if the surface has none
@@ -144,9 +150,12 @@ class Relaxer {
   void remove_dislocations(int depth);
 
   // relax_mend.cc
-  bool reach_tips(std::vector<Place>& tips);
-  bool reach(const Place& tip, int t, double far_enough);
-  bool go_to(const Place& tip, int t, double least);
+  bool reach_tips(std::vector<Tip>& tips);
+  double walk_near(Vec3 p, int& t, double enough) const;
+  double nearest_triangle(Vec3 p, int& t, Vec3& q) const;
+  std::optional<Relaxer> reached(const Place& tip, Vec3 q, double least, double far_enough,
+                                 const std::vector<int>& round) const;
+  std::optional<Relaxer> gone_to(const Place& tip, double least, const std::vector<int>& round) const;
   double quality(int t) const;
   int irregularity(int v) const;
   double badness() const;
