@@ -20,6 +20,7 @@
 #include "lib/parallel.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
+#include "lib/sliver.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
 
@@ -418,6 +419,31 @@ std::vector<Topology> refreshed(const Surface& surface, std::vector<Topology> is
   return is;
 }
 
+/// Slivers beside the cuts change hands, unless that makes a part too long. `is` has the parts' topology, as
+/// far as it is known.
+void drop_slivers(Surface& surface, double max_aspect, std::vector<Topology>& is) {
+  const std::vector<int> before = surface.face.get<int>("part");
+  if (!hand_over_slivers(surface, (int)is.size())) return;
+  std::vector<int>& part = surface.face.get<int>("part");
+  std::vector<char> changed(is.size(), 0);
+  for (std::size_t t = 0; t < part.size(); t++)
+    if (part[t] != before[t]) changed[part[t]] = changed[before[t]] = 1;
+  std::vector<int> label = part;
+  for (int& l : label)
+    if (l >= 0 && !changed[l]) l = -1;
+  const std::vector<SubMesh> meshes = split_by_label(surface, label, (int)is.size());
+  std::vector<Topology> now = is;
+  for (std::size_t p = 0; p < is.size(); p++) {
+    if (!changed[p]) continue;
+    now[p] = topology_of(meshes[p]);
+    if (now[p].eta_geo > max_aspect) {
+      part = before;
+      return;
+    }
+  }
+  is = std::move(now);
+}
+
 std::string name(int part) { return "part " + std::to_string(part); }
 
 }  // namespace
@@ -525,6 +551,8 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     n_parts = join_parts(surface, n_parts, was_cut, options.max_aspect, cuts);
     if (n_parts != cut_parts) is.assign(n_parts, {});
   }
+  if (n_parts > 1 && std::find(was_cut.begin(), was_cut.end(), 1) != was_cut.end())
+    drop_slivers(surface, options.max_aspect, is);
   if (topology) *topology = refreshed(surface, std::move(is));
   return n_parts;
 }

@@ -10,6 +10,7 @@
 #include "lib/labelling.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
+#include "lib/sliver.h"
 #include "lib/straighten.h"
 #include "lib/topology.h"
 
@@ -88,6 +89,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
   }
   if (n_parts == n_components) return n_parts;  // each maps to the plane as it is
   straighten_interfaces(surface, n_parts, options.snap, options.max_faces);
+  hand_over_slivers(surface, n_parts, options.max_faces);
   if (std::string fault = part_fault(surface); !fault.empty()) throw GoalMissed(fault);
   return n_parts;
 }
