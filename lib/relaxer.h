@@ -108,6 +108,8 @@ class Relaxer {
 
   // relax.cc
   void hold_pairs();
+  void meet_count_in_the_end(double target);
+  void optimise(double target);
   void meet_count(double target);
   RelaxReport finish();
 
@@ -185,7 +187,7 @@ class Relaxer {
   std::vector<Vec3> facing_;   ///< the reference's normal at each vertex's place; zero on model edges
   std::vector<char> held_;     ///< per vertex: free, on a border or model edge, a corner, put on a tip, at
                                ///< the rim of a patch, or on a seam
-  std::vector<double> finer_;  ///< factor on the size field, below 1 where intersections asked for refinement
+  std::vector<double> finer_;  ///< factor on the size field, smaller where intersections asked for refinement
   std::vector<int> tried_, changed_;  ///< when a vertex was last tried to move, and when it last changed
   int clock_ = 0;
   std::vector<int> in_vain_[2];     ///< when mending a triangle was last in vain: as it is done, thoroughly
