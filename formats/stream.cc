@@ -144,6 +144,9 @@ class Reader {
     } else if (w.size() == 3 && w[1] == "input_triangles") {
       if (!parse(w[2], stream_.input_triangles) || stream_.input_triangles < 0)
         fail(quoted(w[2]) + " is not a count of triangles");
+    } else if (w.size() == 3 && w[1] == "asked_triangles") {
+      if (!parse(w[2], stream_.asked_triangles) || stream_.asked_triangles < 0)
+        fail(quoted(w[2]) + " is not a count of triangles");
     } else {
       stream_.remarks.emplace_back(line.substr(std::min(line.size(), std::size_t{8})));
     }
@@ -547,6 +550,8 @@ void write_stream(const Stream& stream, bool ascii, const Sink& sink) {
   }
   if (stream.input_triangles > 0)
     out += "comment input_triangles " + std::to_string(stream.input_triangles) + '\n';
+  if (stream.asked_triangles > 0)
+    out += "comment asked_triangles " + std::to_string(stream.asked_triangles) + '\n';
   for (const Name& n : stream.names)
     out += "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' +
            percent_encode(n.text) + '\n';

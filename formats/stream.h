@@ -30,6 +30,7 @@ struct Stream {
   std::vector<Provenance> history;   ///< in the order the programs ran
   std::vector<std::string> remarks;  ///< other comments, kept as they are
   int input_triangles = 0;           ///< after mclean; 0: not recorded
+  int asked_triangles = 0;           ///< of the mesh to be; 0: the sizes say how many
   bool ascii = false;                ///< encoding it was read in, and is written in unless told otherwise
 
   const Table* find(std::string_view table) const;

@@ -176,7 +176,7 @@ Factorisation<double> laplacian(const Filled& filled, const std::vector<double>&
     if (i >= 0 && j >= 0) matrix.push_back({std::max(i, j), std::min(i, j), -w});
   });
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
-  return Factorisation<double>(n, std::move(matrix), time);
+  return Factorisation<double>(n, std::move(matrix), time, MatrixKind::laplacian);
 }
 
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,

@@ -111,9 +111,46 @@ RelaxReport Relaxer::run() {
     split_long(1.4, 1e9);
     collapse_short(0.65, 0);
     flip_to_regular();
-    smooth(2);
+    smooth(1);
     add_progress(0.1);
   }
+  bool model = false;
+  for (int h = 0; h < (int)m_.hard.size(); ++h) model = model || (m_.hard[h] && m_.opp[h] >= 0);
+  if (options_.target_triangles > 0 && model)
+    meet_count_in_the_end(target);
+  else
+    optimise(target);
+  separate();
+  return finish();
+}
+
+/// Mending adds triangles where lines of the model are closer than the size. How many shows when it is done:
+/// then all is done again for larger sizes, which ask for as many less.
+void Relaxer::meet_count_in_the_end(double target) {
+  constexpr double near_enough = 0.015, least = 0.6;
+  constexpr int most_tries = 4;
+  const Relaxer start = *this;
+  std::optional<Relaxer> best;
+  double goal = target;
+  auto off = [&](const Relaxer& r) { return std::abs(r.m_.live - target); };
+  for (int tries = 1;; ++tries) {
+    optimise(goal);
+    const double surplus = m_.live - target;
+    if (off(*this) <= near_enough * target || (tries == 1 && surplus < 0)) return;
+    const bool better = !best || off(*this) < off(*best);
+    if (tries == most_tries) {
+      if (!better) *this = std::move(*best);
+      return;
+    }
+    if (better) best = std::move(*this);
+    *this = start;
+    goal = std::clamp(goal - surplus, least * target, target);
+    for (double& f : finer_) f *= std::sqrt(target / goal);
+  }
+}
+
+/// Sweeps with `target` triangles, then the places that need more than sweeps.
+void Relaxer::optimise(double target) {
   for (int i = 0; i < options_.sweeps; ++i) {
     // edits unsettle the mesh, so they come first and the last sweeps only settle it
     if (2 * i < options_.sweeps) {
@@ -124,24 +161,22 @@ RelaxReport Relaxer::run() {
     flip_to_regular();
     smooth(1);
     flip_to_shape();
-    smooth(2);
+    smooth(1);
     add_progress(0.5 / options_.sweeps);
   }
   // what is mended is farther from some tips, what reaches them needs mending
-  constexpr int rounds = 4;
-  std::vector<Place> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
+  constexpr int rounds = 5;
+  std::vector<Tip> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
   for (int round = 0; round < rounds; ++round) {
     // on a smooth surface there are none, and the mesh has come to rest in the first round
     if (reach_tips(tips) || round == 0) {
-      smooth(3);
+      smooth(1);
       flip_to_shape();
-      smooth(2);
+      smooth(1);
     }
     mend_worst();
     add_progress(0.1 / rounds);
   }
-  separate();
-  return finish();
 }
 
 /// Puts v at a place of the reference.

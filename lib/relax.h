@@ -9,8 +9,10 @@ namespace meshpipe {
 
 struct RelaxOptions {
   int sweeps = 4;
-  double target_triangles = 0;  ///< 0: what the size field asks for
-  bool keep_border = false;     ///< no new vertex on the border
+  /// So many in the end: what narrow places take more, the rest has less. 0: what the size field asks for,
+  /// and narrow places more.
+  double target_triangles = 0;
+  bool keep_border = false;  ///< no new vertex on the border
 };
 
 struct RelaxReport {

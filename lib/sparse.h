@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse direct solves, by Eigen's simplicial LDL^T; no other file of the library sees Eigen's solvers.
+// Sparse solves, by Eigen's simplicial LDL^T or by multigrid; no other file of the library sees Eigen's
+// solvers.
 #pragma once
 #include <array>
 #include <complex>
@@ -19,20 +20,27 @@ struct Entry {
 
 /// Where the wall time of sparse solves goes, in seconds.
 struct SolveTime {
-  double ordering = 0;  ///< with the symbolic factorisation
-  double factorisation = 0, solve = 0;
+  double ordering = 0;                  ///< with the symbolic factorisation
+  double factorisation = 0, solve = 0;  ///< multigrid: its levels, its steps
 };
+
+/// What is known of a matrix: a Laplacian, with some values held or masses added, can be solved by multigrid.
+enum class MatrixKind { any, laplacian };
 
 /// A factorised symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
 /// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
 /// Order: approximate minimum degree. `time`, if given, is added to, and has to outlive the factorisation.
+/// A real matrix of kind `laplacian` whose order shows that multigrid (lib/multigrid.h) is faster, as it is
+/// for large round charts and not for long or branched ones, is factorised only if that does not converge.
 template <class Scalar>
 class Factorisation {
  public:
-  Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr);
+  Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr,
+                MatrixKind kind = MatrixKind::any);
   ~Factorisation();
   Factorisation(Factorisation&&) noexcept;
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
+  /// Precondition: kind `any`.
   void refactor(const std::vector<Entry<Scalar>>& lower_triangle);
   /// Solves in place; call as often as needed. Several right-hand sides of n numbers each follow each other.
   /// Throws GoalMissed if the solution is beyond doubles.

@@ -83,5 +83,7 @@ with tempfile.TemporaryDirectory() as scratch:
     check("chord", "in.ply", ["--chord", "0.005"], field=False)
     check("curvature by formula", "in.ply", ["--expression", "0.25 / curvature"], field=False)
     check("count", "in.ply", ["--triangles", "3000", "--curvature", "25"], field=False, count=3000)
+    run("mshape", "body", "-o", "body.ply")
+    check("count between lines", "body.ply", ["--triangles", "2000"], field=False, count=2000)
     check("bounds", "in.ply", ["--size", "0.1", "--expression", FORMULA, "--min", "0.07", "--gradation", "0.2"],
           field=False)

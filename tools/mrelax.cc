@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
         o.relax.keep_border = o.relax.keep_border || l.kept;
       }
       corners = line_corners(reference, lines);
+      o.relax.target_triangles = stream.asked_triangles;
     } else {
       clean(stream.surface);
       reference = reference_from(io.read(o.reference), stream.surface.tris.size());
@@ -91,6 +92,11 @@ int main(int argc, char** argv) {
                   "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)",
                   mesh.tris.size(), r.kappa_mean, r.kappa_min, r.splits, r.collapses, r.flips);
     io.say(text);
+    constexpr double much = 0.03;
+    if (const double asked = o.relax.target_triangles;
+        std::abs((double)mesh.tris.size() - asked) > much * asked && asked > 0)
+      io.say("narrow places of the model keep it from the " + std::to_string(stream.asked_triangles) +
+             " triangles asked for");
     if (r.corners_merged > 0)
       io.say(std::to_string(r.corners_merged) +
              " corners merged with another that was nearer than a twentieth of the size");

@@ -78,6 +78,11 @@ void prepare_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Does the field ask for the number of triangles that was given? Bounds may keep it from that.
+bool met_count(const SizeOptions& o, const SizeReport& r) {
+  return o.triangles > 0 && std::abs(r.triangles - o.triangles) <= std::max(1.0, 0.01 * o.triangles);
+}
+
 /// Says what bounds of the size have made of what was asked for.
 void tell_missed(const Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
   constexpr double much = 0.1;
@@ -161,6 +166,7 @@ int main(int argc, char** argv) {
     o.most_triangles = most_triangles();
     const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
     drop_downstream(stream, Stage::sizes);
+    stream.asked_triangles = met_count(o, r) ? static_cast<int>(o.triangles) : 0;
     if (r.added > 0) {  // lines that came with the file are not along edges any more
       for (const char* table : {"line", "line_vertex"}) stream.erase(table);
       for (Table& t : stream.tables)
