@@ -206,8 +206,11 @@ class FieldMaker {
       if (high > low) low = high, above = below;
       high += 0.3;
       below = count_at(high);
+      if (low > 0 && above - below < 1e-6) break;  // bounds let the sizes grow no more
     }
-    if (above <= 0) return;  // already the uniform length asks for no more
+    if (below > 0) count_at(low);
+    if (above <= 0 || below > 0)
+      return;  // already the uniform length asks for no more, or all sizes are too small
     for (int i = 0; i < 30 && std::abs(below) > 1e-3 && high - low > 1e-6; ++i) {
       // regula falsi, halved when it creeps
       double x = low + (high - low) * std::clamp(above / (above - below), 0.05, 0.95);
