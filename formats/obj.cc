@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "formats/colors.h"
+#include "formats/model_lines.h"
 #include "formats/polygons.h"
 #include "formats/text.h"
 
@@ -73,6 +74,28 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
   std::vector<double> after_point;
   int largest = -1;  // a face may use vertices that come after it
   std::size_t largest_line = 0;
+  std::vector<LineEdge> lines;
+  auto next_corner = [&](int& v) {  // "v", "v/vt", "v//vn" or "v/vt/vn"; false at the end of the line
+    int small;
+    long long number;
+    if (text.leading_integer(small)) {
+      number = small;
+    } else {
+      std::string_view w = text.word();
+      while (w == "\\" && text.line_ends()) {
+        text.need_line("the rest of a face");
+        w = text.word();
+      }
+      if (w.empty()) return false;
+      if (!parse_integer(w.substr(0, w.find('/')), number)) text.fail(quoted(w) + " where a corner is due");
+    }
+    v = corner(text, number, points.size());
+    if (v > largest) {
+      largest = v;
+      largest_line = text.line();
+    }
+    return true;
+  };
   while (text.next_line()) {
     std::string_view w = text.word();
     if (w == "v") {
@@ -85,25 +108,7 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
       }
     } else if (w == "f") {
       const std::size_t first = polygons.corners.size();
-      for (;;) {
-        // "v", "v/vt", "v//vn" or "v/vt/vn"
-        int small;
-        long long number;
-        if (text.leading_integer(small)) {
-          number = small;
-        } else if (w = text.word(); w.empty()) {
-          break;
-        } else if (w == "\\" && text.line_ends()) {
-          text.need_line("the rest of a face");
-          continue;
-        } else if (!parse_integer(w.substr(0, w.find('/')), number)) {
-          text.fail(quoted(w) + " where a corner is due");
-        }
-        const int v = corner(text, number, points.size());
-        if (v > largest) {
-          largest = v;
-          largest_line = text.line();
-        }
+      for (int v; next_corner(v);) {
         polygons.corners.push_back(v);
         if (polygons.corners.size() - first > max_corners)
           text.fail("a face of more than " + std::to_string(max_corners) + " corners, which is the limit");
@@ -113,6 +118,12 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
                   " corners, at least 3 are due");
       polygons.ends.push_back(polygons.corners.size());
       for (Sorting* s : {&groups, &objects, &materials}) s->of_face.push_back(s->current);
+    } else if (w == "l") {
+      int a, b;
+      if (!next_corner(a)) text.fail("a line of 0 points, at least 2 are due");
+      if (!next_corner(b)) text.fail("a line of 1 point, at least 2 are due");
+      do lines.push_back({a, b, 0});
+      while (a = b, next_corner(b));
     } else if (w == "g") {
       groups.enter(text.rest());
     } else if (w == "o") {
@@ -122,10 +133,10 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
     }
   }
   // the format has no mark of its own: a file without a face is hardly meant as one
-  if (largest < 0) text.fail("the file ends without a face");
+  if (polygons.ends.empty()) text.fail("the file ends without a face");
   if (largest >= static_cast<int>(points.size()))
-    text.fail_at(largest_line, "a face uses vertex " + std::to_string(largest + 1) + ", but there are " +
-                                   std::to_string(points.size()));
+    text.fail_at(largest_line, "a face or line uses vertex " + std::to_string(largest + 1) +
+                                   ", but there are " + std::to_string(points.size()));
 
   Sorting* const sortings[] = {&groups, &objects, &materials};
   auto chosen =
@@ -159,6 +170,7 @@ Stream read_obj(std::string_view bytes, const std::string& where) {
   polygons.patch = std::move((*chosen)->of_face);
   colors.give(stream, stream.surface.vertex, points.size());
   set_faces(stream, polygons);
+  set_model_lines(stream, lines);
   return stream;
 }
 

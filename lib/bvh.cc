@@ -196,7 +196,7 @@ Box Bvh::build(Item* items, int first, int count, int node) {
   return all;
 }
 
-Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
+Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
   // the boxes are in single precision: what they say is taken with some slack
   constexpr double trust = 1 + 1e-5;
   const auto q = own_units(p);
@@ -224,6 +224,7 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
         best = dd;
         most = limit();
         hit.place = {t, w[0], w[1], w[2]};
+        if (best <= enough * enough) break;
       }
       continue;
     }
@@ -245,7 +246,7 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound) const {
       stack[at] = {d, b.child[k]};
     }
   }
-  if (hit.place.face < 0) return nearest(p);  // the bound was too small after all
+  if (hit.place.face < 0) return nearest(p, 1e300, enough);  // the bound was too small after all
   hit.distance = std::sqrt(best);
   return hit;
 }

@@ -40,8 +40,9 @@ class Bvh {
     double distance = 0;
     Place place;
   };
-  /// Nearest point of the mesh; `bound` is an upper bound on the distance that is already known.
-  Hit nearest(Vec3 p, double bound = 1e300) const;
+  /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance that
+  /// is already known.
+  Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
   /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;

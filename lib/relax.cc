@@ -111,7 +111,7 @@ RelaxReport Relaxer::run() {
     split_long(1.4, 1e9);
     collapse_short(0.65, 0);
     flip_to_regular();
-    smooth(2);
+    smooth(1);
     add_progress(0.1);
   }
   if (options_.target_triangles > 0)
@@ -158,18 +158,18 @@ void Relaxer::optimise(double target) {
     flip_to_regular();
     smooth(1);
     flip_to_shape();
-    smooth(2);
+    smooth(1);
     add_progress(0.5 / options_.sweeps);
   }
   // what is mended is farther from some tips, what reaches them needs mending
-  constexpr int rounds = 4;
-  std::vector<Place> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
+  constexpr int rounds = 5;
+  std::vector<Tip> tips = ground_->likely_tips(size_for_count(total_area(ground_->surface), target));
   for (int round = 0; round < rounds; ++round) {
     // on a smooth surface there are none, and the mesh has come to rest in the first round
     if (reach_tips(tips) || round == 0) {
-      smooth(3);
+      smooth(1);
       flip_to_shape();
-      smooth(2);
+      smooth(1);
     }
     mend_worst();
     add_progress(0.1 / rounds);

@@ -9,26 +9,63 @@
 namespace meshpipe {
 namespace {
 constexpr double size_weight = 0.012;
-constexpr double no_step = 3e-3;     ///< a step below this share of the size is none
+constexpr double no_step = 3e-3;  ///< a step below this share of the size is none
+// over-relaxation: what is uneven over many edges evens out sooner
+constexpr double beyond = 1.5, beyond_along = 1.3;
 constexpr int worth_threads = 2000;  ///< vertices of a colour
 }  // namespace
 
+void Star::look(Vec3 p) {
+  for (int i = 0; i < n; ++i) {
+    const double ux = y[0][i] - p.x, uy = y[1][i] - p.y, uz = y[2][i] - p.z;
+    const double vx = z[0][i] - p.x, vy = z[1][i] - p.y, vz = z[2][i] - p.z;
+    normal[0][i] = uy * vz - uz * vy;
+    normal[1][i] = uz * vx - ux * vz;
+    normal[2][i] = ux * vy - uy * vx;
+  }
+}
+
 /// Sum over the triangles of q^2 + w (s + 1/s), s the square of the area over the target's; without a root,
 /// so that only one division a triangle is left.
-double Star::energy(Vec3 p, double size) const {
-  double sum = 0;
+double Star::energy(Vec3 p, double size) {
+  look(p);
   const double a2 = 0.75 * size * size * size * size;  // (twice the target area)^2
+  const double squeezed = size_weight * a2, stretched = size_weight / a2;
+  double each[most];
   for (int i = 0; i < n; ++i) {
-    const Vec3 u = y[i] - p, v = z[i] - p, w = v - u, normal = cross(u, v);
-    const double n2 = dot(normal, normal), squares = dot(u, u) + dot(v, v) + dot(w, w);
-    sum += n2 > 0 ? (squares * squares / 12 + size_weight * a2) / n2 + size_weight * n2 / a2 : 1e30;
+    const double ux = y[0][i] - p.x, uy = y[1][i] - p.y, uz = y[2][i] - p.z;
+    const double vx = z[0][i] - p.x, vy = z[1][i] - p.y, vz = z[2][i] - p.z;
+    const double wx = vx - ux, wy = vy - uy, wz = vz - uz;
+    const double squares =
+        ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + wx * wx + wy * wy + wz * wz;
+    const double n2 = normal[0][i] * normal[0][i] + normal[1][i] * normal[1][i] + normal[2][i] * normal[2][i];
+    const double e = (squares * squares / 12 + squeezed) / n2 + stretched * n2;
+    each[i] = n2 > 0 ? e : 1e30;
   }
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += each[i];
   return sum;
 }
 
-double Star::agreement(Vec3 p, Vec3 normal) const {
+bool Star::unfolded(Vec3 f) const {
+  double room[most];
+  for (int i = 0; i < n; ++i) {
+    const double fx = f.x + facing[0][i], fy = f.y + facing[1][i], fz = f.z + facing[2][i];
+    const double n2 = normal[0][i] * normal[0][i] + normal[1][i] * normal[1][i] + normal[2][i] * normal[2][i];
+    const double along = normal[0][i] * fx + normal[1][i] * fy + normal[2][i] * fz;
+    room[i] =
+        along * std::abs(along) - least_agreement * least_agreement * n2 * (fx * fx + fy * fy + fz * fz);
+  }
+  bool all = true;
+  for (int i = 0; i < n; ++i) all &= room[i] >= 0;
+  return all;
+}
+
+double Star::agreement(Vec3 p, Vec3 facing_p) const {
   double least = 1;
-  for (int i = 0; i < n; ++i) least = std::min(least, meshpipe::agreement(p, y[i], z[i], normal + facing[i]));
+  for (int i = 0; i < n; ++i)
+    least = std::min(least, meshpipe::agreement(p, {y[0][i], y[1][i], y[2][i]}, {z[0][i], z[1][i], z[2][i]},
+                                                facing_p + Vec3{facing[0][i], facing[1][i], facing[2][i]}));
   return least;
 }
 
@@ -37,9 +74,11 @@ bool Relaxer::gather(int v, Star& star) const {
   star.n = 0;
   if (m_.valence(v) > Star::most) return false;
   m_.star(v, [&](int h) {
-    const int a = m_.to(h), b = m_.apex(h);
-    star.y[star.n] = at(a), star.z[star.n] = at(b), star.facing[star.n] = facing_[a] + facing_[b];
-    ++star.n;
+    const int i = star.n++, a = m_.to(h), b = m_.apex(h);
+    const Vec3 &y = points_[a], &z = points_[b], f = facing_[a] + facing_[b];
+    star.y[0][i] = y.x, star.y[1][i] = y.y, star.y[2][i] = y.z;
+    star.z[0][i] = z.x, star.z[1][i] = z.y, star.z[2][i] = z.z;
+    star.facing[0][i] = f.x, star.facing[1][i] = f.y, star.facing[2][i] = f.z;
   });
   return true;
 }
@@ -62,50 +101,62 @@ bool Relaxer::slide(int v) {
   const double now = star.energy(x, size), left = energy(-probe), right = energy(probe);
   const double bend = left - 2 * now + right;
   double s = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
-  s = std::clamp(s, -0.4 * reach, 0.4 * reach);
+  s = std::clamp(beyond_along * s, -0.4 * reach, 0.4 * reach);
   if (!(std::abs(s) >= no_step * size)) return false;
   const Place place = place_at(s);
   const Vec3 p = ground_->walk.point(place), facing = facing_on_line(v, place);
-  if (star.energy(p, size) > now * (1 - 1e-4) ||
-      folds(star.agreement(x, facing_[v]), star.agreement(p, facing)))
-    return false;
+  if (star.energy(p, size) > now * (1 - 1e-4)) return false;
+  if (!star.unfolded(facing) && folds(star.agreement(x, facing_[v]), star.agreement(p, facing))) return false;
   put(v, place, p, facing);
   return true;
 }
 
-/// One Newton step on the star's energy in the tangent plane, walked to on the reference and kept only if the
-/// energy in space falls.
+/// One Newton step on the star's energy along the tangent plane, walked to on the reference and kept only if
+/// the energy falls.
 bool Relaxer::move(int v) {
   Star star;
   if (!gather(v, star)) return false;
   const Vec3 x = at(v);
+  star.look(x);
   Vec3 n{};
-  for (int i = 0; i < star.n; ++i) n = n + area_vector(x, star.y[i], star.z[i]);
+  for (int i = 0; i < star.n; ++i) n = n + Vec3{star.normal[0][i], star.normal[1][i], star.normal[2][i]};
   n = normalized(n);
   const Vec3 s = normalized(std::abs(n.x) < 0.6 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0})), t = cross(n, s);
   const double size = size_at(v), l0 = sqrt3 / 2 * size * size;  // twice the target area
+  const double squeezed = size_weight * l0 * l0, stretched = size_weight / (l0 * l0);
+  // The square of twice the area, A, and the sum of the squared sides, S, are quadratic in the vertex's
+  // position, A'' = 2 (e x s) (e x t) with the opposite side e, S'' = 4 I; the energy is Q / A + w A / l0^2
+  // with Q = S^2 / 12 + w l0^2.
+  double energy[Star::most], gx[Star::most], gy[Star::most], xx[Star::most], xy[Star::most], yy[Star::most],
+      up[Star::most];
+  for (int i = 0; i < star.n; ++i) {
+    const double ux = star.y[0][i] - x.x, uy = star.y[1][i] - x.y, uz = star.y[2][i] - x.z;
+    const double vx = star.z[0][i] - x.x, vy = star.z[1][i] - x.y, vz = star.z[2][i] - x.z;
+    const double nx = star.normal[0][i], ny = star.normal[1][i], nz = star.normal[2][i];
+    const double ex = vx - ux, ey = vy - uy, ez = vz - uz, mx = ux + vx, my = uy + vy, mz = uz + vz;
+    const double S = ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + ex * ex + ey * ey + ez * ez;
+    const double A = nx * nx + ny * ny + nz * nz, u = 1 / A, Q = S * S / 12 + squeezed;
+    const double sx = ey * s.z - ez * s.y, sy = ez * s.x - ex * s.z, sz = ex * s.y - ey * s.x;
+    const double tx = ey * t.z - ez * t.y, ty = ez * t.x - ex * t.z, tz = ex * t.y - ey * t.x;
+    const double Ss = -2 * (mx * s.x + my * s.y + mz * s.z), St = -2 * (mx * t.x + my * t.y + mz * t.z);
+    const double As = 2 * (nx * sx + ny * sy + nz * sz), At = 2 * (nx * tx + ny * ty + nz * tz);
+    const double q = S * u / 6, a = stretched - Q * u * u, qa = -q * u, aa = 2 * Q * u * u * u;
+    up[i] = nx * n.x + ny * n.y + nz * n.z;
+    energy[i] = Q * u + stretched * A;
+    gx[i] = q * Ss + a * As;
+    gy[i] = q * St + a * At;
+    xx[i] = u / 6 * Ss * Ss + 4 * q + 2 * qa * Ss * As + aa * As * As + 2 * a * (sx * sx + sy * sy + sz * sz);
+    yy[i] = u / 6 * St * St + 4 * q + 2 * qa * St * At + aa * At * At + 2 * a * (tx * tx + ty * ty + tz * tz);
+    xy[i] = u / 6 * Ss * St + qa * (Ss * At + St * As) + aa * As * At + 2 * a * (sx * tx + sy * ty + sz * tz);
+  }
+  double now = 0, hxx = 0, hxy = 0, hyy = 0;
   Vec2 gradient{};
-  double hxx = 0, hxy = 0, hyy = 0;
   bool flat = true;
   for (int i = 0; i < star.n; ++i) {
-    const Vec3 py = star.y[i] - x, pz = star.z[i] - x;
-    const Vec2 y{dot(py, s), dot(py, t)}, z{dot(pz, s), dot(pz, t)};
-    // Twice the area, L, is linear in the vertex's position and S, the sum of the squared sides, quadratic
-    // with S'' = 4 I; the energy is (S^2 / 12 + w l0^2) / L^2 + w L^2 / l0^2.
-    const double L = cross(y, z);
-    if (L <= 1e-3 * l0) {
-      flat = false;
-      break;
-    }
-    const Vec2 dL{y.y - z.y, z.x - y.x}, dS = -2.0 * (y + z);
-    const double S = dot(y, y) + dot(z, z) + dot(z - y, z - y), u = 1 / (L * L);
-    const double M = (S * S / 12 + size_weight * l0 * l0) * u, w = size_weight / (l0 * l0);
-    const double a = S * u / 6, b = 2 * (w * L - M / L);
-    gradient = gradient + a * dS + b * dL;
-    const double ss = u / 6, sl = -2 * a / L, ll = 6 * M * u + 2 * w, same = 4 * a;
-    hxx += ss * dS.x * dS.x + 2 * sl * dS.x * dL.x + ll * dL.x * dL.x + same;
-    hyy += ss * dS.y * dS.y + 2 * sl * dS.y * dL.y + ll * dL.y * dL.y + same;
-    hxy += ss * dS.x * dS.y + sl * (dS.x * dL.y + dS.y * dL.x) + ll * dL.x * dL.y;
+    now += energy[i];
+    gradient = gradient + Vec2{gx[i], gy[i]};
+    hxx += xx[i], hxy += xy[i], hyy += yy[i];
+    flat &= up[i] > 1e-3 * l0;
   }
   Vec2 step;
   const double det = hxx * hyy - hxy * hxy;
@@ -114,20 +165,20 @@ bool Relaxer::move(int v) {
   } else {
     // a star with folded triangles: towards its centre
     Vec3 centre{};
-    for (int i = 0; i < star.n; ++i) centre = centre + (star.y[i] - x);
+    for (int i = 0; i < star.n; ++i) centre = centre + (Vec3{star.y[0][i], star.y[1][i], star.y[2][i]} - x);
     centre = (1.0 / star.n) * centre;
     step = {dot(centre, s), dot(centre, t)};
+    now = star.energy(x, size);
   }
   const double length = norm(step);
   if (length < no_step * size) return false;
-  if (length > 0.5 * size) step = (0.5 * size / length) * step;
-  const double now = star.energy(x, size), agreed = star.agreement(x, facing_[v]);
+  step = std::min(beyond, 0.5 * size / length) * step;
   for (int halving = 0; halving < 3; ++halving, step = 0.5 * step) {
     const Place place = ground_->walk.closest(lifted_.place[v], x + step.x * s + step.y * t);
     const Vec3 p = ground_->walk.point(place);
     if (star.energy(p, size) >= now) continue;
     const Vec3 facing = facing_at(place);
-    if (folds(agreed, star.agreement(p, facing))) continue;
+    if (!star.unfolded(facing) && folds(star.agreement(x, facing_[v]), star.agreement(p, facing))) continue;
     put(v, place, p, facing);
     return true;
   }

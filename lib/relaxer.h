@@ -35,13 +35,25 @@ inline double agreement(Vec3 p, Vec3 q, Vec3 r, Vec3 facing) {
 constexpr double least_agreement = 0.5;
 inline bool folds(double before, double after) { return after < std::min(before, least_agreement) - 1e-12; }
 
-/// What the energy of a vertex depends on, gathered: its triangles (p, y[i], z[i]).
+/// What the energy of a vertex depends on, gathered: its triangles (p, y[i], z[i]). By coordinates, so that
+/// the compiler takes several triangles at a time.
 struct Star {
   static constexpr int most = 32;
   int n = 0;
-  Vec3 y[most], z[most], facing[most];  ///< facing: the sum of the normals at the two other corners
-  double energy(Vec3 p, double size) const;
-  double agreement(Vec3 p, Vec3 normal) const;
+  double y[3][most], z[3][most];
+  double facing[3][most];  ///< the sum of the normals at the two other corners
+  double normal[3][most];  ///< area vectors of the triangles with the last p that was looked at
+  void look(Vec3 p);
+  double energy(Vec3 p, double size);
+  /// Do all triangles with the last p agree at least `least_agreement`, when its normal is `facing_p`?
+  bool unfolded(Vec3 facing_p) const;
+  double agreement(Vec3 p, Vec3 facing_p) const;
+};
+
+/// A place of the reference that the mesh is to be near to, and a triangle of the mesh that was near to it.
+struct Tip {
+  Place place;
+  int near = -1;
 };
 
 /// The reference surface, ready to be walked on.
@@ -50,7 +62,7 @@ struct Ground {
   /// Smooth unit normal at a place.
   Vec3 normal(const Place& p) const;
   double size(const Place& p) const;
-  std::vector<Place> likely_tips(double h) const;
+  std::vector<Tip> likely_tips(double h) const;
 
   const Surface& surface;
   const std::vector<double>* sizes;  ///< null if the surface has none
@@ -140,9 +152,12 @@ class Relaxer {
   void remove_dislocations(int depth);
 
   // relax_mend.cc
-  bool reach_tips(std::vector<Place>& tips);
-  bool reach(const Place& tip, int t, double far_enough);
-  bool go_to(const Place& tip, int t, double least);
+  bool reach_tips(std::vector<Tip>& tips);
+  double walk_near(Vec3 p, int& t, double enough) const;
+  double nearest_triangle(Vec3 p, int& t, Vec3& q) const;
+  std::optional<Relaxer> reached(const Place& tip, Vec3 q, double least, double far_enough,
+                                 const std::vector<int>& round) const;
+  std::optional<Relaxer> gone_to(const Place& tip, double least, const std::vector<int>& round) const;
   double quality(int t) const;
   int irregularity(int v) const;
   double badness() const;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <charconv>
 
 #include "formats/groups.h"
@@ -111,16 +112,20 @@ int main(int argc, char** argv) {
         io.report["patches_before"] = merge.patch.size();
         io.report["patches"] = merge.count();
         ModelSegments lines = edge_file == "none" ? ModelSegments() : read_model_edges(stream);
-        if (!edge_file.empty() && edge_file != "none") {
-          const ModelSegments more = segments_of(io.read(edge_file));
-          if (more.tris.empty()) io.say(edge_file + ": 0 lines");
-          append(lines, more);
-        }
+        const std::size_t n_own = lines.tris.size();
+        if (!edge_file.empty() && edge_file != "none") append(lines, segments_of(io.read(edge_file)));
         drop_downstream(stream, Stage::features);
         write_model_edges(stream, lines);
         std::vector<char> given(3 * surface.tris.size());
         const std::vector<int> under = segments_under(surface, lines);
-        for (std::size_t h = 0; h < given.size(); ++h) given[h] = under[h] >= 0;
+        std::vector<char> used(lines.tris.size());
+        for (std::size_t h = 0; h < given.size(); ++h)
+          if (under[h] >= 0) given[h] = used[under[h]] = 1;
+        if (const std::size_t n = lines.tris.size() - n_own; !edge_file.empty() && edge_file != "none")
+          io.say(edge_file + ": " + std::to_string(n) + " lines" +
+                 (n ? ", " + std::to_string(std::count(used.begin() + n_own, used.end(), 1)) +
+                          " of them under edges of the surface"
+                    : ""));
         const FeatureReport r = mark_features(surface, options, before.empty() ? nullptr : &before, &given);
         io.say(std::to_string(r.model_edges) + " model edges: " + std::to_string(r.patch_edges) +
                " between patches, " +

@@ -227,9 +227,24 @@ TEST(Obj, GroupsObjectsOrMaterialsAreThePatches) {
   EXPECT_EQ(s.surface.face.get<int>("patch"), std::vector<int>{0});
 }
 
+//  3---2
+//  | / |   the line 4-1-3 follows two edges and then the diagonal; 2-4 is no edge
+//  0---1
+TEST(Obj, LinesAreModelEdges) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+  Stream s = read_any(square + "l 4 1/1 -2\nl 2 4\n", "in");
+  EXPECT_EQ(s.surface.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{4, 1 | 4}));
+  ASSERT_EQ(s.remarks.size(), 1u);
+  EXPECT_EQ(s.remarks[0], "left out: 1 line elements that are no edge of a triangle");
+  EXPECT_FALSE(read_any(square, "in").surface.face.has("model"));
+  EXPECT_EQ(failure(square + "l 1\n"), "in:7: a line of 1 point, at least 2 are due");
+  EXPECT_EQ(failure(square + "l 1 9\n"), "in:7: a face or line uses vertex 9, but there are 4");
+  EXPECT_EQ(failure("v 0 0 0\nv 1 0 0\nl 1 2\n"), "in:3: the file ends without a face");
+}
+
 TEST(Obj, BadCornersNameTheLine) {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(failure(v + "f 1 2 4\n"), "in:4: a face uses vertex 4, but there are 3");
+  EXPECT_EQ(failure(v + "f 1 2 4\n"), "in:4: a face or line uses vertex 4, but there are 3");
   EXPECT_EQ(failure(v + "f 1 2 -4\n"), "in:4: a face uses vertex -4, but there are 3 before it");
   EXPECT_EQ(failure(v + "f 0 1 2\n"), "in:4: vertex 0, but vertices are counted from 1");
   EXPECT_EQ(failure(v + "f 1 2\n"), "in:4: a face of 2 corners, at least 3 are due");
