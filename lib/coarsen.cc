@@ -45,11 +45,12 @@ bool turns_away(const EditMesh& m, const std::vector<Vec3>& points, const std::v
 
 }  // namespace
 
-Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wanted, double most_turn) {
+Coarse coarsen(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<std::uint8_t>& model,
+               int wanted, double most_turn) {
   constexpr int tries = 3;
   constexpr double least_progress = 0.2;  // of a round
   const int n = (int)mesh.points.size();
-  EditMesh m(mesh.tris, n, model);
+  EditMesh m(mesh.tris, opposite, n, model);
   std::vector<int> into(n), round_of(n, -1), left;
   std::iota(into.begin(), into.end(), 0);
   for (int v = 0; v < n; ++v)

@@ -22,8 +22,9 @@ struct Coarse : Mesh {
 /// `wanted` triangles are left or little more can be done: density follows that of the mesh, but no triangle
 /// turns from the mesh's normals at its corners by more than `most_turn` (radians), or the more than it did:
 /// with 25 degrees, tubes keep about seven edges around them. Borders and model edges keep their lines.
-/// `model`: a byte a triangle (bit i: half-edge 3 t + i), or empty. Precondition: an oriented manifold
-/// without pinched vertices.
-Coarse coarsen(const Mesh& mesh, const std::vector<std::uint8_t>& model, int wanted, double most_turn);
+/// `opposite` is the mesh's; `model`: a byte a triangle (bit i: half-edge 3 t + i), or empty. Precondition:
+/// an oriented manifold without pinched vertices.
+Coarse coarsen(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<std::uint8_t>& model,
+               int wanted, double most_turn);
 
 }  // namespace meshpipe

@@ -258,9 +258,49 @@ class Splitter {
   std::vector<int> source_;
 };
 
+/// The half-edges whose neighbours a cut changes, but for those of pieces to come: those of triangles that
+/// are split, and their neighbours.
+std::vector<int> half_edges_of_split(const std::vector<int>& cut, const std::vector<int>& opposite) {
+  auto is_split = [&](int t) { return cut[3 * t] >= 0 || cut[3 * t + 1] >= 0 || cut[3 * t + 2] >= 0; };
+  std::vector<int> list;
+  for (int t = 0; t < (int)cut.size() / 3; ++t) {
+    if (!is_split(t)) continue;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      list.push_back(h);
+      if (const int o = opposite[h]; o >= 0 && !is_split(o / 3)) list.push_back(o);
+    }
+  }
+  return list;
+}
+
+/// Makes neighbours of the listed half-edges, which have no others, and of those of the pieces from `first`
+/// on.
+void join_neighbours(const std::vector<Tri>& tris, int first, const std::vector<int>& list,
+                     std::vector<int>& opposite) {
+  struct Use {
+    int low, high, half_edge;
+    auto edge() const { return std::tie(low, high); }
+  };
+  std::vector<Use> uses;
+  auto add = [&](int h) {
+    const int a = origin(tris, h), b = target(tris, h);
+    uses.push_back({std::min(a, b), std::max(a, b), h});
+  };
+  for (int h : list) add(h);
+  for (int h = 3 * first; h < 3 * (int)tris.size(); ++h) add(h);
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.edge() < b.edge(); });
+  opposite.resize(3 * tris.size());
+  for (const Use& u : uses) opposite[u.half_edge] = -1;
+  for (std::size_t i = 1; i < uses.size(); ++i)
+    if (uses[i - 1].edge() == uses[i].edge()) {
+      opposite[uses[i - 1].half_edge] = uses[i].half_edge;
+      opposite[uses[i].half_edge] = uses[i - 1].half_edge;
+    }
+}
+
 template <class CrossingAt>
 int cut(Surface& surface, const std::vector<signed char>& sign, const std::vector<char>& active,
-        std::vector<int>& side, CrossingAt crossing_at) {
+        std::vector<int>& side, std::vector<int>* opposite, CrossingAt crossing_at) {
   const int n_tris = (int)surface.tris.size(), n_points = (int)surface.points.size();
   if (!surface.face.has("origin")) {
     std::vector<int> identity(n_tris);
@@ -269,6 +309,8 @@ int cut(Surface& surface, const std::vector<signed char>& sign, const std::vecto
   }
   const std::vector<int> cut = insert_vertices(surface, active, sign, crossing_at);
 
+  std::vector<int> changed;
+  if (opposite) changed = half_edges_of_split(cut, *opposite);
   side.assign(n_tris, -1);
   Splitter splitter(surface, cut);
   for (int t = 0; t < n_tris; ++t) {
@@ -282,6 +324,7 @@ int cut(Surface& surface, const std::vector<signed char>& sign, const std::vecto
     splitter.split(t, side, [&](int corner) { return is_active ? sign[corner] > 0 : -1; });
   }
   splitter.copy_columns();
+  if (opposite) join_neighbours(surface.tris, n_tris, changed, *opposite);
   return (int)surface.points.size() - n_points;
 }
 
@@ -294,14 +337,14 @@ int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, cons
     if (!std::isfinite(f)) throw std::logic_error("cut: field is not finite");
   snap = std::clamp(snap, 0.0, 0.5);
   const Signs signs(surface, field, active, snap);
-  return cut(surface, signs.sign, active, side,
+  return cut(surface, signs.sign, active, side, nullptr,
              [&](int a, int b) { return std::clamp(crossing(field[a], field[b]), snap, 1 - snap); });
 }
 
 int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
-                   std::vector<int>& side) {
+                   std::vector<int>& side, std::vector<int>* opposite) {
   check_lengths(surface, line.sign.size(), active);
-  return cut(surface, line.sign, active, side, [&](int a, int b) {
+  return cut(surface, line.sign, active, side, opposite, [&](int a, int b) {
     const auto place = std::lower_bound(
         line.crossing.begin(), line.crossing.end(), std::pair(a, b),
         [](const EdgeCrossing& c, std::pair<int, int> edge) { return std::pair(c.low, c.high) < edge; });

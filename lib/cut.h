@@ -22,8 +22,9 @@ namespace meshpipe {
 int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
                         std::vector<int>& side, double snap = 0.1);
 
-/// The same along a line as it is: what field < 0 and field >= 0 are there, the signs are here.
+/// The same along a line as it is: what field < 0 and field >= 0 are there, the signs are here. `opposite`,
+/// if given, is the surface's (lib/topology.h), before and after.
 int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
-                   std::vector<int>& side);
+                   std::vector<int>& side, std::vector<int>* opposite = nullptr);
 
 }  // namespace meshpipe

@@ -9,8 +9,12 @@ constexpr int max_collapse_valence = 64;
 }
 
 EditMesh::EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector<std::uint8_t>& model)
+    : EditMesh(triangles, opposite_halfedges(triangles, n_vertices), n_vertices, model) {}
+
+EditMesh::EditMesh(std::vector<Tri> triangles, std::vector<int> opposite, int n_vertices,
+                   const std::vector<std::uint8_t>& model)
     : tris(std::move(triangles)),
-      opp(opposite_halfedges(tris, n_vertices)),
+      opp(std::move(opposite)),
       hard(opp.size()),
       out(n_vertices, -1),
       degree(n_vertices),
@@ -96,12 +100,23 @@ bool EditMesh::can_collapse(int h, int gone, bool merge) const {
   hard_edges += border;
   if (!merge && hard_edges != 0 && (hard_edges != 2 || !hard[h])) return false;
   if (border && g >= 0) return false;
-  bool ok = true;
-  // the only neighbours of both ends are the apexes
-  neighbours(gone, [&](int v) { ok = ok && (v == kept || v == c || v == d || !joined(kept, v)); });
   auto enough = [&](int v) { return v < 0 || valence(v) > (on_border(v) ? 2 : 3); };
-  return ok && valence(gone) <= max_collapse_valence && enough(gone) && enough(kept) && enough(c) &&
-         enough(d);
+  if (valence(gone) > max_collapse_valence || !enough(gone) || !enough(kept) || !enough(c) || !enough(d))
+    return false;
+  // the only neighbours of both ends are the apexes
+  bool ok = true;
+  if (valence(kept) > max_collapse_valence) {
+    neighbours(gone, [&](int v) { ok = ok && (v == kept || v == c || v == d || !joined(kept, v)); });
+    return ok;
+  }
+  int near[max_collapse_valence], n = 0;
+  neighbours(kept, [&](int v) {
+    if (v != gone && v != c && v != d) near[n++] = v;
+  });
+  neighbours(gone, [&](int v) {
+    for (int i = 0; i < n; ++i) ok = ok && near[i] != v;
+  });
+  return ok;
 }
 
 void EditMesh::collapse(int h, int gone) {

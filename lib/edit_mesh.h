@@ -20,6 +20,9 @@ struct EditMesh {
 
   /// Throws like opposite_halfedges.
   EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector<std::uint8_t>& model);
+  /// The same where the neighbours are known.
+  EditMesh(std::vector<Tri> triangles, std::vector<int> opposite, int n_vertices,
+           const std::vector<std::uint8_t>& model);
 
   int from(int h) const { return tris[h / 3][h % 3]; }
   int to(int h) const { return tris[h / 3][(h + 1) % 3]; }

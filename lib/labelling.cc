@@ -448,12 +448,13 @@ Component make_component(Mesh mesh, std::vector<std::uint8_t> model, std::vector
 }
 
 Labelling best_labelling(Component& c, const PartitionOptions& options) {
-  constexpr int enough = 12000, most = 30000, at_most = 8;  // triangles; of them for one
+  constexpr int enough = 8000, a_handle = 600, most = 30000, at_most = 8;  // triangles; of them for one
   constexpr double worth = 2;
   constexpr double most_turn = 60 * 3.14159265358979 / 180;
-  const int n = (int)c.mesh.tris.size();
+  const int n = (int)c.mesh.tris.size(), least = std::min(enough + a_handle * c.whole.genus(), most);
   Coarse coarse;
-  if (n > 3 * enough) coarse = coarsen(c.mesh, c.model, std::clamp(n / at_most, enough, most), most_turn);
+  if (n > 2 * least)
+    coarse = coarsen(c.mesh, c.opposite, c.model, std::clamp(n / at_most, least, most), most_turn);
   Labelling l;
   if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
     Component small = make_component(coarse, coarse.model,

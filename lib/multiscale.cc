@@ -17,7 +17,6 @@
 #include "lib/error.h"
 #include "lib/levels.h"
 #include "lib/maxcut.h"
-#include "lib/parallel.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/sliver.h"
@@ -218,9 +217,9 @@ CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options, double s
 }
 
 /// A part of a mesh with all that its cut is found with.
-Part make_part(Mesh mesh, const std::vector<std::uint8_t>& model) {
+Part make_part(Mesh mesh, std::vector<int> opposite, const std::vector<std::uint8_t>& model) {
   Part part;
-  part.opposite = opposite_halfedges(mesh.tris, mesh.points.size());
+  part.opposite = std::move(opposite);
   for (std::size_t h = 0; h < 3 * model.size(); h++) {
     if (part.opposite[h] < 0 || !(model[h / 3] >> h % 3 & 1)) continue;
     part.crease.resize(part.opposite.size(), 0);
@@ -239,13 +238,14 @@ CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
   const double n = part.mesh.tris.size();
   Coarse coarse;
-  if (n > worth * enough) coarse = coarsen(part.mesh, model, std::max<int>(enough, n / at_most), most_turn);
+  if (n > worth * enough) coarse = coarsen(part.mesh, part.opposite, model, std::max<int>(enough, n / at_most), most_turn);
   if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, options, share);
     field = cut.field;
     return cut;
   }
-  CutMaps cut = best_cut_of(make_part(coarse, coarse.model), options, share);
+  std::vector<int> opposite = opposite_halfedges(coarse.tris, coarse.points.size());
+  CutMaps cut = best_cut_of(make_part(coarse, std::move(opposite), coarse.model), options, share);
   field.clear();
   for (int v : coarse.of) field.push_back(cut.field[v]);
   return cut;
@@ -264,37 +264,32 @@ CutMaps single_cut(const Part& part, MultiscaleCut& says, std::vector<double>& f
   return cut;
 }
 
-/// The two sides of a cut as meshes, if they are parts as the stream wants them; their loops, or 0.
-int loops_of_halves(const Surface& surface, const std::vector<int>& side, Topology (&halves)[2]) {
-  std::vector<SubMesh> meshes = split_by_label(surface, side, 2);
-  int loops = 0;
-  try {
-    for (int s : {0, 1}) {
-      if (meshes[s].tris.empty()) return 0;
-      halves[s] = topology_of(meshes[s]);
-      if (halves[s].components != 1 || halves[s].genus != 0 || halves[s].loops < 1) return 0;
-      loops += halves[s].loops;
-    }
-  } catch (const NotAdmissible&) {  // a pinched vertex, where the line was snapped to one twice
-    return 0;
-  }
-  return loops;
-}
-
 /// A surface with one part cut in two.
 struct Halves {
   Surface surface;
-  std::vector<int> side;
-  Topology is[2];
+  std::vector<int> opposite, side;
+  std::vector<Topology> is;
   int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
 };
+
+/// Measures the two sides of a cut.
+void measure_halves(Halves& halves) {
+  try {
+    halves.is = topology_of_parts(halves.surface, halves.opposite, halves.side, 2);
+  } catch (const NotAdmissible&) {  // a pinched vertex, where the line was snapped to one twice
+    return;
+  }
+  for (const Topology& t : halves.is)
+    if (t.components != 1 || t.genus != 0 || t.loops < 1) return;
+  halves.loops = halves.is[0].loops + halves.is[1].loops;
+}
 
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight but for
 /// where it follows creases. A line that is snapped to vertices may touch itself there: then it is snapped
 /// less, until the halves have no more loops than expected; on a few coarse triangles it may be pulled off
 /// the part, so that at last it is left as it is.
-Halves split(const Surface& surface, const Part& part, const std::vector<double>& field,
-             const std::vector<char>& active, int expected_loops) {
+Halves split(const Surface& surface, const std::vector<int>& opposite, const Part& part,
+             const std::vector<double>& field, const std::vector<char>& active, int expected_loops) {
   struct Pull {
     double snap;
     int sweeps;
@@ -318,8 +313,10 @@ Halves split(const Surface& surface, const Part& part, const std::vector<double>
     pull_straight(part.mesh, part.opposite, line, hold, snap, sweeps);
     Halves trial;
     trial.surface = surface;
-    cut_along_line(trial.surface, in_whole(line, part.vertex, surface.points.size()), active, trial.side);
-    trial.loops = loops_of_halves(trial.surface, trial.side, trial.is);
+    trial.opposite = opposite;
+    cut_along_line(trial.surface, in_whole(line, part.vertex, surface.points.size()), active, trial.side,
+                   &trial.opposite);
+    measure_halves(trial);
     if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
     best = std::move(trial);
     if (best.loops <= expected_loops) break;
@@ -329,11 +326,10 @@ Halves split(const Surface& surface, const Part& part, const std::vector<double>
 
 /// Joins neighbours one of which was cut here, those with the longest shared border first, while the union is
 /// admissible: a ring's two long arcs, each cut lengthwise, make two flat rings. Returns the number of parts.
-int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, double max_aspect,
-               std::vector<MultiscaleCut>* cuts) {
+int join_parts(Surface& surface, std::vector<int>& opposite, int n_parts, const std::vector<char>& was_cut,
+               double max_aspect, std::vector<MultiscaleCut>* cuts) {
   std::vector<int>& label = surface.face.get<int>("part");
   if (*std::min_element(label.begin(), label.end()) < 0) return n_parts;  // only some of the parts are given
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
   Joiner joiner(surface, opposite, label, find_regions(surface, opposite, label, n_parts));
   struct Pair {
     int a, b;
@@ -371,7 +367,7 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
       if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect) continue;
       std::vector<int> both(label.size());
       for (std::size_t t = 0; t < both.size(); t++) both[t] = label[t] == p.a || label[t] == p.b ? 0 : -1;
-      if (!admissible(topology_of(split_by_label(surface, both, 1)[0]), max_aspect)) continue;
+      if (!admissible(topology_of_parts(surface, opposite, both, 1)[0], max_aspect)) continue;
       joiner.join(p.a, p.b);
       for (int& b : becomes)
         if (b == p.b) b = p.a;
@@ -397,51 +393,42 @@ int join_parts(Surface& surface, int n_parts, const std::vector<char>& was_cut, 
   std::vector<char> is_union(n, 0);
   for (int p = 0; p < n_parts; p++)
     if (becomes[p] != p) is_union[number[becomes[p]]] = 1;
-  straighten_interfaces(straight, n, snap, 0, is_union);
-  const std::vector<Topology> is = topology_of_parts(straight, straight.face.get<int>("part"), n);
+  std::vector<int> after = opposite;
+  straighten_interfaces(straight, after, n, snap, 0, is_union);
+  const std::vector<Topology> is = topology_of_parts(straight, after, straight.face.get<int>("part"), n);
   if (std::all_of(is.begin(), is.end(), [&](const Topology& t) { return admissible(t, max_aspect); }))
-    surface = std::move(straight);
+    surface = std::move(straight), opposite = std::move(after);
   return n;
 }
 
 /// The parts' topology, found again for those whose triangles are not as many as they were: a cut splits
 /// those of its neighbours.
-std::vector<Topology> refreshed(const Surface& surface, std::vector<Topology> is) {
+std::vector<Topology> refreshed(const Surface& surface, const std::vector<int>& opposite,
+                                std::vector<Topology> is) {
   std::vector<int> label = surface.face.get<int>("part"), faces(is.size(), 0);
   for (int l : label)
     if (l >= 0) ++faces[l];
   for (int& l : label)
     if (l >= 0 && faces[l] == is[l].faces) l = -1;
-  const std::vector<SubMesh> changed = split_by_label(surface, label, (int)is.size());
-  parallel_for((int)is.size(), [&](int p) {
-    if (!changed[p].tris.empty()) is[p] = topology_of(changed[p]);
-  });
+  if (*std::max_element(label.begin(), label.end()) < 0) return is;
+  std::vector<Topology> changed = topology_of_parts(surface, opposite, label, (int)is.size());
+  for (std::size_t p = 0; p < is.size(); p++)
+    if (changed[p].faces > 0) is[p] = std::move(changed[p]);
   return is;
 }
 
 /// Slivers beside the cuts change hands, unless that makes a part too long. `is` has the parts' topology, as
 /// far as it is known.
-void drop_slivers(Surface& surface, double max_aspect, std::vector<Topology>& is) {
+void drop_slivers(Surface& surface, const std::vector<int>& opposite, double max_aspect,
+                  std::vector<Topology>& is) {
   const std::vector<int> before = surface.face.get<int>("part");
-  if (!hand_over_slivers(surface, (int)is.size())) return;
+  if (!hand_over_slivers(surface, opposite, (int)is.size())) return;
   std::vector<int>& part = surface.face.get<int>("part");
-  std::vector<char> changed(is.size(), 0);
-  for (std::size_t t = 0; t < part.size(); t++)
-    if (part[t] != before[t]) changed[part[t]] = changed[before[t]] = 1;
-  std::vector<int> label = part;
-  for (int& l : label)
-    if (l >= 0 && !changed[l]) l = -1;
-  const std::vector<SubMesh> meshes = split_by_label(surface, label, (int)is.size());
-  std::vector<Topology> now = is;
-  for (std::size_t p = 0; p < is.size(); p++) {
-    if (!changed[p]) continue;
-    now[p] = topology_of(meshes[p]);
-    if (now[p].eta_geo > max_aspect) {
-      part = before;
-      return;
-    }
-  }
-  is = std::move(now);
+  std::vector<Topology> now = topology_of_parts(surface, opposite, part, (int)is.size());
+  if (std::all_of(now.begin(), now.end(), [&](const Topology& t) { return t.eta_geo <= max_aspect; }))
+    is = std::move(now);
+  else
+    part = before;
 }
 
 std::string name(int part) { return "part " + std::to_string(part); }
@@ -449,7 +436,7 @@ std::string name(int part) { return "part " + std::to_string(part); }
 }  // namespace
 
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts,
-                   std::vector<Topology>* topology) {
+                   std::vector<Topology>* topology, std::vector<int>* neighbours) {
   const std::vector<int>& given = surface.face.get<int>("part");
   int n_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
   const int given_parts = n_parts;
@@ -459,7 +446,8 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     double share;  // of the work, as foreseen
   };
   std::vector<Task> tasks;
-  std::vector<Topology> is = topology_of_parts(surface, given, n_parts);
+  std::vector<int> opposite = opposite_halfedges(surface.tris, surface.points.size());
+  std::vector<Topology> is = topology_of_parts(surface, opposite, given, n_parts);
   for (int p = n_parts - 1; p >= 0; p--) {
     if (is[p].components != 1 || is[p].genus != 0 || is[p].loops < 1)
       throw NotAdmissible(name(p) + " has " + std::to_string(is[p].components) + " components, genus " +
@@ -487,9 +475,11 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       active[t] = label[t] == task.part;
       mine[t] = active[t] ? 0 : -1;
     }
-    SubMesh sub = std::move(split_by_label(surface, mine, 1)[0]);
+    std::vector<SubMesh> only = split_by_label(surface, mine, 1);
+    SubMesh& sub = only[0];
     const std::vector<std::uint8_t> model = model_of(surface, sub);
-    Part part = make_part(std::move(sub), model);
+    std::vector<int> within = std::move(opposite_of_parts(only, opposite, mine)[0]);
+    Part part = make_part(std::move(sub), std::move(within), model);
     part.vertex = std::move(sub.vertex);
     MultiscaleCut cut;
     cut.part = task.part;
@@ -515,7 +505,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       throw GoalMissed(message);
     };
     Halves made;
-    if (!expected.valid || !(made = split(surface, part, field, active, expected.loops)).loops) {
+    if (!expected.valid || !(made = split(surface, opposite, part, field, active, expected.loops)).loops) {
       if (options.method == CutMethod::maxcut) fail("cannot be cut into 2 connected halves");
       if (cuts) cuts->pop_back();
       continue;
@@ -528,6 +518,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     if (too_small + turned_over > blind * part.mesh.tris.size())
       fail("is cut by a line that does not see all of it");
     surface = std::move(made.surface);
+    opposite = std::move(made.opposite);
     std::vector<int>& labels = surface.face.get<int>("part");
     for (std::size_t t = 0; t < labels.size(); t++)
       if (made.side[t] == 1) labels[t] = n_parts;
@@ -548,12 +539,13 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   }
   if (n_parts > std::max(given_parts, 2)) {
     const int cut_parts = n_parts;
-    n_parts = join_parts(surface, n_parts, was_cut, options.max_aspect, cuts);
+    n_parts = join_parts(surface, opposite, n_parts, was_cut, options.max_aspect, cuts);
     if (n_parts != cut_parts) is.assign(n_parts, {});
   }
   if (n_parts > 1 && std::find(was_cut.begin(), was_cut.end(), 1) != was_cut.end())
-    drop_slivers(surface, options.max_aspect, is);
-  if (topology) *topology = refreshed(surface, std::move(is));
+    drop_slivers(surface, opposite, options.max_aspect, is);
+  if (topology) *topology = refreshed(surface, opposite, std::move(is));
+  if (neighbours) *neighbours = std::move(opposite);
   return n_parts;
 }
 

@@ -53,8 +53,10 @@ struct MultiscaleCut {
 /// twelve cuts do not make short enough, stays. Throws GoalMissed if more than most_parts are needed; with
 /// maxcut also if one cut does not make two admissible halves, or its map loses more than a hundredth of the
 /// triangles. Returns the number of parts; `cuts`, if given, receives what was done, in order, the cut that
-/// failed last. `topology`, if given, receives that of the parts.
+/// failed last. `topology`, if given, receives that of the parts, `opposite`
+/// the result's neighbours.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
-                   std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr);
+                   std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
+                   std::vector<int>* opposite = nullptr);
 
 }  // namespace meshpipe

@@ -25,8 +25,8 @@ int bound_of(int faces, const PartitionOptions& options) {
 
 }  // namespace
 
-int partition_to_disks(Surface& surface, const PartitionOptions& options) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+int partition_to_disks(Surface& surface, const PartitionOptions& options, std::vector<int>* neighbours) {
+  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   if (int v = find_pinched_vertex(surface.tris, opposite, (int)surface.points.size()); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
   std::vector<int> component;
@@ -35,11 +35,12 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
   auto stays_whole = [&](int i) {
     return whole.region[i].maps_to_the_plane() && bound_of(whole.region[i].faces, options) == 0;
   };
-  std::vector<int> part(component), number(part.size());
+  std::vector<int> part(component);
   for (int& i : part) i = stays_whole(i) ? -1 : i;
   constexpr double before = 0.05, searching = 0.6;
   add_progress(before);
   std::vector<SubMesh> subs = split_by_label(surface, part, n_components);
+  std::vector<std::vector<int>> within = opposite_of_parts(subs, opposite, part);
   int n_parts = 0;
   std::vector<int> first(n_components);
   for (int i = 0; i < n_components; ++i) {
@@ -52,13 +53,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     std::vector<std::uint8_t> model;
     if (surface.face.has("model"))
       for (int t : face) model.push_back(surface.face.get<std::uint8_t>("model")[t]);
-    std::vector<int> within(3 * face.size());
-    for (std::size_t t = 0; t < face.size(); ++t) number[face[t]] = (int)t;
-    for (std::size_t h = 0; h < within.size(); ++h) {
-      const int o = opposite[3 * face[h / 3] + h % 3];
-      within[h] = o < 0 ? -1 : 3 * number[o / 3] + o % 3;
-    }
-    Component c = make_component(std::move(subs[i]), std::move(model), std::move(within), whole.region[i]);
+    Component c = make_component(std::move(subs[i]), std::move(model), std::move(within[i]), whole.region[i]);
     c.share = searching * (double)face.size() / (double)part.size();
     Labelling l;
     if (c.whole.maps_to_the_plane()) {
@@ -87,18 +82,23 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options) {
     std::iota(identity.begin(), identity.end(), 0);
     surface.face.set("origin", std::move(identity));
   }
-  if (n_parts == n_components) return n_parts;  // each maps to the plane as it is
-  straighten_interfaces(surface, n_parts, options.snap, options.max_faces);
-  hand_over_slivers(surface, n_parts, options.max_faces);
-  if (std::string fault = part_fault(surface); !fault.empty()) throw GoalMissed(fault);
+  if (n_parts > n_components) {  // else each maps to the plane as it is
+    straighten_interfaces(surface, opposite, n_parts, options.snap, options.max_faces);
+    hand_over_slivers(surface, opposite, n_parts, options.max_faces);
+    if (std::string fault = part_fault(surface, opposite); !fault.empty()) throw GoalMissed(fault);
+  }
+  if (neighbours) *neighbours = std::move(opposite);
   return n_parts;
 }
 
 Interfaces measure_interfaces(const Surface& surface) {
+  return measure_interfaces(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
+}
+
+Interfaces measure_interfaces(const Surface& surface, const std::vector<int>& opposite) {
   const std::vector<int>& part = surface.face.get<int>("part");
   const std::vector<Tri>& tris = surface.tris;
   const std::vector<Vec3>& points = surface.points;
-  const std::vector<int> opposite = opposite_halfedges(tris, (int)points.size());
   Interfaces r;
   const bool has_model = surface.face.has("model");
   auto is_interface = [&](int h) { return opposite[h] >= 0 && part[h / 3] != part[opposite[h] / 3]; };
@@ -144,6 +144,10 @@ Interfaces measure_interfaces(const Surface& surface) {
 }
 
 std::string part_fault(const Surface& surface) {
+  return part_fault(surface, opposite_halfedges(surface.tris, (int)surface.points.size()));
+}
+
+std::string part_fault(const Surface& surface, const std::vector<int>& opposite) {
   const std::vector<int>& part = surface.face.get<int>("part");
   if (part.empty()) return {};
   const auto [least, most] = std::minmax_element(part.begin(), part.end());
@@ -151,7 +155,6 @@ std::string part_fault(const Surface& surface) {
   const int n = *most + 1;
   if (n > (int)part.size())
     return "part " + std::to_string(*most) + ", but there are " + std::to_string(part.size()) + " triangles";
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   const Regions regions = find_regions(surface, opposite, part, n);
   std::vector<int> piece;
   const int n_pieces = components(opposite_within(surface.tris, opposite, part), piece);

@@ -23,11 +23,13 @@ struct PartitionOptions {
 /// triangles and vertices may be added (see lib/cut.h); the surface as a set of points stays. Components are
 /// treated one by one. Model edges (face column `model`) attract cuts. Precondition: an oriented manifold
 /// without pinched vertices (NotAdmissible otherwise). Throws GoalMissed if a part cannot be made admissible.
-/// Returns the number of parts.
-int partition_to_disks(Surface& surface, const PartitionOptions& options = {});
+/// Returns the number of parts; `opposite`, if given, receives the result's (lib/topology.h).
+int partition_to_disks(Surface& surface, const PartitionOptions& options = {},
+                       std::vector<int>* opposite = nullptr);
 
 /// Checks the rule of formats/mply.md on parts; returns an empty string, or what is wrong and where.
 std::string part_fault(const Surface& surface);
+std::string part_fault(const Surface& surface, const std::vector<int>& opposite);
 
 /// How long and how straight the interfaces between the parts are.
 struct Interfaces {
@@ -39,6 +41,7 @@ struct Interfaces {
   double turning_angle = 0, largest_angle = 0;
   int junctions = 0;  ///< vertices with three or more interface edges
 };
+Interfaces measure_interfaces(const Surface& surface, const std::vector<int>& opposite);
 Interfaces measure_interfaces(const Surface& surface);
 
 }  // namespace meshpipe

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "lib/regions.h"
-#include "lib/topology.h"
 
 namespace meshpipe {
 namespace {
@@ -72,11 +71,11 @@ struct Move {
 
 class Slivers {
  public:
-  Slivers(Surface& s, int n_parts, int max_faces)
+  Slivers(Surface& s, const std::vector<int>& opposite, int n_parts, int max_faces)
       : s_(s),
         n_parts_(n_parts),
         max_faces_(max_faces),
-        opposite_(opposite_halfedges(s.tris, (int)s.points.size())),
+        opposite_(opposite),
         model_(s.face.get<std::uint8_t>("model")),
         height_(heights_of_origins(s)),
         part_(s.face.get<int>("part")) {}
@@ -192,7 +191,7 @@ class Slivers {
 
   Surface& s_;
   const int n_parts_, max_faces_;
-  const std::vector<int> opposite_;
+  const std::vector<int>& opposite_;
   const std::vector<std::uint8_t>& model_;
   const std::vector<double> height_;  // of the input's triangles
   std::vector<int>& part_;
@@ -202,12 +201,12 @@ class Slivers {
 
 }  // namespace
 
-bool hand_over_slivers(Surface& surface, int n_parts, int max_faces) {
+bool hand_over_slivers(Surface& surface, const std::vector<int>& opposite, int n_parts, int max_faces) {
   if (!surface.face.has("model") || n_parts < 2) return false;
   const std::vector<std::uint8_t>& model = surface.face.get<std::uint8_t>("model");
   if (std::all_of(model.begin(), model.end(), [](std::uint8_t m) { return m == 0; })) return false;
   constexpr int most_rounds = 4;  // a sliver may lie behind another
-  Slivers slivers(surface, n_parts, max_faces);
+  Slivers slivers(surface, opposite, n_parts, max_faces);
   bool any = false;
   for (int round = 0; round < most_rounds && slivers.hand_over(); ++round) any = true;
   return any;

@@ -13,6 +13,6 @@ namespace meshpipe {
 /// surface has face columns `origin` and, if it has model edges, `model`. Parts that map to the plane stay
 /// so, and below max_faces triangles (0: any number); what would break that stays. Returns true if a triangle
 /// has changed hands. Linear; at once where there are no model edges.
-bool hand_over_slivers(Surface& surface, int n_parts, int max_faces = 0);
+bool hand_over_slivers(Surface& surface, const std::vector<int>& opposite, int n_parts, int max_faces = 0);
 
 }  // namespace meshpipe

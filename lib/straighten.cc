@@ -7,7 +7,7 @@
 #include "lib/cut.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
-#include "lib/sparse.h"
+#include "lib/threshold.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -43,9 +43,8 @@ constexpr Attempt last_attempt = {0, 0, 100, true};
 struct Bands {
   SubMesh mesh;                   // of all bands
   std::vector<int> curve;         // of each triangle of the surface: its band, or -1
-  std::vector<double> held;       // of each vertex of the bands: the value it is held at, or free
+  std::vector<double> held;       // of each vertex of the bands: the value it is held at, or not_held
   std::vector<signed char> apex;  // the side (+1 a, -1 b) of a triangle on an interface edge that stays, or 0
-  static constexpr double free = 2;
 };
 
 bool is_model(const Surface& s, int h) {
@@ -99,6 +98,29 @@ std::vector<Curve> find_curves(const Surface& s, const std::vector<int>& opposit
       curves.push_back(std::move(c));
     }
   return curves;
+}
+
+/// The largest angle by which a curve turns on the surface between edges that `skipped` does not
+/// name.
+template <class Skipped>
+double sharpest_turn(const Surface& s, const std::vector<int>& opposite, const Curve& c, Skipped skipped) {
+  double sharpest = 0;
+  const std::size_t n = c.half_edges.size();
+  const bool closed = target(s.tris, c.half_edges.back()) == origin(s.tris, c.half_edges.front());
+  for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
+    const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
+    if (skipped(to) || skipped(from)) continue;
+    const Vec3 p = s.points[origin(s.tris, from)];
+    auto corner = [&](int h) {
+      return angle(s.points[target(s.tris, h)] - p, s.points[origin(s.tris, prev(h))] - p);
+    };
+    double left = 0, right = 0;
+    int h = from;
+    for (; h >= 0 && h != opposite[to]; h = opposite[prev(h)]) left += corner(h);
+    for (; h >= 0 && h != from; h = opposite[prev(h)]) right += corner(h);
+    if (h >= 0) sharpest = std::max(sharpest, pi * std::abs(left - right) / (left + right));
+  }
+  return sharpest;
 }
 
 /// Vertices go to the curve that reaches them first through its own two parts; a triangle is in the band of
@@ -168,61 +190,12 @@ Bands make_bands(const Surface& s, const std::vector<int>& opposite, const std::
     const int m = marks[v];
     const bool both = (m & side_a) && (m & side_b);
     bands.held.push_back(m & on_level || (m & rim && both) ? 0.0
-                         : !(m & rim)                      ? Bands::free
+                         : !(m & rim)                      ? not_held
                          : m & side_a                      ? 1.0
                                                            : -1.0);
     bands.apex.push_back(apex[v]);
   }
   return bands;
-}
-
-/// Mean of the sign of a linear field over a triangle.
-double mean_sign(double x, double y, double z) {
-  // one corner alone: its share of the area is the product of the crossings' fractions
-  if ((x >= 0) == (y >= 0)) std::swap(x, z);
-  if ((x >= 0) == (y >= 0)) return x >= 0 ? 1 : -1;
-  if ((x >= 0) == (z >= 0)) std::swap(x, y);
-  const double alone = x / (x - y) * (x / (x - z));
-  return (x >= 0 ? 1 : -1) * (2 * alone - 1);
-}
-
-/// Threshold dynamics: so many implicit heat steps (M + t K) s = M sign(s), M lumped, K with clamped
-/// cotangents, starting from `sign` on the bands' triangles (+1 in a, -1 in b). `time` is t of each triangle.
-std::vector<double> diffuse(const Bands& bands, std::vector<double> sign, const std::vector<double>& time,
-                            int steps) {
-  constexpr double stiff = 1e6;
-  const std::vector<Tri>& tris = bands.mesh.tris;
-  const std::vector<Vec3>& p = bands.mesh.points;
-  const int n = (int)p.size();
-  std::vector<Entry<double>> entries;
-  std::vector<double> area(tris.size()), diagonal(n, 0), s;
-  for (std::size_t k = 0; k < tris.size(); ++k) {
-    const Tri& v = tris[k];
-    area[k] = 0.5 * norm(area_vector(p[v[0]], p[v[1]], p[v[2]]));
-    const std::array<double, 3> w = cotangent_weights(p[v[0]], p[v[1]], p[v[2]], 1e-3);
-    for (int i = 0; i < 3; ++i) {
-      const int x = v[i], y = v[(i + 1) % 3];
-      diagonal[x] += area[k] / 3 + time[k] * w[i];
-      diagonal[y] += time[k] * w[i];
-      entries.push_back({std::max(x, y), std::min(x, y), -time[k] * w[i]});
-    }
-  }
-  for (int v = 0; v < n; ++v) {
-    if (bands.held[v] != Bands::free) diagonal[v] *= stiff;
-    entries.push_back({v, v, diagonal[v]});
-  }
-  const Factorisation<double> heat(n, std::move(entries));
-  for (int step = 0; step < steps; ++step) {
-    s.assign(n, 0);
-    for (std::size_t k = 0; k < tris.size(); ++k)
-      for (int v : tris[k]) s[v] += area[k] / 3 * sign[k];
-    for (int v = 0; v < n; ++v)
-      if (bands.held[v] != Bands::free) s[v] = diagonal[v] * bands.held[v];
-    heat.solve(s);
-    for (std::size_t k = 0; k < tris.size(); ++k)
-      sign[k] = mean_sign(s[tris[k][0]], s[tris[k][1]], s[tris[k][2]]);
-  }
-  return s;
 }
 
 /// The sides of the bands' vertices: +1 or -1, or 0 where triangles of both sides meet.
@@ -244,9 +217,9 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
   std::vector<Hold> hold;
   for (std::size_t v = 0; v < field.size(); ++v) {
     double& f = field[v];
-    if (bands.held[v] != Bands::free) f = bands.held[v];
+    if (bands.held[v] != not_held) f = bands.held[v];
     if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
-    hold.push_back(bands.held[v] == Bands::free && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
+    hold.push_back(bands.held[v] == not_held && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
   }
   for (int h = 0; attempt.ends_stay && h < (int)opposite.size(); ++h)
     if (opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
@@ -293,11 +266,17 @@ Measure measure(const Surface& s, const std::vector<int>& opposite, const std::v
   return m;
 }
 
+/// A curve that cannot be straightened with the others; with other means it might.
+struct Fault {
+  int curve;
+  bool again;
+};
+
 /// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
 /// returns an empty list; otherwise returns the curves at fault.
-std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
-                                const std::vector<Curve>& curves, const std::vector<Role>& role,
-                                const Attempt& attempt, const Limits& limits) {
+std::vector<Fault> try_straighten(Surface& surface, std::vector<int>& opposite,
+                                  const std::vector<Curve>& curves, const std::vector<Role>& role,
+                                  const Attempt& attempt, const Limits& limits) {
   const int n_parts = limits.n_parts, max_faces = limits.max_faces;
   Bands bands = make_bands(surface, opposite, curves, role);
   if (bands.mesh.tris.empty()) return {};
@@ -312,7 +291,8 @@ std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
     time.push_back(scale[bands.curve[t]]);
   }
   const std::vector<double> level =
-      attempt.steps > 0 ? diffuse(bands, std::move(sign), time, attempt.steps) : sides(bands, sign);
+      attempt.steps > 0 ? threshold_dynamics(bands.mesh, std::move(sign), time, bands.held, attempt.steps)
+                        : sides(bands, sign);
   const LevelLine line = straight_line(bands, level, limits.snap, attempt, surface.points.size());
   std::vector<char> active(surface.tris.size(), 0);
   for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
@@ -325,14 +305,14 @@ std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
   constexpr auto band_column = "straighten band";
   s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
-  cut_along_line(s, line, active, side);
+  std::vector<int> after = opposite;
+  cut_along_line(s, line, active, side, &after);
   const std::vector<int> band = s.face.get<int>(band_column);
   s.face.erase(band_column);
   std::vector<int>& part = s.face.get<int>("part");
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  std::vector<int> after = opposite_halfedges(s.tris, (int)s.points.size());
   keep_largest_pieces(s, after, band, curves, part, n_parts);
   std::vector<int> piece = part;
   std::vector<char> broken(n_parts, 0);
@@ -347,20 +327,22 @@ std::vector<int> try_straighten(Surface& surface, std::vector<int>& opposite,
   for (int p = 0; p < n_parts; ++p)
     broken[p] |= !r.region[p].maps_to_the_plane() || (max_faces > 0 && r.region[p].faces > max_faces);
   const Measure now = measure(s, after, band, curves.size());
-  std::vector<int> at_fault, near_fault;
+  constexpr double as_long = 3e-3;  // so much longer: it was straight
+  std::vector<Fault> at_fault, near_fault;
   for (int c = 0; c < (int)curves.size(); ++c) {
     if (role[c] != Role::moves) continue;
-    if (now.length[c] > (1 + 1e-9) * before.length[c] || now.model_edges[c] < before.model_edges[c])
-      at_fault.push_back(c);
+    const bool fewer = now.model_edges[c] < before.model_edges[c];
+    if (now.length[c] > (1 + 1e-9) * before.length[c] || fewer)
+      at_fault.push_back({c, fewer || now.length[c] > (1 + as_long) * before.length[c]});
     else if (broken[curves[c].a] || broken[curves[c].b])
-      near_fault.push_back(c);
+      near_fault.push_back({c, true});
   }
   if (at_fault.empty()) at_fault = near_fault;
   if (at_fault.empty() && std::find(broken.begin(), broken.end(), 1) == broken.end())
     surface = std::move(s), opposite = std::move(after);
   else if (at_fault.empty())  // a bound on the triangles of a third part
     for (int c = 0; c < (int)curves.size(); ++c)
-      if (role[c] == Role::moves) at_fault.push_back(c);
+      if (role[c] == Role::moves) at_fault.push_back({c, true});
   return at_fault;
 }
 
@@ -411,7 +393,8 @@ Handle handle_of(const Mesh& m, const Curve& c) {
   return {origin(m.tris, h), target(m.tris, h)};
 }
 
-/// Straightens these curves at once, without those that turn out to be at fault; returns the latter.
+/// Straightens these curves at once, without those that turn out to be at fault; returns those of the latter
+/// that may do better by other means.
 std::vector<Handle> straighten_together(Surface& s, std::vector<int>& opposite,
                                         const std::vector<Handle>& handles, const Attempt& attempt,
                                         const Limits& limits) {
@@ -432,11 +415,11 @@ std::vector<Handle> straighten_together(Surface& s, std::vector<int>& opposite,
       role[c] = Role::stays;
   std::vector<Handle> failed;
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
-    const std::vector<int> faults = try_straighten(s, opposite, curves, role, attempt, limits);
+    const std::vector<Fault> faults = try_straighten(s, opposite, curves, role, attempt, limits);
     if (faults.empty()) break;
-    for (int c : faults) {
+    for (auto [c, again] : faults) {
       role[c] = Role::stays;
-      failed.push_back(handle_of(s, curves[c]));
+      if (again) failed.push_back(handle_of(s, curves[c]));
     }
   }
   std::sort(failed.begin(), failed.end());
@@ -478,27 +461,6 @@ void trim_ears(Surface& s, const std::vector<int>& opposite, const std::vector<c
   }
 }
 
-/// The largest angle by which a curve turns on the surface between edges that are no creases.
-double sharpest_turn(const Surface& s, const std::vector<int>& opposite, const Curve& c) {
-  double sharpest = 0;
-  const std::size_t n = c.half_edges.size();
-  const bool closed = target(s.tris, c.half_edges.back()) == origin(s.tris, c.half_edges.front());
-  for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
-    const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
-    if (is_crease(s, opposite, to) || is_crease(s, opposite, from)) continue;
-    const Vec3 p = s.points[origin(s.tris, from)];
-    auto corner = [&](int h) {
-      return angle(s.points[target(s.tris, h)] - p, s.points[origin(s.tris, prev(h))] - p);
-    };
-    double left = 0, right = 0;
-    int h = from;
-    for (; h >= 0 && h != opposite[to]; h = opposite[prev(h)]) left += corner(h);
-    for (; h >= 0 && h != from; h = opposite[prev(h)]) right += corner(h);
-    if (h >= 0) sharpest = std::max(sharpest, pi * std::abs(left - right) / (left + right));
-  }
-  return sharpest;
-}
-
 /// What is still bent: the bands of neighbours may have left no room for it, on fans of large triangles, but
 /// there is some for one curve alone.
 void straighten_corners(Surface& surface, std::vector<int>& opposite, const std::vector<char>& chosen,
@@ -507,9 +469,10 @@ void straighten_corners(Surface& surface, std::vector<int>& opposite, const std:
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
   trim_ears(surface, opposite, chosen, limits);
   std::vector<std::pair<double, Handle>> corners;
+  auto crease = [&](int h) { return is_crease(surface, opposite, h); };
   for (const Curve& c : find_curves(surface, opposite))
     if (chosen.empty() || chosen[c.a] || chosen[c.b])
-      if (const double turn = sharpest_turn(surface, opposite, c); turn > bent)
+      if (const double turn = sharpest_turn(surface, opposite, c, crease); turn > bent)
         corners.push_back({-turn, handle_of(surface, c)});
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
@@ -520,18 +483,21 @@ void straighten_corners(Surface& surface, std::vector<int>& opposite, const std:
 
 }  // namespace
 
-void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces,
-                           const std::vector<char>& chosen) {
+void straighten_interfaces(Surface& surface, std::vector<int>& opposite, int n_parts, double snap,
+                           int max_faces, const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
-  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   const std::vector<PairColour> pairs = colour_pairs(surface, find_curves(surface, opposite));
+  constexpr double straight = 0.05;  // as a shortest line is
+  auto model = [&](int h) { return is_model(surface, h); };
   int n_colours = 0;
   for (const PairColour& p : pairs) n_colours = std::max(n_colours, p.colour + 1);
   for (int colour = 0; colour < n_colours; ++colour) {
     std::vector<Handle> open;
     for (const Curve& c : find_curves(surface, opposite))
       for (const PairColour& p : pairs)
-        if (p.a == c.a && p.b == c.b && p.colour == colour && (chosen.empty() || chosen[p.a] || chosen[p.b]))
+        if (p.a == c.a && p.b == c.b && p.colour == colour &&
+            (chosen.empty() || chosen[p.a] || chosen[p.b]) &&
+            sharpest_turn(surface, opposite, c, model) > straight)
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one

@@ -13,8 +13,9 @@ namespace meshpipe {
 /// The two parts' triangles change hands there, all other parts only get split along. Interface edges that
 /// are model edges stay. Where the result would not be admissible (part_fault) or longer, the interface of
 /// that pair stays as it was. Precondition: parts without fault.
-/// With `chosen`, only the interfaces of the parts that it marks.
-void straighten_interfaces(Surface& surface, int n_parts, double snap, int max_faces = 0,
-                           const std::vector<char>& chosen = {});
+/// `opposite` is the surface's, before and after. With `chosen`, only the interfaces of the parts that it
+/// marks.
+void straighten_interfaces(Surface& surface, std::vector<int>& opposite, int n_parts, double snap,
+                           int max_faces = 0, const std::vector<char>& chosen = {});
 
 }  // namespace meshpipe

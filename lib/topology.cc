@@ -46,6 +46,24 @@ std::vector<int> opposite_within(const std::vector<Tri>& tris, const std::vector
   return within;
 }
 
+std::vector<std::vector<int>> opposite_of_parts(const std::vector<SubMesh>& parts,
+                                                const std::vector<int>& opposite,
+                                                const std::vector<int>& label) {
+  std::vector<int> number(label.size());
+  for (const SubMesh& p : parts)
+    for (std::size_t i = 0; i < p.face.size(); ++i) number[p.face[i]] = (int)i;
+  std::vector<std::vector<int>> within(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    within[p].reserve(3 * parts[p].face.size());
+    for (int t : parts[p].face)
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        const int o = opposite[h];
+        within[p].push_back(o < 0 || label[o / 3] != label[t] ? -1 : 3 * number[o / 3] + o % 3);
+      }
+  }
+  return within;
+}
+
 int components(const std::vector<int>& opposite, std::vector<int>& component) {
   int n_tris = (int)opposite.size() / 3, n = 0;
   component.assign(n_tris, -1);
@@ -233,12 +251,18 @@ Topology measure(const Mesh& mesh, const std::vector<int>& opposite, int pieces,
   return t;
 }
 
-/// As measure, where neighbours are not known.
-Topology measure(const Mesh& mesh, const std::vector<int>& number) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  std::vector<int> component;
-  const int pieces = components(opposite, component);
-  return measure(mesh, opposite, pieces, number);
+/// As measure, of part p, whose neighbours `opposite_of` gives; nothing if it has no triangles.
+template <class OppositeOf>
+Topology of_part(const SubMesh& mesh, int p, OppositeOf opposite_of) {
+  if (mesh.tris.empty()) return {};
+  try {
+    const std::vector<int> opposite = opposite_of();
+    std::vector<int> component;
+    const int pieces = components(opposite, component);
+    return measure(mesh, opposite, pieces, mesh.vertex);
+  } catch (const NotAdmissible& e) {
+    throw NotAdmissible("part " + std::to_string(p) + ": " + e.what());
+  }
 }
 
 /// Calls of(p), which may throw, for every part in parallel; what is thrown for the first part is thrown.
@@ -259,27 +283,33 @@ std::vector<Topology> for_parts(int n, const Of& of) {
 
 }  // namespace
 
-Topology topology_of(const Mesh& mesh) { return measure(mesh, {}); }
+Topology topology_of(const Mesh& mesh) {
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  std::vector<int> component;
+  return measure(mesh, opposite, components(opposite, component), {});
+}
 
 std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
   const std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
   return for_parts(n, [&](int p) {
-    try {
-      return measure(meshes[p], meshes[p].vertex);
-    } catch (const NotAdmissible& e) {
-      throw NotAdmissible("part " + std::to_string(p) + ": " + e.what());
-    }
+    return of_part(meshes[p], p,
+                   [&] { return opposite_halfedges(meshes[p].tris, (int)meshes[p].points.size()); });
   });
+}
+
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& opposite,
+                                        const std::vector<int>& part, int n) {
+  const std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
+  std::vector<std::vector<int>> within = opposite_of_parts(meshes, opposite, part);
+  return for_parts(n, [&](int p) { return of_part(meshes[p], p, [&] { return std::move(within[p]); }); });
 }
 
 std::vector<Topology> topology_of_components(const Mesh& mesh, const std::vector<int>& opposite,
                                              const std::vector<int>& component, int n) {
   if (n == 1) return {measure(mesh, opposite, 1, {})};
   const std::vector<SubMesh> meshes = split_by_label(mesh, component, n);
-  return for_parts(n, [&](int c) {
-    const SubMesh& m = meshes[c];
-    return measure(m, opposite_halfedges(m.tris, (int)m.points.size()), 1, m.vertex);
-  });
+  const std::vector<std::vector<int>> within = opposite_of_parts(meshes, opposite, component);
+  return for_parts(n, [&](int c) { return measure(meshes[c], within[c], 1, meshes[c].vertex); });
 }
 
 Table part_table(const std::vector<Topology>& parts) {

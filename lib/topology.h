@@ -16,6 +16,12 @@ std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices
 std::vector<int> opposite_within(const std::vector<Tri>& tris, const std::vector<int>& opposite,
                                  const std::vector<int>& label);
 
+/// The same for the sub-meshes that split_by_label has made of a mesh by these labels, from those of the
+/// whole.
+std::vector<std::vector<int>> opposite_of_parts(const std::vector<SubMesh>& parts,
+                                                const std::vector<int>& opposite,
+                                                const std::vector<int>& label);
+
 /// Number of edge-connected components; component[t] in 0..n-1, numbered by their first triangle.
 int components(const std::vector<int>& opposite, std::vector<int>& component);
 
@@ -44,8 +50,12 @@ struct Topology {
 /// Throws like opposite_halfedges; a pinched vertex is NotAdmissible too.
 Topology topology_of(const Mesh& mesh);
 
-/// The same for every part of a surface: part[t] in 0..n-1. Parallel over the parts.
+/// The same for every part of a surface: part[t] in 0..n-1, or another label where there is none. Parallel
+/// over the parts; rows of parts without triangles are empty.
 std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n);
+/// The same where the mesh's neighbours are known.
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& opposite,
+                                        const std::vector<int>& part, int n);
 /// The same for the components, as `components` has numbered them; `opposite` is the mesh's.
 std::vector<Topology> topology_of_components(const Mesh& mesh, const std::vector<int>& opposite,
                                              const std::vector<int>& component, int n);

@@ -57,9 +57,10 @@ int main(int argc, char** argv) {
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     std::vector<MultiscaleCut> cuts;
     std::vector<Topology> topology;
+    std::vector<int> opposite;
     int n_parts;
     try {
-      n_parts = multiscale_cut(stream.surface, options, &cuts, &topology);
+      n_parts = multiscale_cut(stream.surface, options, &cuts, &topology, &opposite);
     } catch (const GoalMissed&) {  // the pictures show why
       if (options.keep_maps) draw_levels(directory, cuts);
       throw;
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
       if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
         io.say("part " + std::to_string(p) + " keeps aspect ratio " + std::to_string(topology[p].eta_geo) +
                ": no cut makes it shorter");
-    const Interfaces cut = measure_interfaces(stream.surface);
+    const Interfaces cut = measure_interfaces(stream.surface, opposite);
     char text[200];
     std::snprintf(text, sizeof text,
                   "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%), %.0f at most",

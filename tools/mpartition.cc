@@ -27,8 +27,9 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     options.homology = method == "homology";
     Stream stream = io.read();
-    const int n_parts = partition_to_disks(stream.surface, options);
-    const Interfaces cut = measure_interfaces(stream.surface);
+    std::vector<int> opposite;
+    const int n_parts = partition_to_disks(stream.surface, options, &opposite);
+    const Interfaces cut = measure_interfaces(stream.surface, opposite);
     char text[200];
     std::snprintf(text, sizeof text, "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%)",
                   n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle);
@@ -38,7 +39,8 @@ int main(int argc, char** argv) {
     io.report["junctions"] = cut.junctions;
     io.report["turning_angle"] = cut.turning_angle;
     drop_downstream(stream, Stage::parts);
-    stream.set(part_table(stream.surface, n_parts));
+    stream.set(part_table(
+        topology_of_parts(stream.surface, opposite, stream.surface.face.get<int>("part"), n_parts)));
     io.write(stream);
   };
   return run_tool(argc, argv, "mpartition",

@@ -13,6 +13,10 @@ using namespace meshpipe;
 
 namespace {
 
+std::vector<int> opposite_of(const Mesh& mesh) {
+  return opposite_halfedges(mesh.tris, (int)mesh.points.size());
+}
+
 /// Euler characteristic of what the vertices of a side span.
 int characteristic(const Mesh& mesh, const std::vector<char>& side, char which) {
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
@@ -43,7 +47,7 @@ void expect_same_cuts(const Mesh& mesh, const Coarse& coarse) {
 
 TEST(Coarsen, KeepsTheTopology) {
   for (const Mesh& mesh : {torus(0.4, 3000), tube(6, 40, false)}) {
-    const Coarse coarse = coarsen(mesh, {}, (int)mesh.tris.size() / 4, 0.45);
+    const Coarse coarse = coarsen(mesh, opposite_of(mesh), {}, (int)mesh.tris.size() / 4, 0.45);
     const Topology before = topology_of(mesh), after = topology_of(coarse);
     EXPECT_EQ(after.genus, before.genus);
     EXPECT_EQ(after.loops, before.loops);
@@ -78,7 +82,7 @@ TEST(Coarsen, KeepsModelEdgesInPlace) {
       mesh.tris.push_back({a, d, c});
       model.push_back(y + 1 == n / 2 ? 2 : 0);
     }
-  const Coarse coarse = coarsen(mesh, model, 100, 0.45);
+  const Coarse coarse = coarsen(mesh, opposite_of(mesh), model, 100, 0.45);
   EXPECT_LT(coarse.tris.size(), mesh.tris.size() / 3);
   double length = 0;
   for (std::size_t h = 0; h < 3 * coarse.tris.size(); ++h) {
@@ -95,6 +99,6 @@ TEST(Coarsen, KeepsModelEdgesInPlace) {
 TEST(Coarsen, KeepsThinTubes) {
   // eight edges around already: hardly any may go
   const Mesh mesh = tube(10, 8, false);
-  const Coarse coarse = coarsen(mesh, {}, 10, 0.45);
+  const Coarse coarse = coarsen(mesh, opposite_of(mesh), {}, 10, 0.45);
   EXPECT_GT(total_area(coarse), 0.9 * total_area(mesh));
 }

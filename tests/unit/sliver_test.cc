@@ -50,6 +50,10 @@ Surface cut_beside_an_edge(double cut, int (*part_of)(double)) {
 int left(double) { return 0; }
 int left_but_for_the_middle(double y) { return y < 5 || y > 15 ? 0 : 2; }
 
+bool hand_over(Surface& s, int n_parts, int max_faces = 0) {
+  return hand_over_slivers(s, opposite_halfedges(s.tris, (int)s.points.size()), n_parts, max_faces);
+}
+
 double area_of_part(const Surface& s, int part) {
   double sum = 0;
   for (std::size_t t = 0; t < s.tris.size(); ++t)
@@ -63,29 +67,29 @@ double area_of_part(const Surface& s, int part) {
 TEST(Sliver, GoesToTheOtherSideOfItsCut) {
   Surface s = cut_beside_an_edge(10.15, left);
   EXPECT_NEAR(area_of_part(s, 0), 203, 1e-9);
-  EXPECT_TRUE(hand_over_slivers(s, 2));
+  EXPECT_TRUE(hand_over(s, 2));
   EXPECT_NEAR(area_of_part(s, 0), 200, 1e-9);
   EXPECT_EQ(part_fault(s), "");
-  EXPECT_FALSE(hand_over_slivers(s, 2));
+  EXPECT_FALSE(hand_over(s, 2));
 }
 
 TEST(Sliver, IsThinnerThanTheTriangles) {
   Surface s = cut_beside_an_edge(10.5, left);
-  EXPECT_FALSE(hand_over_slivers(s, 2));
+  EXPECT_FALSE(hand_over(s, 2));
   EXPECT_NEAR(area_of_part(s, 0), 210, 1e-9);
 }
 
 TEST(Sliver, StaysWhereItHoldsAPartTogether) {
   Surface s = cut_beside_an_edge(10.15, left_but_for_the_middle);
   ASSERT_EQ(part_fault(s), "");
-  EXPECT_FALSE(hand_over_slivers(s, 3));
+  EXPECT_FALSE(hand_over(s, 3));
   EXPECT_NEAR(area_of_part(s, 0), 103, 1e-9);
 }
 
 TEST(Sliver, StaysWhereTheOtherPartHasNoRoom) {
   Surface s = cut_beside_an_edge(10.15, left);
   const auto& part = s.face.get<int>("part");
-  EXPECT_FALSE(hand_over_slivers(s, 2, (int)std::count(part.begin(), part.end(), 1)));
+  EXPECT_FALSE(hand_over(s, 2, (int)std::count(part.begin(), part.end(), 1)));
   EXPECT_NEAR(area_of_part(s, 0), 203, 1e-9);
 }
 
@@ -93,5 +97,5 @@ TEST(Sliver, NeedsAModelEdge) {
   Surface s = cut_beside_an_edge(10.15, left);
   auto& model = s.face.get<std::uint8_t>("model");
   std::fill(model.begin(), model.end(), 0);
-  EXPECT_FALSE(hand_over_slivers(s, 2));
+  EXPECT_FALSE(hand_over(s, 2));
 }
