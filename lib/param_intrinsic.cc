@@ -31,20 +31,27 @@ class Flipper {
  public:
   explicit Flipper(Filled& filled) : filled_(filled) {
     opposite_ = opposite_halfedges(filled.tris, filled.n_vertices);
+    length_.reserve(opposite_.size());
+    changed_.reserve(filled.tris.size());
     for (const auto& p : filled.shape) {
       std::array<double, 3> l{norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])};
       double sum = l[0] + l[1] + l[2], more = 0;
       if (!(sum > 0)) l.fill(1);
       for (double side : l) more = std::max(more, 1e-7 * sum - (sum - 2 * side));
       for (double side : l) length_.push_back(side + more);
+      changed_.push_back(more > 0 || !(sum > 0));
     }
   }
 
   void run() {
     std::deque<int> queue;
     std::vector<char> waiting(opposite_.size(), 0);
+    std::vector<double> cotangent;  // most edges stay: their triangles are looked at once
+    cotangent.reserve(opposite_.size());
+    for (int h = 0; h < (int)opposite_.size(); h += 3)
+      for (int i = 0; i < 3; ++i) cotangent.push_back(cotangent_opposite(layout(h), i));
     for (int h = 0; h < (int)opposite_.size(); ++h)
-      if (opposite_[h] > h && !delaunay(h)) {
+      if (opposite_[h] > h && !(cotangent[h] + cotangent[opposite_[h]] >= least)) {
         queue.push_back(h);
         waiting[h] = 1;
       }
@@ -68,6 +75,7 @@ class Flipper {
 
   void write_shapes() {
     for (std::size_t t = 0; t < filled_.tris.size(); ++t) {
+      if (!changed_[t]) continue;
       Layout l = lay_out(length_[3 * t], length_[3 * t + 1], length_[3 * t + 2]);
       filled_.shape[t] = {Vec3{0, 0, 0}, {l.b, 0, 0}, {l.c.x, l.c.y, 0}};
     }
@@ -76,14 +84,16 @@ class Flipper {
  private:
   Layout layout(int h) const { return lay_out(length_[h], length_[next(h)], length_[prev(h)]); }
 
-  /// The cotangents opposite to the edge do not add up to less than 0.
+  static constexpr double least = -1e-9;  ///< of the cotangents opposite to an edge, added up
+
+  /// Of the corner opposite to edge i: 0 is the one that was laid out along x.
+  static double cotangent_opposite(const Layout& l, int i) {
+    const Vec2 corner[3] = {{0, 0}, {l.b, 0}, l.c}, at = corner[(i + 2) % 3];
+    const Vec2 a = corner[i] - at, b = corner[(i + 1) % 3] - at;
+    return dot(a, b) / std::max(cross(a, b), 1e-300);
+  }
   bool delaunay(int h) const {
-    auto cotangent = [](const Layout& l) {
-      // of the angle at c between the ways to the ends of the edge
-      Vec2 a{-l.c.x, -l.c.y}, b{l.b - l.c.x, -l.c.y};
-      return dot(a, b) / std::max(cross(a, b), 1e-300);
-    };
-    return cotangent(layout(h)) + cotangent(layout(opposite_[h])) >= -1e-9;
+    return cotangent_opposite(layout(h), 0) + cotangent_opposite(layout(opposite_[h]), 0) >= least;
   }
 
   /// Turns the edge h from i -> j with the apexes k (left) and m (right) into the edge m -> k.
@@ -117,6 +127,7 @@ class Flipper {
           o = place[e];
           break;
         }
+    changed_[h / 3] = changed_[g / 3] = 1;
     set_corner(h, vm), set_corner(next(h), vk), set_corner(prev(h), vi);
     set_corner(g, vk), set_corner(next(g), vm), set_corner(prev(g), vj);
     for (int e = 0; e < 4; ++e) {
@@ -132,6 +143,7 @@ class Flipper {
 
   Filled& filled_;
   std::vector<int> opposite_;
+  std::vector<char> changed_;   ///< triangles whose shape is not the one given
   std::vector<double> length_;  ///< of half-edges: a triangle's shape, at a scale of its own
 };
 
