@@ -56,6 +56,7 @@ Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& 
       finer_(points_.size(), 1),
       tried_(points_.size()),
       changed_(points_.size()),
+      edited_(points_.size()),
       color_(points_.size(), -1) {
   const int n = (int)points_.size();
   for (int v = 0; v < n; ++v) {
@@ -127,10 +128,11 @@ RelaxReport Relaxer::run() {
 /// unless that spoils the worst triangle.
 void Relaxer::meet_count_in_the_end(double target) {
   constexpr double near_enough = 0.015, least = 0.6, spoilt = 0.7;
-  constexpr int most_tries = 4;
+  constexpr double sluggish = 0.6, least_response = 0.2;
+  constexpr int most_tries = 4, most_in_vain = 3;  // the latter where the model, not the sizes, asks for them
   const Relaxer start = *this;
   std::optional<Relaxer> best;
-  double goal = target, sound = 0;
+  double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
   auto off = [&](const Relaxer& r) { return std::abs(r.m_.live - target); };
   for (int tries = 1;; ++tries) {
     optimise(goal);
@@ -138,9 +140,13 @@ void Relaxer::meet_count_in_the_end(double target) {
     if (tries == 1) sound = spoilt * shape;
     if (shape >= sound && off(*this) <= near_enough * target) return;
     if (!best || (shape >= sound && off(*this) < off(*best))) best = *this;
-    if (shape < sound || tries == most_tries) break;
+    if (tries > 1) response = (m_.live - last_live) / (goal - last_goal);
+    if (shape < sound || tries == (response < sluggish ? most_in_vain : most_tries)) break;
+    last_goal = goal, last_live = m_.live;
     *this = start;
-    goal = std::clamp(goal - surplus, least * target, target / least);
+    goal = std::clamp(goal - surplus / std::max(std::min(response, 1.0), least_response), least * target,
+                      target / least);
+    if (goal == last_goal) break;
     for (double& f : finer_) f *= std::sqrt(target / goal);
   }
   *this = std::move(*best);
