@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The schedule of the optimisation, its beginning and its end; the steps are in relax_move.cc, relax_edit.cc
-// and relax_mend.cc.
+// The schedule of the optimisation, its beginning and its end; the steps are in relax_move.cc, relax_edit.cc,
+// relax_tips.cc and relax_mend.cc.
 #include "lib/relax.h"
 
 #include <algorithm>
