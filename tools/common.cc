@@ -176,10 +176,11 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
     sink(write_as(stream, path, text));
 }
 
-/// A device or a pipe is written to, not replaced; so is what names of the system's lead to (/dev/stdout is a
-/// link, to a regular file if that is where standard output goes).
+/// A device or a pipe is written to, not replaced; so is what the names of open descriptors lead to
+/// (/dev/stderr is a link, to a regular file if that is where standard error goes).
 bool in_place(const std::string& path, const struct stat& info) {
-  return !S_ISREG(info.st_mode) || path.starts_with("/dev/") || path.starts_with("/proc/");
+  return !S_ISREG(info.st_mode) || path.starts_with("/dev/std") || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/");
 }
 
 /// Writes what `produce` hands to its sink to a file, beside it and renamed; "-" is standard output.
