@@ -84,26 +84,26 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return {va / area, vb / area, vc / area};
 }
 
+/// A triangle and its centre in own units.
 struct Bvh::Item {
-  std::array<double, 3> centre;
+  std::array<float, 3> centre;
   int tri;
 };
 
 Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   const int n = (int)mesh.tris.size();
   if (n == 0) throw std::logic_error("a bvh needs a triangle");
-  std::vector<Item> items(n);
   Box all = box_of(mesh, 0);
-  for (int t = 0; t < n; ++t) {
-    const Tri& v = mesh.tris[t];
-    const Vec3 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]], s = a + b + c;
-    items[t] = {{s.x, s.y, s.z}, t};
-    all = join(all, {lower(lower(a, b), c), upper(upper(a, b), c)});
-  }
+  for (int t = 0; t < n; ++t) all = join(all, box_of(mesh, t));
   centre_ = 0.5 * (all.lo + all.hi);
   const Vec3 half = all.hi - centre_;
   const double extent = std::max({half.x, half.y, half.z});
   if (extent > 0) scale_ = 1 / extent;
+  std::vector<Item> items(n);
+  for (int t = 0; t < n; ++t) {
+    const Tri& v = mesh.tris[t];
+    items[t] = {own_units(1.0 / 3 * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]])), t};
+  }
   nodes_.resize(std::max(1, tree_sizes(n)[0]));
 #pragma omp parallel if (n > 2 * task_size)
 #pragma omp single
@@ -130,13 +130,53 @@ void Bvh::set_child(int node, int k, int child, const Box& box) {
   }
 }
 
+/// As std::nth_element by the coordinate `axis`, but with no branch that could not be predicted: three times
+/// as fast.
+template <class Item>
+static void select(Item* items, int n, int nth, int axis) {
+  auto key = [&](int i) { return items[i].centre[axis]; };
+  auto median = [](float a, float b, float c) {
+    return std::max(std::min(a, b), std::min(std::max(a, b), c));
+  };
+  // those below the pivot to the front
+  auto divide = [&](auto below) {
+    int m = 0;
+    for (int i = 0; i < n; ++i) {
+      const Item x = items[i];
+      items[i] = items[m];
+      items[m] = x;
+      m += below(x.centre[axis]);
+    }
+    return m;
+  };
+  while (n > 16) {
+    const int step = n / 8;
+    const float pivot =
+        median(median(key(0), key(step), key(2 * step)), median(key(3 * step), key(n / 2), key(5 * step)),
+               median(key(6 * step), key(7 * step), key(n - 1)));
+    int m = divide([=](float x) { return x < pivot; });
+    if (m == 0) {
+      m = divide([=](float x) { return x <= pivot; });
+      if (nth < m) return;  // all alike
+      if (m == 0) break;    // not a number
+    }
+    if (nth < m) {
+      n = m;
+    } else {
+      items += m;
+      n -= m;
+      nth -= m;
+    }
+  }
+  std::nth_element(items, items + nth, items + n,
+                   [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
+}
+
 /// Splits items at place `half` along the longest side of their centres' box.
 template <class Item>
 static void halve(Item* items, int count, int half) {
-  std::array<double, 3> lo, hi;
-  lo.fill(infinity);
-  hi.fill(-infinity);
-  for (int i = 0; i < count; ++i)
+  std::array<float, 3> lo = items[0].centre, hi = lo;
+  for (int i = 1; i < count; ++i)
     for (int k = 0; k < 3; ++k) {
       lo[k] = std::min(lo[k], items[i].centre[k]);
       hi[k] = std::max(hi[k], items[i].centre[k]);
@@ -144,8 +184,7 @@ static void halve(Item* items, int count, int half) {
   int axis = 0;
   for (int k = 1; k < 3; ++k)
     if (hi[k] - lo[k] > hi[axis] - lo[axis]) axis = k;
-  std::nth_element(items, items + half, items + count,
-                   [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
+  select(items, count, half, axis);
 }
 
 Box Bvh::build(Item* items, int first, int count, int node) {

@@ -2,6 +2,7 @@
 // A bounding-volume hierarchy over the triangles of a mesh: nearest point, and the triangles in a box.
 #pragma once
 #include <algorithm>
+#include <bit>
 
 #include "lib/chart.h"
 #include "lib/mesh.h"
@@ -40,8 +41,8 @@ class Bvh {
     double distance = 0;
     Place place;
   };
-  /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance that
-  /// is already known.
+  /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
+  /// that is already known.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
   /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
@@ -80,8 +81,10 @@ void Bvh::overlapping(const Box& box, Visit&& visit) const {
     const Node& b = nodes_[stack[--n]];
     Mask meets = (b.lo[0] <= hi[0]) & (b.hi[0] >= lo[0]);
     for (int k = 1; k < 3; ++k) meets &= (b.lo[k] <= hi[k]) & (b.hi[k] >= lo[k]);
-    for (int k = 0; k < 4; ++k) {
-      if (!meets[k]) continue;
+    meets &= Mask{1, 2, 4, 8};
+    // only as many turns as there are, since whether a child is met could not be predicted
+    for (unsigned set = meets[0] | meets[1] | meets[2] | meets[3]; set; set &= set - 1) {
+      const int k = std::countr_zero(set);
       if (b.child[k] < 0)
         visit(-1 - b.child[k]);
       else

@@ -187,16 +187,26 @@ double OneSided::farthest_corner(const Piece& piece, int face) const {
 /// A point in a triangle's own frame: x and y in its plane, z above it.
 using Polygon = std::array<Vec3, 8>;
 
-/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative.
+/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative; nothing if that
+/// has no area.
 template <class Height>
-int clip(const Polygon& in, int n, Polygon& out, const Height& height) {
+int clip(Polygon*& polygon, Polygon*& spare, int n, const Height& height) {
+  double heights[std::tuple_size_v<Polygon>];
+  bool all = true, none = true;
+  for (int i = 0; i < n; ++i) {
+    heights[i] = height((*polygon)[i]);
+    all &= heights[i] >= 0;
+    none &= heights[i] <= 0;
+  }
+  if (all || none) return all ? n : 0;
   int kept = 0;
   for (int i = 0; i < n; ++i) {
-    const Vec3 &p = in[i], &q = in[i + 1 < n ? i + 1 : 0];
-    const double a = height(p), b = height(q);
-    if (a >= 0) out[kept++] = p;
-    if ((a < 0) != (b < 0)) out[kept++] = lerp(p, q, a / (a - b));
+    const int j = i + 1 < n ? i + 1 : 0;
+    const double a = heights[i], b = heights[j];
+    if (a >= 0) (*spare)[kept++] = (*polygon)[i];
+    if ((a < 0) != (b < 0)) (*spare)[kept++] = lerp((*polygon)[i], (*polygon)[j], a / (a - b));
   }
+  std::swap(polygon, spare);
   return kept;
 }
 
@@ -210,22 +220,24 @@ double OneSided::overlay_upper(const Piece& piece, double enough) const {
                tip_y = dot(c[2] - c[0], y);
   if (!(area > 0)) return infinity;
   double covered = 0, highest = 0;
+  Polygon polygons[2];
   const Vec3 margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
   to_tree_.overlapping(
       {lower(lower(c[0], c[1]), c[2]) - margin, meshpipe::upper(meshpipe::upper(c[0], c[1]), c[2]) + margin},
       [&](int t) {
-        Polygon p, q;
+        Polygon *p = &polygons[0], *spare = &polygons[1];
         for (int k = 0; k < 3; ++k) {
           const Vec3 d = to_.points[to_.tris[t][k]] - c[0];
-          p[k] = {dot(d, x), dot(d, y), dot(d, z)};
+          (*p)[k] = {dot(d, x), dot(d, y), dot(d, z)};
         }
-        if (!((p[1].x - p[0].x) * (p[2].y - p[0].y) > (p[1].y - p[0].y) * (p[2].x - p[0].x))) return;
-        int m = clip(p, 3, q, [](const Vec3& v) { return v.y; });
-        m = clip(q, m, p, [&](const Vec3& v) { return (tip_x - length) * v.y - tip_y * (v.x - length); });
-        m = clip(p, m, q, [&](const Vec3& v) { return tip_y * v.x - tip_x * v.y; });
+        const Vec3 u = (*p)[1] - (*p)[0], v = (*p)[2] - (*p)[0];
+        if (!(u.x * v.y > u.y * v.x)) return;
+        int m = clip(p, spare, 3, [](const Vec3& q) { return q.y; });
+        m = clip(p, spare, m, [&](const Vec3& q) { return (tip_x - length) * q.y - tip_y * (q.x - length); });
+        m = clip(p, spare, m, [&](const Vec3& q) { return tip_y * q.x - tip_x * q.y; });
         for (int k = 0; k < m; ++k) {
-          const Vec3 &a = q[k], &b = q[k + 1 < m ? k + 1 : 0];
-          covered += (a.x - q[0].x) * (b.y - q[0].y) - (a.y - q[0].y) * (b.x - q[0].x);
+          const Vec3 &o = (*p)[0], &a = (*p)[k], &b = (*p)[k + 1 < m ? k + 1 : 0];
+          covered += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
           highest = std::max(highest, std::abs(a.z));
         }
       });

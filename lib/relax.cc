@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The schedule of the optimisation, its beginning and its end; the steps are in relax_move.cc, relax_edit.cc
-// and relax_mend.cc.
+// The schedule of the optimisation, its beginning and its end; the steps are in relax_move.cc, relax_edit.cc,
+// relax_tips.cc and relax_mend.cc.
 #include "lib/relax.h"
 
 #include <algorithm>
@@ -114,9 +114,7 @@ RelaxReport Relaxer::run() {
     smooth(1);
     add_progress(0.1);
   }
-  bool model = false;
-  for (int h = 0; h < (int)m_.hard.size(); ++h) model = model || (m_.hard[h] && m_.opp[h] >= 0);
-  if (options_.target_triangles > 0 && model)
+  if (options_.target_triangles > 0)
     meet_count_in_the_end(target);
   else
     optimise(target);
@@ -124,29 +122,30 @@ RelaxReport Relaxer::run() {
   return finish();
 }
 
-/// Mending adds triangles where lines of the model are closer than the size. How many shows when it is done:
-/// then all is done again for larger sizes, which ask for as many less.
+/// Mending adds triangles where the model is narrow, and a coarse mesh has less area than its reference. What
+/// that comes to shows when it is done: then all is done again for sizes that ask for as many less or more,
+/// unless that spoils the worst triangle.
 void Relaxer::meet_count_in_the_end(double target) {
-  constexpr double near_enough = 0.015, least = 0.6;
+  constexpr double least = 0.6, spoilt = 0.7;
+  // of a first try that is as good as asked for, and of one that was aimed
+  constexpr double near_enough = 0.025, near = 0.015;
   constexpr int most_tries = 4;
   const Relaxer start = *this;
   std::optional<Relaxer> best;
-  double goal = target;
+  double goal = target, sound = 0;
   auto off = [&](const Relaxer& r) { return std::abs(r.m_.live - target); };
   for (int tries = 1;; ++tries) {
     optimise(goal);
-    const double surplus = m_.live - target;
-    if (off(*this) <= near_enough * target || (tries == 1 && surplus < 0)) return;
-    const bool better = !best || off(*this) < off(*best);
-    if (tries == most_tries) {
-      if (!better) *this = std::move(*best);
-      return;
-    }
-    if (better) best = std::move(*this);
+    const double surplus = m_.live - target, shape = quality(worst());
+    if (tries == 1) sound = spoilt * shape;
+    if (shape >= sound && off(*this) <= (tries == 1 ? near_enough : near) * target) return;
+    if (!best || (shape >= sound && off(*this) < off(*best))) best = *this;
+    if (shape < sound || tries == most_tries) break;
     *this = start;
-    goal = std::clamp(goal - surplus, least * target, target);
+    goal = std::clamp(goal - surplus, least * target, target / least);
     for (double& f : finer_) f *= std::sqrt(target / goal);
   }
+  *this = std::move(*best);
 }
 
 /// Sweeps with `target` triangles, then the places that need more than sweeps.

@@ -12,7 +12,7 @@ constexpr double size_weight = 0.012;
 constexpr double no_step = 3e-3;  ///< a step below this share of the size is none
 // over-relaxation: what is uneven over many edges evens out sooner
 constexpr double beyond = 1.5, beyond_along = 1.3;
-constexpr int worth_threads = 2000;  ///< vertices of a colour
+constexpr int worth_threads = 800;  ///< vertices of a colour
 }  // namespace
 
 void Star::look(Vec3 p) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The state that the steps of relax share; for lib/relax*.cc only. relax.cc is the schedule, relax_move.cc
-// moves vertices, relax_edit.cc changes the connectivity, relax_mend.cc looks after the few places that need
-// it.
+// moves vertices, relax_edit.cc changes the connectivity, relax_tips.cc and relax_mend.cc look after
+// the few places that need it.
 #pragma once
 #include <initializer_list>
 #include <optional>
@@ -151,13 +151,17 @@ class Relaxer {
   bool unravel(int h, int depth, int gained);
   void remove_dislocations(int depth);
 
-  // relax_mend.cc
+  // relax_tips.cc
   bool reach_tips(std::vector<Tip>& tips);
   double walk_near(Vec3 p, int& t, double enough) const;
   double nearest_triangle(Vec3 p, int& t, Vec3& q) const;
   std::optional<Relaxer> reached(const Place& tip, Vec3 q, double least, double far_enough,
                                  const std::vector<int>& round) const;
   std::optional<Relaxer> gone_to(const Place& tip, double least, const std::vector<int>& round) const;
+
+  // relax_mend.cc
+  struct Trial;
+  static void sort_trials(std::vector<Trial>& trials, std::size_t most);
   double quality(int t) const;
   int irregularity(int v) const;
   double badness() const;
@@ -197,6 +201,12 @@ class Relaxer {
   bool listed_ = false;
   bool recording_ = false;
   std::vector<Edit> edits_;  ///< while recording
+};
+
+/// A neighbourhood changed on trial.
+struct Relaxer::Trial {
+  double badness;
+  Relaxer state;
 };
 
 }  // namespace meshpipe

@@ -9,6 +9,7 @@
 #include "lib/curvature.h"
 #include "lib/error.h"
 #include "lib/number.h"
+#include "lib/room.h"
 #include "lib/split_edges.h"
 #include "lib/topology.h"
 
@@ -46,6 +47,7 @@ class FieldMaker {
         size_ = field(infinite, 1);
       if (!may_split || pass == 12 || !split([&](int h) { return bends(h); })) break;
     }
+    lower_where_narrow(report);
     report.added = static_cast<int>(s_.points.size() - n_before);
     report.scale = scale_;
     return report;
@@ -118,6 +120,29 @@ class FieldMaker {
     return least;
   }
 
+  /// Lowers sizes where the surface has no room for such edges; the report has the place where that is most.
+  void lower_where_narrow(SizeReport& report) {
+    const auto model =
+        s_.face.has("model") ? s_.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>();
+    if (curvature_.empty()) curvature_ = face_curvature(s_, opposite_, model);
+    const std::vector<double> before = size_;
+    const std::vector<double> room = edge_room(s_, opposite_, model, curvature_, before);
+    double most = 1;
+    for (std::size_t v = 0; v < room.size(); ++v) {
+      const double r = std::max(room[v], o_.min);
+      if (!(r < before[v])) continue;
+      ++report.lowered;
+      if (before[v] / r > most)
+        most = before[v] / r, report.lowered_at = s_.points[v], report.asked = before[v], report.room = r;
+    }
+    if (report.lowered == 0) return;
+    room_ = room;
+    if (o_.triangles > 0)
+      meet_count();
+    else
+      size_ = field(infinite, 1);
+  }
+
   double bounded(double wish) const {
     return std::max(std::min({uniform_, cap_, diagonal_, scale_ * wish}), o_.min);
   }
@@ -126,7 +151,10 @@ class FieldMaker {
     uniform_ = uniform;
     scale_ = scale;
     std::vector<double> h(wish_.size());
-    for (std::size_t v = 0; v < h.size(); ++v) h[v] = bounded(wish_[v]);
+    for (std::size_t v = 0; v < h.size(); ++v) {
+      h[v] = bounded(wish_[v]);
+      if (!room_.empty()) h[v] = std::min(h[v], std::max(room_[v], o_.min));
+    }
     limit_gradation(s_, o_.gradation, h);
     return h;
   }
@@ -178,8 +206,11 @@ class FieldMaker {
       if (high > low) low = high, above = below;
       high += 0.3;
       below = count_at(high);
+      if (low > 0 && above - below < 1e-6) break;  // bounds let the sizes grow no more
     }
-    if (above <= 0) return;  // already the uniform length asks for no more
+    if (below > 0) count_at(low);
+    if (above <= 0 || below > 0)
+      return;  // already the uniform length asks for no more, or all sizes are too small
     for (int i = 0; i < 30 && std::abs(below) > 1e-3 && high - low > 1e-6; ++i) {
       // regula falsi, halved when it creeps
       double x = low + (high - low) * std::clamp(above / (above - below), 0.05, 0.95);
@@ -200,7 +231,7 @@ class FieldMaker {
   double diagonal_, cap_ = 0, uniform_ = 0, scale_ = 1;
   std::vector<int> opposite_;
   std::vector<double> curvature_;  ///< per triangle
-  std::vector<double> wish_, size_;
+  std::vector<double> wish_, size_, room_;
 };
 
 }  // namespace

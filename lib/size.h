@@ -44,6 +44,11 @@ struct SizeReport {
   double scale =
       1;          ///< by which the other sources were multiplied, since they asked for more than `triangles`
   int added = 0;  ///< vertices
+  /// Vertices where a larger size was asked for than there is room for (edge_room), and the place where that
+  /// is most.
+  int lowered = 0;
+  Vec3 lowered_at{};
+  double asked = 0, room = 0;
 };
 
 /// Sets vertex column `size`: the minimum of all that is asked, at most `max`, graded, at least `min`. Where

@@ -186,6 +186,11 @@ int main(int argc, char** argv) {
     io.say(text);
     if (r.scale != 1)
       io.say("for this number of triangles the sizes asked for are multiplied by " + shown(r.scale));
+    if (r.lowered > 0)
+      io.say("the size is lowered at " + std::to_string(r.lowered) +
+             " vertices of narrow tubes or closed lines, which four edges go round: at " +
+             shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) + " from " +
+             shown(r.asked) + " to " + shown(r.room));
     tell_missed(io, o, r, counted);
     io.report["size"] = r.smallest;
     io.report["largest_size"] = r.largest;

@@ -33,6 +33,14 @@ TEST(bvh, closest_point_in_every_region) {
   EXPECT_EQ(closest_on_triangle({0.25, 0.25, 5}, a, b, c), (W{0.5, 0.25, 0.25}));
 }
 
+TEST(bvh, triangles_that_are_all_alike_are_found) {
+  Mesh m{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Tri>(100, Tri{0, 1, 2})};
+  const Bvh bvh(m);
+  int found = 0;
+  bvh.overlapping({{0, 0, 0}, {1, 1, 1}}, [&](int) { ++found; });
+  EXPECT_EQ(found, 100);
+}
+
 TEST(bvh, a_triangle_without_area_is_its_edges) {
   const Vec3 a{0, 0, 0}, b{0, 0, 0}, c{2, 0, 0};
   const auto w = closest_on_triangle({1, 1, 0}, a, b, c);
@@ -54,6 +62,11 @@ TEST(bvh, nearest_is_that_of_all_triangles) {
       EXPECT_DOUBLE_EQ(bvh.nearest(p, best).distance, best);
       EXPECT_DOUBLE_EQ(bvh.nearest(p, 2 * best).distance, best);
       EXPECT_DOUBLE_EQ(bvh.nearest(p, 0.5 * best).distance, best);
+      // one that is near enough, or the nearest
+      const auto some = bvh.nearest(p, 1e300, 1.5 * best);
+      EXPECT_LE(some.distance, 1.5 * best);
+      EXPECT_DOUBLE_EQ(distance_to(m, some.place.face, p), some.distance);
+      EXPECT_DOUBLE_EQ(bvh.nearest(p, 1e300, 0.5 * best).distance, best);
     }
   }
 }

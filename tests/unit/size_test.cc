@@ -10,6 +10,7 @@
 #include "lib/curvature.h"
 #include "lib/error.h"
 #include "lib/expression.h"
+#include "lib/room.h"
 #include "lib/shape.h"
 #include "lib/split_edges.h"
 #include "lib/topology.h"
@@ -241,6 +242,53 @@ TEST(Size, RefusesTooManyTriangles) {
   EXPECT_THROW(set_size(s, nullptr, o), GoalMissed);
   o.most_triangles = 4000;
   EXPECT_NO_THROW(set_size(s, nullptr, o));
+}
+
+std::vector<double> room_of(const Mesh& m, double size) {
+  const std::vector<int> opposite = opposite_halfedges(m.tris, (int)m.points.size());
+  return edge_room(m, opposite, {}, face_curvature(m, opposite, {}),
+                   std::vector<double>(m.points.size(), size));
+}
+
+double least(const std::vector<double>& x) { return *std::min_element(x.begin(), x.end()); }
+double largest(const std::vector<double>& x) { return *std::max_element(x.begin(), x.end()); }
+
+TEST(Room, AQuarterOfTheWayRoundATube) {
+  const double quarter = 0.25 * 3.14159265358979324;  // of a diameter of 1
+  for (bool closed : {false, true}) {
+    const Mesh m = tube(6, 24, closed);
+    const std::vector<double> room = room_of(m, 1.2);
+    const double ends = closed ? 1.5 : -1;  // tips are round the other way as well
+    for (std::size_t v = 0; v < room.size(); ++v) {
+      if (m.points[v].z < ends || m.points[v].z > 6 - ends) continue;
+      ASSERT_GT(room[v], 0.98 * quarter);
+      ASSERT_LT(room[v], 1.15 * quarter);
+    }
+  }
+  EXPECT_EQ(least(room_of(tube(6, 24, true), 0.6)), INFINITY);
+}
+
+TEST(Room, NoneIsShortOnBallsBodiesAndRims) {
+  EXPECT_EQ(least(room_of(sphere(2000), 0.9)), INFINITY);
+  EXPECT_EQ(least(room_of(cube(3000), 0.4)), INFINITY);
+}
+
+TEST(Size, IsLoweredOnTubesAndThatIsTold) {
+  Surface s;
+  static_cast<Mesh&>(s) = tube(20, 24, false);
+  SizeOptions o;
+  o.at = [](Vec3 p, double) { return 0.1 + 0.2 * p.z; };
+  const SizeReport r = set_size(s, nullptr, o);
+  const std::vector<double>& h = s.vertex.get<double>("size");
+  EXPECT_GT(r.lowered, 0);
+  EXPECT_GT(r.asked, 1.9);
+  EXPECT_NEAR(r.room, 0.25 * 3.14159, 0.1);
+  EXPECT_GT(r.lowered_at.z, 9);
+  EXPECT_LT(largest(h), 0.95);
+  for (std::size_t v = 0; v < h.size(); ++v)
+    if (s.points[v].z < 2) {
+      EXPECT_NEAR(h[v], 0.1 + 0.2 * s.points[v].z, 0.02);
+    }
 }
 
 TEST(Expression, ValuesAndFailures) {
