@@ -34,8 +34,8 @@ double Relaxer::badness() const {
   for (int v = 0; v < (int)m_.out.size(); ++v) sum += irregular * irregularity(v);
   for (int t = 0; t < (int)m_.tris.size(); ++t) {
     if (m_.dead(t)) continue;
-    const double lack = std::max(0.0, 1.05 - quality(t));
-    sum += lack * lack * lack;
+    const double q = quality(t), lack = std::max(0.0, 1.05 - q);
+    sum += lack * lack * lack / (q + 0.05);  // one needle is worse than two slivers
   }
   return sum;
 }
@@ -245,13 +245,13 @@ std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool t
   return std::move(best.state);
 }
 
-/// Has this been tried at t without success, when all round it was as it is?
+/// Has this been tried at t without success, when all round it were the edges that are? What only sweeps have
+/// moved since is as it was.
 bool Relaxer::in_vain(int t, const std::vector<int>& round, bool thorough) const {
   if (t >= (int)in_vain_[thorough].size()) return false;
   const int then = in_vain_[thorough][t];
   return then > 0 && std::all_of(round.begin(), round.end(), [&](int s) {
-           return std::all_of(m_.tris[s].begin(), m_.tris[s].end(),
-                              [&](int v) { return changed_[v] < then; });
+           return std::all_of(m_.tris[s].begin(), m_.tris[s].end(), [&](int v) { return edited_[v] < then; });
          });
 }
 
