@@ -310,15 +310,17 @@ int Relaxer::irregularity(int v) const {
 /// 5, 6, 7; only so many, since a mesh with more of them is not to be had by mending.
 void Relaxer::mend_worst() {
   const int most = 200 + m_.live / 100;
-  int before = 0;
-  for (int round = 0; round < 4; ++round) {
+  int before = 0, first = 0;
+  for (int round = 0; round < (forced_ ? 1 : 4); ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
     const int many = (int)bad.size();
-    // where the model forces them they do not get fewer
+    // where the model or a border that is kept forces them they do not get fewer
+    if (round == 0) first = many;
+    forced_ = forced_ || (round > 1 && many > 100 && many > 0.8 * first);
     if (round > 1 && many > 100 && many > 0.98 * before) return;
     before = many;
     // far more than could be mended: what there is time for is the worst
