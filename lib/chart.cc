@@ -28,6 +28,16 @@ void visit_cells(const ChartGrid& g, const std::array<Vec2, 3>& t, Visit visit) 
   int first = cell_of(y_min, g.low.y, g.cells_per_unit, g.rows);
   int last = cell_of(y_max, g.low.y, g.cells_per_unit, g.rows);
   double slack = 1e-6 / g.cells_per_unit;  // rounding never loses a triangle
+  auto visit_row = [&](int row, double x0, double x1) {
+    int c1 = cell_of(x1 + slack, g.low.x, g.cells_per_unit, g.columns);
+    for (int c = cell_of(x0 - slack, g.low.x, g.cells_per_unit, g.columns); c <= c1; ++c)
+      visit(row * g.columns + c);
+  };
+  if (first == last) {
+    auto [x_min, x_max] = std::minmax({t[0].x, t[1].x, t[2].x});
+    visit_row(first, x_min, x_max);
+    return;
+  }
   for (int row = first; row <= last; ++row) {
     double y0 = g.low.y + row / g.cells_per_unit - slack, y1 = y0 + 1 / g.cells_per_unit + 2 * slack;
     double x0 = inf, x1 = -inf;
@@ -42,10 +52,7 @@ void visit_cells(const ChartGrid& g, const std::array<Vec2, 3>& t, Visit visit) 
       x0 = std::min(x0, lo);
       x1 = std::max(x1, hi);
     }
-    if (x0 > x1) continue;
-    int c1 = cell_of(x1 + slack, g.low.x, g.cells_per_unit, g.columns);
-    for (int c = cell_of(x0 - slack, g.low.x, g.cells_per_unit, g.columns); c <= c1; ++c)
-      visit(row * g.columns + c);
+    if (x0 <= x1) visit_row(row, x0, x1);
   }
 }
 
@@ -153,13 +160,19 @@ void index_chart(Chart& chart) {
   g.columns = (int)(width * g.cells_per_unit) + 1;
   g.rows = (int)(height * g.cells_per_unit) + 1;
   g.start.assign(g.columns * g.rows + 1, 0);
-  for (int t = 0; t < (int)tris.size(); ++t)
-    visit_cells(g, corners(chart, t), [&](int cell) { ++g.start[cell + 1]; });
+  std::vector<int> cells, end;  // of each triangle
+  cells.reserve(4 * tris.size());
+  end.reserve(tris.size());
+  for (int t = 0; t < (int)tris.size(); ++t) {
+    visit_cells(g, corners(chart, t), [&](int cell) { cells.push_back(cell); });
+    end.push_back((int)cells.size());
+  }
+  for (int cell : cells) ++g.start[cell + 1];
   std::partial_sum(g.start.begin(), g.start.end(), g.start.begin());
-  g.triangle.resize(g.start.back());
+  g.triangle.resize(cells.size());
   std::vector<int> at(g.start.begin(), g.start.end() - 1);
-  for (int t = 0; t < (int)tris.size(); ++t)
-    visit_cells(g, corners(chart, t), [&](int cell) { g.triangle[at[cell]++] = t; });
+  for (int t = 0, i = 0; t < (int)tris.size(); ++t)
+    for (; i < end[t]; ++i) g.triangle[at[cells[i]]++] = t;
 }
 
 std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex, int n_parts) {

@@ -72,7 +72,8 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     Missed farthest{};
   };
   std::vector<Cover> cover(cdt.tris.size());
-  std::vector<char> seen(chart.uv.size(), 0);
+  constexpr int unknown = -2;
+  std::vector<int> covered_by(chart.uv.size(), unknown);
   auto look_at = [&](int face, int corner, int t) {
     const int vertex = chart.mesh.tris[face][corner];
     const Vec2 p = chart.uv[vertex];
@@ -100,16 +101,13 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     while (!stack.empty()) {
       auto [face, t] = stack.back();
       stack.pop_back();
-      const Tri& v = chart.mesh.tris[face];
       for (int i = 0; i < 3; ++i) {
-        const int s = cdt.walk(chart.uv[v[i]], t, Cdt::border_segment);
-        if (s < 0) continue;  // between a border and its chord
-        t = s;
-        const Vec3 n = area_vector(chart.mesh.points[v[0]], chart.mesh.points[v[1]], chart.mesh.points[v[2]]);
-        const Site& near = m.site[cdt.tris[t][0]];
-        cover[t].area += norm(n) / 6 / (near.size * near.size);
-        if (!seen[v[i]]) look_at(face, i, t);
-        seen[v[i]] = 1;
+        int& s = covered_by[chart.mesh.tris[face][i]];
+        if (s == unknown) {
+          s = cdt.walk(chart.uv[chart.mesh.tris[face][i]], t, Cdt::border_segment);
+          if (s >= 0) look_at(face, i, s);
+        }
+        if (s >= 0) t = s;  // else between a border and its chord
       }
       for (int h = 3 * face; h < 3 * face + 3; ++h) {
         const int o = chart.opposite[h] / 3;
@@ -120,6 +118,18 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     }
   }
   std::vector<Missed> missed;
+  if (std::none_of(cover.begin(), cover.end(), [](const Cover& c) { return c.distance > far; }))
+    return missed;
+  for (const Tri& v : chart.mesh.tris) {
+    const double area =
+        norm(area_vector(chart.mesh.points[v[0]], chart.mesh.points[v[1]], chart.mesh.points[v[2]])) / 2;
+    for (int corner : v) {
+      const int t = covered_by[corner];
+      if (t < 0) continue;
+      const Site& near = m.site[cdt.tris[t][0]];
+      cover[t].area += area / 3 / (near.size * near.size);
+    }
+  }
   for (const Cover& c : cover)
     if (c.distance > far && c.area > many * 0.25 * std::sqrt(3)) missed.push_back(c.farthest);
   return missed;
