@@ -20,10 +20,16 @@ double Relaxer::quality(int t) const {
   const Vec3 p = at(a), q = at(b), r = at(c);
   const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
   // the least angle is opposite to the shortest side
-  const double least = qr <= pq && qr <= rp ? angle(q - p, r - p)
-                       : rp <= pq           ? angle(r - q, p - q)
-                                            : angle(p - r, q - r);
-  return std::min(k / good_kappa, least / good_angle);
+  const Vec3 u = qr <= pq && qr <= rp ? q - p
+                 : rp <= pq           ? r - q
+                                      : p - r,
+             v = qr <= pq && qr <= rp ? r - p
+                 : rp <= pq           ? p - q
+                                      : q - r;
+  // where it is good with a margin there is no need to know it
+  constexpr double tangent = 0.747;  // of 1.05 times the good angle
+  if (norm(cross(u, v)) > tangent * dot(u, v)) return k / good_kappa;
+  return std::min(k / good_kappa, angle(u, v) / good_angle);
 }
 
 /// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside

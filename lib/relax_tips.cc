@@ -100,7 +100,9 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
         continue;
       }
       const Tip& tip = tips[next.second];
-      if (m_.dead(tip.near)) continue;
+      if (int t = tip.near;
+          m_.dead(t) || walk_near(ground_->walk.point(tip.place), t, far_enough) <= far_enough)
+        continue;
       Try one{&tip.place, tip.near, 0, {}, {}, {}};
       one.least = nearest_triangle(ground_->walk.point(tip.place), one.t, one.q);
       if (one.least <= far_enough) continue;
