@@ -248,6 +248,7 @@ std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kap
   if (bad.empty() || tips.empty()) return forced;
   auto point = [&](int t, int i) { return mesh.points[mesh.tris[t][i]]; };
   std::vector<double> length(bad.size());
+  Mesh boxes;  // of each bad triangle, with what it reaches, as a segment between its ends
   std::vector<std::pair<int, int>> corners;  // vertex, place in `bad`
   for (int i = 0; i < (int)bad.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -255,17 +256,24 @@ std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kap
       corners.push_back({mesh.tris[bad[i]][k], i});
     }
   std::sort(corners.begin(), corners.end());
+  for (int i = 0; i < (int)bad.size(); ++i) {
+    const Box box = box_of(mesh, bad[i]);
+    const double reach = touches * length[i];
+    boxes.points.push_back(box.lo - Vec3{reach, reach, reach});
+    boxes.points.push_back(box.hi + Vec3{reach, reach, reach});
+    boxes.tris.push_back({2 * i, 2 * i + 1, 2 * i + 1});
+  }
+  const Bvh tree(boxes);
   std::vector<int> reached, seen(bad.size(), -1);
   for (int tip = 0; tip < (int)tips.size(); ++tip) {
     const auto [p, room] = tips[tip];
     reached.clear();
-    for (int i = 0; i < (int)bad.size(); ++i) {
+    tree.overlapping({p, p}, [&](int i) {
       const Vec3 a = point(bad[i], 0), b = point(bad[i], 1), c = point(bad[i], 2);
-      if (norm(a - p) > 2 * length[i]) continue;
       const auto w = closest_on_triangle(p, a, b, c);
       if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= touches * length[i])
         reached.push_back(i), seen[i] = tip;
-    }
+    });
     for (std::size_t k = 0; k < reached.size(); ++k) {
       const int t = bad[reached[k]];
       forced[t] = 1;

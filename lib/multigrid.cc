@@ -10,7 +10,7 @@ namespace {
 using Matrix = Multigrid::Matrix;
 
 constexpr int most_steps = 60;  // some 18 are usual
-constexpr double small_residual = 1e-12;
+constexpr double small_residual = 1e-12, true_residual = 1e-10;
 constexpr int few_unknowns = 3000;  // of the level that is factorised
 
 /// The entries of row i are rows(m)[i] to rows(m)[i + 1] of columns(m) and values(m).
@@ -108,10 +108,11 @@ void add_row(const Matrix& a, int from, int to, double factor, const std::vector
 }  // namespace
 
 Multigrid::Multigrid(Matrix matrix) {
+  levels_.reserve(32);  // the matrices are not to be copied
   // the coarser a level, the denser and the more even its entries (Vanek and others, eq. 5.1)
   for (double threshold = 0.08;; threshold /= 2) {
     Level& level = levels_.emplace_back();
-    level.matrix = std::move(matrix);
+    level.matrix.swap(matrix);
     const Matrix& a = level.matrix;
     const int n = (int)a.rows();
     for (int i = 0; i < n; ++i)
@@ -122,7 +123,7 @@ Multigrid::Multigrid(Matrix matrix) {
     if (p.cols() > n / 2) break;
     const Matrix restricted = p.transpose(), smooth = a * p;
     matrix = restricted * smooth;
-    level.prolongation = std::move(p);
+    level.prolongation.swap(p);
   }
   const Matrix& a = levels_.back().matrix;
   std::vector<Entry<double>> lower;
@@ -210,6 +211,14 @@ bool Multigrid::conjugate_gradients(double* columns) const {
     bool done = true;
     for (int c = 0; c < K; ++c) done = done && left[c] <= small_residual * small_residual * size[c];
     if (!done) continue;
+    // what the steps have summed up parts from the residual where the matrix is badly conditioned
+    std::fill(q.begin(), q.end(), 0);
+    for (std::size_t i = 0; i < n; ++i) add_row<K>(a, rows(a)[i], rows(a)[i + 1], 1, x, &q[K * i]);
+    for (std::size_t i = 0; i < n; ++i)
+      for (int c = 0; c < K; ++c) q[K * i + c] -= columns[c * n + i];
+    products(q, q, left);
+    for (int c = 0; c < K; ++c)
+      if (!(left[c] <= true_residual * true_residual * size[c])) return false;
     for (std::size_t i = 0; i < n; ++i)
       for (int c = 0; c < K; ++c) columns[c * n + i] = x[K * i + c];
     return true;

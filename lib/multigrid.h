@@ -25,7 +25,8 @@ class Multigrid {
   const Matrix& matrix() const { return levels_[0].matrix; }
 
   /// Solves in place; right-hand sides of n numbers each follow each other. False, with nothing changed, if
-  /// the residual of one is not below 1e-12 of it after 60 steps.
+  /// the residual of one is not below 1e-12 of it, as the steps sum it up, after 60 steps, or not below 1e-10
+  /// in the end.
   bool solve(std::vector<double>& right_hand_side) const;
 
  private:

@@ -94,6 +94,8 @@ int cut_if_flatter(Surface& surface, const SubMesh& part_mesh, int part, int n_p
       map_part(mesh, options, report);
     } catch (const GoalMissed&) {
       return n_parts;
+    } catch (const NotAdmissible&) {
+      return n_parts;
     }
     if (report.anisotropy_median - 1 > much * (whole.anisotropy_median - 1) ||
         report.anisotropy_p99 > whole.anisotropy_p99)

@@ -75,8 +75,8 @@ std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, Par
 /// else along its limbs; else by a short line between the places that should not be in one chart
 /// (lib/bisect.h). A limb with N edges round that is mapped to a ring changes its scale by exp(2 pi / N) over
 /// each of them, which shears its triangles to about 1 + 3.6 / N: where the median is above 1.05 and the
-/// geodesic aspect ratio above 2, a part without model edges is cut along its limbs if that is much better in
-/// all pieces.
+/// geodesic aspect ratio above 2, a part of 500 triangles or more without model edges is cut along its limbs
+/// if that is much better in all pieces; in the first two rounds, and not where a circle map was asked for.
 /// Ears of parts that go to a circle, triangles with two edges on the longest loop, are split through their
 /// third edge, since a circle flattens them. Both append vertices and split triangles, and
 /// rewrite face column `part`; with `strict` there is neither. reports has one entry a part.

@@ -6,6 +6,7 @@
 
 #include "lib/bvh.h"
 #include "lib/error.h"
+#include "lib/number.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -88,8 +89,7 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   }
   if (2 * far > n)
     throw NotAdmissible("the mesh is not one of the reference: " + std::to_string(far) + " of " +
-                        std::to_string(n) + " vertices are farther from it than a mean edge, " +
-                        std::to_string(edge));
+                        std::to_string(n) + " vertices are farther from it than a mean edge, " + shown(edge));
   if (r.size.empty())
     r.size.assign(n, std::sqrt(4 / std::sqrt(3.0) * total_area(reference) / (double)mesh.tris.size()));
   r.kind.resize(n);

@@ -27,10 +27,9 @@ struct RelaxReport {
 /// Flips, collapses, splits and moves until the mesh is regular, judged in space. Every vertex stays on the
 /// reference: moves walk over its triangles from the vertex's place. Borders, model edges and corners keep
 /// their chains; vertices of interface lines (line_kind[line] == interface_line) are free.
-///   reference   with a vertex column `size` (else the mesh's own sizes) and a face column `model` (else
-///   none) corner      per vertex of the reference: where a border or model edge has a corner that stays;
-///   empty: only
-///               its ends and junctions stay
+///   reference: with a vertex column `size` (else the mesh's own sizes) and a face column `model` (else none)
+///   corner: per vertex of the reference, where a border or model edge has a corner that stays, unless
+///   another is much nearer than the size; empty: only ends and junctions stay
 /// The same bytes at any number of threads.
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner = {}, const RelaxOptions& options = {});

@@ -40,8 +40,8 @@ double Relaxer::badness() const {
   for (int v = 0; v < (int)m_.out.size(); ++v) sum += irregular * irregularity(v);
   for (int t = 0; t < (int)m_.tris.size(); ++t) {
     if (m_.dead(t)) continue;
-    const double lack = std::max(0.0, 1.05 - quality(t));
-    sum += lack * lack * lack;
+    const double q = quality(t), lack = std::max(0.0, 1.05 - q);
+    sum += lack * lack * lack / (q + 0.05);  // one needle is worse than two slivers
   }
   return sum;
 }

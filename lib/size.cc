@@ -25,7 +25,7 @@ class FieldMaker {
       : s_(surface), chart_(chart), o_(options), diagonal_(diagonal(surface)) {
     cap_ = o_.max > 0 ? o_.max : infinite;
     if (o_.size > 0) cap_ = std::min(cap_, o_.size);
-    if (!(o_.size > 0 || o_.triangles > 0 || o_.max > 0)) cap_ = 0.1 * diagonal_;
+    if (!(o_.size > 0 || o_.triangles > 0 || o_.max > 0 || o_.at || !o_.data.empty())) cap_ = 0.1 * diagonal_;
     connect();
     if (o_.per_turn > 0 || o_.chord > 0 || (o_.at && o_.at_curvature))
       curvature_ = face_curvature(

@@ -11,29 +11,38 @@ namespace {
 
 /// The smallest height of each triangle of the input, from the pieces that it is cut into: its corners are
 /// among theirs, so that its longest edge is the largest distance between these.
-std::vector<double> heights_of_origins(const Surface& s) {
+struct Origins {
+  std::vector<int> of;         ///< per triangle of the surface, counted from 0 on
+  std::vector<double> height;  ///< per origin
+};
+Origins origins_of(const Surface& s) {
   const std::vector<int>& of = s.face.get<int>("origin");
-  const int n = *std::max_element(of.begin(), of.end()) + 1;
-  std::vector<int> start(n + 1, 0), pieces(of.size());
-  for (int o : of) ++start[o + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> fill(start.begin(), start.end() - 1);
-  for (int t = 0; t < (int)of.size(); ++t) pieces[fill[of[t]]++] = t;
-  std::vector<double> height(n, 0);
+  Origins origins{std::vector<int>(of.size()), {}};
+  std::vector<int> order(of.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return of[a] < of[b]; });
   std::vector<Vec3> corners;
-  for (int o = 0; o < n; ++o) {
+  for (std::size_t first = 0, end; first < order.size(); first = end) {
     corners.clear();
     double twice = 0, longest = 0;
-    for (int i = start[o]; i < start[o + 1]; ++i) {
-      for (int v : s.tris[pieces[i]]) corners.push_back(s.points[v]);
+    for (end = first; end < order.size() && of[order[end]] == of[order[first]]; ++end) {
+      origins.of[order[end]] = (int)origins.height.size();
+      for (int v : s.tris[order[end]]) corners.push_back(s.points[v]);
       const std::size_t k = corners.size();
       twice += norm(area_vector(corners[k - 3], corners[k - 2], corners[k - 1]));
     }
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, norm(corners[i] - corners[j]));
-    if (longest > 0) height[o] = twice / longest;
+    // what is farthest from a point of a triangle is a corner of it, so that one of these steps is along its
+    // longest edge
+    Vec3 at = corners[0];
+    for (int step = 0; step < 3; ++step) {
+      const Vec3 from = at;
+      for (Vec3 p : corners)
+        if (norm(p - from) > norm(at - from)) at = p;
+      longest = std::max(longest, norm(at - from));
+    }
+    origins.height.push_back(longest > 0 ? twice / longest : 0);
   }
-  return height;
+  return origins;
 }
 
 /// Maximal sets of triangles of one part with no model edge between them: region i has the triangles
@@ -77,7 +86,7 @@ class Slivers {
         max_faces_(max_faces),
         opposite_(opposite),
         model_(s.face.get<std::uint8_t>("model")),
-        height_(heights_of_origins(s)),
+        origins_(origins_of(s)),
         part_(s.face.get<int>("part")) {}
 
   /// The slivers there are go over, the smallest first, but for those beside one that has gone already.
@@ -133,8 +142,8 @@ class Slivers {
     double perimeter = 0, heights = 0;
     int origins = 0;
     area = 0;
-    const std::vector<int>& of = s_.face.get<int>("origin");
-    seen_.resize(height_.size(), -1);
+    const std::vector<int>& of = origins_.of;
+    seen_.resize(origins_.height.size(), -1);
     for (int i = pieces_.first[region]; i < pieces_.first[region + 1]; ++i) {
       const int t = pieces_.list[i];
       const Tri& v = s_.tris[t];
@@ -144,7 +153,7 @@ class Slivers {
           perimeter += length(h);
       if (seen_[of[t]] == region) continue;
       seen_[of[t]] = region;
-      heights += height_[of[t]];
+      heights += origins_.height[of[t]];
       ++origins;
     }
     return perimeter > 0 && heights > 0 ? 2 * area / perimeter * origins / heights : 1;
@@ -193,7 +202,7 @@ class Slivers {
   const int n_parts_, max_faces_;
   const std::vector<int>& opposite_;
   const std::vector<std::uint8_t>& model_;
-  const std::vector<double> height_;  // of the input's triangles
+  const Origins origins_;
   std::vector<int>& part_;
   Pieces pieces_;
   std::vector<int> seen_;  // scratch: of the input's triangles, the region that has counted it last

@@ -12,6 +12,7 @@
 
 #include "lib/error.h"
 #include "lib/multigrid.h"
+#include "lib/number.h"
 
 namespace meshpipe {
 namespace {
@@ -109,7 +110,7 @@ struct Factorisation<Scalar>::Impl {
       double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
       if (ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
         throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
-                         " has diagonal " + std::to_string(a) + " and pivot " + std::to_string(d));
+                         " has diagonal " + shown(a) + " and pivot " + shown(d));
     }
   }
 };
@@ -128,8 +129,11 @@ Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_tri
   if constexpr (std::is_same_v<Scalar, double>) {
     if (kind == MatrixKind::laplacian && impl_->ldlt.cost() > cost_of_multigrid * n) {
       Stopwatch watch(time ? &time->factorisation : nullptr);
-      impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
-      return;
+      try {
+        impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
+        return;
+      } catch (const GoalMissed&) {  // its coarsest level is singular to rounding
+      }
     }
   }
   impl_->factorise(m);

@@ -42,8 +42,9 @@ class Factorisation {
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
   /// Precondition: kind `any`.
   void refactor(const std::vector<Entry<Scalar>>& lower_triangle);
-  /// Solves in place; call as often as needed. Several right-hand sides of n numbers each follow each other.
-  /// Throws GoalMissed if the solution is beyond doubles.
+  /// Solves in place; call as often as needed, one call at a time. Several right-hand sides of n numbers each
+  /// follow each other. Throws GoalMissed if the solution is beyond doubles, and like the constructor if
+  /// multigrid does not converge and the factorisation is made now.
   void solve(std::vector<Scalar>& right_hand_side) const;
 
  private:

@@ -176,10 +176,11 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
     sink(write_as(stream, path, text));
 }
 
-/// A device or a pipe is written to, not replaced; so is what names of the system's lead to (/dev/stdout is a
-/// link, to a regular file if that is where standard output goes).
+/// A device or a pipe is written to, not replaced; so is what the names of open descriptors lead to
+/// (/dev/stderr is a link, to a regular file if that is where standard error goes).
 bool in_place(const std::string& path, const struct stat& info) {
-  return !S_ISREG(info.st_mode) || path.starts_with("/dev/") || path.starts_with("/proc/");
+  return !S_ISREG(info.st_mode) || path.starts_with("/dev/std") || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/");
 }
 
 /// Writes what `produce` hands to its sink to a file, beside it and renamed; "-" is standard output.
@@ -248,8 +249,12 @@ std::string recorded(const CLI::App& app) {
     if (o->get_expected_min() == 0) continue;
     const bool file = o->get_type_name().starts_with("FILE");  // its name depends on where the program ran
     char between = '=';
-    for (const std::string& r : o->results()) {
-      if (file && r != "none") continue;
+    for (std::string r : o->results()) {
+      if (file && r != "none") {  // but not the name of what is in it
+        const std::size_t colon = o->get_type_name() == "FILE[:NAME]" ? r.rfind(':') : r.npos;
+        if (colon == r.npos) continue;
+        r.erase(0, colon);
+      }
       out += between + r;
       between = ',';
     }

@@ -6,6 +6,7 @@
 #include "formats/level_svg.h"
 #include "formats/stages.h"
 #include "lib/multiscale.h"
+#include "lib/number.h"
 #include "lib/partition.h"
 #include "lib/topology.h"
 #include "tools/common.h"
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
     }
     for (std::size_t p = 0; p < topology.size(); ++p)
       if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
-        io.say("part " + std::to_string(p) + " keeps aspect ratio " + std::to_string(topology[p].eta_geo) +
+        io.say("part " + std::to_string(p) + " keeps aspect ratio " + shown(topology[p].eta_geo) +
                ": no cut makes it shorter");
     const Interfaces cut = measure_interfaces(stream.surface, opposite);
     char text[200];

@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
     if (const double asked = o.relax.target_triangles;
         std::abs((double)mesh.tris.size() - asked) > much * asked && asked > 0)
       io.say("narrow places of the model keep it from the " + std::to_string(stream.asked_triangles) +
-             " triangles asked for");
+             " triangles meant");
     if (r.corners_merged > 0)
       io.say(std::to_string(r.corners_merged) +
              " corners merged with another that was nearer than a twentieth of the size");

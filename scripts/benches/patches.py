@@ -24,7 +24,9 @@ from benches import common
 def gear(patches, triangles, work):
     """The body, and groups: each boss with its bore and cap, and two of three drilled holes with the plate's top."""
     path, groups = os.path.join(work, "gear.msh"), os.path.join(work, "groups.txt")
-    common.run(["mshape", "body", "--patches", str(patches), "--triangles", str(triangles), "-q", "-o", path])
+    made = common.run(["mshape", "body", "--patches", str(patches), "--triangles", str(triangles), "-q", "-o", path])
+    if made.status:
+        raise SystemExit(made.text.strip())
     listed = common.run(f"mconvert -q --ascii '{path}' | grep -a '^comment name'").text
     numbers = re.findall(r" boss(\d+)", listed)
     holes = re.findall(r" (hole\d+)", listed)

@@ -148,8 +148,6 @@ TEST(Lines, AreEquidistributedInTheSizeField) {
     EXPECT_NEAR(position(s, lines.points[bottom->first + i]).x, 0.5 * (std::pow(3, i / 5.0) - 1), 1e-12);
 }
 
-// the border of a disk: a circle has no corner, however coarse the size, and closes with three segments at
-// least
 //   .--.      a strip bent to an arc, 1.3 sizes long: rounding down would cut the arc off, where one that is
 //  '    '     straight is a single segment
 TEST(Lines, BendsAreNotCutOff) {

@@ -73,6 +73,16 @@ TEST(Sliver, GoesToTheOtherSideOfItsCut) {
   EXPECT_FALSE(hand_over(s, 2));
 }
 
+TEST(Sliver, OriginsOnlyTellTrianglesApart) {
+  Surface s = cut_beside_an_edge(10.15, left), odd = s;
+  std::vector<int> origin = odd.face.get<int>("origin");
+  for (int& o : origin) o = o % 2 ? -o : 2147483647 - o;
+  odd.face.set("origin", std::move(origin));
+  EXPECT_TRUE(hand_over(s, 2));
+  EXPECT_TRUE(hand_over(odd, 2));
+  EXPECT_EQ(odd.face.get<int>("part"), s.face.get<int>("part"));
+}
+
 TEST(Sliver, IsThinnerThanTheTriangles) {
   Surface s = cut_beside_an_edge(10.5, left);
   EXPECT_FALSE(hand_over(s, 2));
