@@ -80,7 +80,7 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
     if (distance[i] > far_enough) farthest.push_back({-distance[i], i});
   std::sort(farthest.begin(), farthest.end());
   bool any = false;
-  int left = std::max(4, (int)now.tris.size() / 400);  // more would cost the mesh its regularity
+  int left = std::max(4, (int)now.tris.size() / 800);  // more would cost the mesh its regularity
   struct Try {
     const Place* tip;
     int t;
