@@ -26,10 +26,13 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
   std::vector<double> length(opposite.size(), 0);
   double sum = 0;
   std::size_t n = 0;
+  const double flat = std::cos(sharp_edge);
   std::vector<Vec3> normal(mesh.tris.size());
+  std::vector<double> size(mesh.tris.size());
   for (std::size_t t = 0; t < normal.size(); ++t) {
     const Tri& v = mesh.tris[t];
     normal[t] = area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+    size[t] = norm(normal[t]);
   }
   for (int h = 0; h < (int)opposite.size(); ++h)
     if (opposite[h] >= 0) {
@@ -44,7 +47,7 @@ std::vector<int> cut_weights(const Mesh& mesh, const std::vector<int>& opposite,
     double f = 1;
     if (!model.empty() && model[h / 3] >> h % 3 & 1)
       f = model_factor;
-    else if (angle(normal[h / 3], normal[o / 3]) > sharp_edge)
+    else if (dot(normal[h / 3], normal[o / 3]) < flat * size[h / 3] * size[o / 3])
       f = sharp_factor;
     weight[h] = (int)std::clamp(std::round(100 * f * length[h] * n / sum), 1.0, 1e5);
   }
@@ -368,6 +371,7 @@ Labelling search(const Component& c, const PartitionOptions& options) {
   }
   const double balances[] = {0.3, 0.1, 0.5};
   const Forecaster forecaster(c.mesh, c.opposite);
+  constexpr int worth_threads = 3000;                  // triangles
   constexpr int batch = 2, first_side = 2, sides = 3;  // the sides of the surface come after two trials
   const Vec3 axes[sides] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   auto candidate = [&](int i) {
@@ -382,7 +386,7 @@ Labelling search(const Component& c, const PartitionOptions& options) {
        tried += batch) {
     Labelling found[batch];
     std::exception_ptr failure;  // must not leave the parallel region by itself
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (n > worth_threads)
     for (int i = 0; i < batch; ++i) try {
         found[i] = finish(c, forecaster, candidate(tried + i), options.seed + tried + i);
       } catch (...) {

@@ -17,6 +17,7 @@
 #include "lib/error.h"
 #include "lib/levels.h"
 #include "lib/maxcut.h"
+#include "lib/parallel.h"
 #include "lib/progress.h"
 #include "lib/regions.h"
 #include "lib/sliver.h"
@@ -177,15 +178,19 @@ CutMaps best_cut_of(const Part& part, const MultiscaleOptions& options, double s
     std::vector<double> field;
     std::vector<std::vector<Vec2>> lines;
   };
-  std::vector<Candidate> candidates;
-  for (int i = 0; i < options.directions; i++) {
-    Candidate c;
+  std::vector<Candidate> candidates(options.directions);
+  auto try_direction = [&](int i) {
+    Candidate& c = candidates[i];
     c.lines = cut_lines(disk, cut.levels, std::numbers::pi * i / options.directions);
     c.field = cut_line_field(disk, cut.levels, c.lines);
     drop_fragments(part, c.field);
     c.is = assess(part, c.field);
-    candidates.push_back(std::move(c));
-  }
+  };
+  constexpr std::size_t worth_threads = 4000;  // triangles
+  if (part.mesh.tris.size() > worth_threads)
+    parallel_for(options.directions, try_direction);
+  else
+    for (int i = 0; i < options.directions; i++) try_direction(i);
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return better(a.is, b.is); });
   if (const Assessment& best = candidates[0].is; !best.valid || best.smaller_share < least_share) {
@@ -238,7 +243,8 @@ CutMaps best_cut(const Part& part, const std::vector<std::uint8_t>& model, const
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
   const double n = part.mesh.tris.size();
   Coarse coarse;
-  if (n > worth * enough) coarse = coarsen(part.mesh, part.opposite, model, std::max<int>(enough, n / at_most), most_turn);
+  if (n > worth * enough)
+    coarse = coarsen(part.mesh, part.opposite, model, std::max<int>(enough, n / at_most), most_turn);
   if (coarse.tris.empty() || n < worth * coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, options, share);
     field = cut.field;

@@ -56,6 +56,7 @@ Relaxer::Relaxer(LiftedMesh mesh, const Ground& ground, const std::vector<int>& 
       finer_(points_.size(), 1),
       tried_(points_.size()),
       changed_(points_.size()),
+      edited_(points_.size()),
       color_(points_.size(), -1) {
   const int n = (int)points_.size();
   for (int v = 0; v < n; ++v) {
@@ -129,10 +130,12 @@ void Relaxer::meet_count_in_the_end(double target) {
   constexpr double least = 0.6, spoilt = 0.7;
   // of a first try that is as good as asked for, and of one that was aimed
   constexpr double near_enough = 0.025, near = 0.015;
-  constexpr int most_tries = 4;
+  // triangles that go with one less asked for; fewer where the model asks for them, not the sizes
+  constexpr double sluggish = 0.6, least_response = 0.2;
+  constexpr int most_tries = 4, most_sluggish = 3;
   const Relaxer start = *this;
   std::optional<Relaxer> best;
-  double goal = target, sound = 0;
+  double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
   auto off = [&](const Relaxer& r) { return std::abs(r.m_.live - target); };
   for (int tries = 1;; ++tries) {
     optimise(goal);
@@ -140,9 +143,13 @@ void Relaxer::meet_count_in_the_end(double target) {
     if (tries == 1) sound = spoilt * shape;
     if (shape >= sound && off(*this) <= (tries == 1 ? near_enough : near) * target) return;
     if (!best || (shape >= sound && off(*this) < off(*best))) best = *this;
-    if (shape < sound || tries == most_tries) break;
+    if (tries > 1) response = (m_.live - last_live) / (goal - last_goal);
+    if (shape < sound || tries == (response < sluggish ? most_sluggish : most_tries)) break;
+    last_goal = goal, last_live = m_.live;
     *this = start;
-    goal = std::clamp(goal - surplus, least * target, target / least);
+    goal = std::clamp(goal - surplus / std::max(std::min(response, 1.0), least_response), least * target,
+                      target / least);
+    if (goal == last_goal) break;
     for (double& f : finer_) f *= std::sqrt(target / goal);
   }
   *this = std::move(*best);

@@ -92,6 +92,7 @@ void Relaxer::insert(int h, const Place& place, Vec3 p, Vec3 facing) {
   facing_.push_back(facing);
   tried_.push_back(0);
   changed_.push_back(0);
+  edited_.push_back(0);
   color_.push_back(-1);
   const int m = m_.split(h);
   for (int v : {m, a, b, c, d})

@@ -251,13 +251,13 @@ std::optional<Relaxer> Relaxer::mended(const std::vector<int>& triangles, bool t
   return std::move(best.state);
 }
 
-/// Has this been tried at t without success, when all round it was as it is?
+/// Has this been tried at t without success, when all round it were the edges that are? What only sweeps have
+/// moved since is as it was.
 bool Relaxer::in_vain(int t, const std::vector<int>& round, bool thorough) const {
   if (t >= (int)in_vain_[thorough].size()) return false;
   const int then = in_vain_[thorough][t];
   return then > 0 && std::all_of(round.begin(), round.end(), [&](int s) {
-           return std::all_of(m_.tris[s].begin(), m_.tris[s].end(),
-                              [&](int v) { return changed_[v] < then; });
+           return std::all_of(m_.tris[s].begin(), m_.tris[s].end(), [&](int v) { return edited_[v] < then; });
          });
 }
 

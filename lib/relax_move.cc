@@ -217,6 +217,7 @@ signed char Relaxer::free_color(int v) const {
 /// To be called for every vertex whose neighbours are others than before.
 void Relaxer::edited(int v) {
   touch(v);
+  edited_[v] = clock_;
   bool clash = color_[v] < 0;
   m_.neighbours(v, [&](int w) { clash |= color_[w] == color_[v]; });
   if (clash) color_[v] = free_color(v);

@@ -193,6 +193,7 @@ class Relaxer {
                                ///< the rim of a patch, or on a seam
   std::vector<double> finer_;  ///< factor on the size field, smaller where intersections asked for refinement
   std::vector<int> tried_, changed_;  ///< when a vertex was last tried to move, and when it last changed
+  std::vector<int> edited_;           ///< when its neighbours last became others
   int clock_ = 0;
   std::vector<int> in_vain_[2];     ///< when mending a triangle was last in vain: as it is done, thoroughly
   bool forced_ = false;             ///< are most of the bad triangles there to stay?

@@ -229,11 +229,12 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
 }
 
 /// Pieces of a part other than its largest lie inside a band: they change to its other part.
-void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& band,
+/// Returns whether there were any.
+bool keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, const std::vector<int>& band,
                          const std::vector<Curve>& curves, std::vector<int>& part, int n_parts) {
   std::vector<int> piece = part;
   const int n = separate_pieces(opposite, piece);
-  if (n == n_parts) return;
+  if (n == n_parts) return false;
   std::vector<double> area(n, 0);
   std::vector<int> of(n), largest(n_parts, -1);
   for (std::size_t t = 0; t < part.size(); ++t) {
@@ -246,6 +247,7 @@ void keep_largest_pieces(const Mesh& mesh, const std::vector<int>& opposite, con
   for (std::size_t t = 0; t < part.size(); ++t)
     if (band[t] >= 0 && piece[t] != largest[part[t]])
       part[t] = curves[band[t]].a + curves[band[t]].b - part[t];
+  return true;
 }
 
 /// Length of each curve inside its band, and the number of its model edges.
@@ -313,10 +315,10 @@ std::vector<Fault> try_straighten(Surface& surface, std::vector<int>& opposite,
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
 
-  keep_largest_pieces(s, after, band, curves, part, n_parts);
-  std::vector<int> piece = part;
   std::vector<char> broken(n_parts, 0);
-  if (separate_pieces(after, piece) != n_parts) {
+  std::vector<int> piece;
+  if (keep_largest_pieces(s, after, band, curves, part, n_parts) &&
+      separate_pieces(after, piece = part) != n_parts) {
     std::vector<int> seen(n_parts, -1);
     for (std::size_t t = 0; t < part.size(); ++t) {
       if (seen[part[t]] < 0) seen[part[t]] = piece[t];
