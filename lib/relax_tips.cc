@@ -84,7 +84,7 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
   }
   std::sort(farthest.begin(), farthest.end());
   bool any = false;
-  int left = std::max(4, (int)now.tris.size() / 400);  // more would cost the mesh its regularity
+  int left = std::max(4, (int)now.tris.size() / 800);  // more would cost the mesh its regularity
   struct Try {
     const Place* tip;
     int t;
@@ -104,7 +104,9 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
         continue;
       }
       const Tip& tip = tips[next.second];
-      if (m_.dead(tip.near)) continue;
+      if (int t = tip.near;
+          m_.dead(t) || walk_near(ground_->walk.point(tip.place), t, far_enough) <= far_enough)
+        continue;
       Try one{&tip.place, tip.near, 0, {}, {}, {}};
       one.least = nearest_triangle(ground_->walk.point(tip.place), one.t, one.q);
       if (one.least <= far_enough) continue;

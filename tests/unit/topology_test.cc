@@ -176,6 +176,12 @@ TEST(Topology, TableOfPartsHasARowAPart) {
   EXPECT_EQ(table.get<int>("faces"), (std::vector<int>{128, 128}));
   EXPECT_NEAR(table.get<double>("eta_geo")[1], 1, 0.05);
 
+  // known neighbours make no difference
+  const auto opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const auto known = topology_of_parts(s, opposite, part, 2);
+  for (const char* column : {"area", "eta_cyl", "eta_box", "eta_geo"})
+    EXPECT_EQ(part_table(known).get<double>(column), table.get<double>(column)) << column;
+
   // parts that meet themselves at a vertex are refused, the first one named, with the surface's own number
   std::fill(part.begin(), part.end(), 0);
   part[0] = part[35] = 1;  // triangles (0, 1, 17) and (17, 34, 33) share vertex 17 only, as do the rest
