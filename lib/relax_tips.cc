@@ -76,8 +76,12 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
     if (enough <= far_enough) break;
   }
   std::vector<std::pair<double, int>> farthest;  // the distance, negative, and the tip
-  for (int i = 0; i < n; ++i)
-    if (distance[i] > far_enough) farthest.push_back({-distance[i], i});
+  for (int i = 0; i < n; ++i) {
+    if (distance[i] <= far_enough) continue;
+    // where the size is larger than elsewhere, so is the distance that it stands for
+    const double here = size_at(m_.tris[tips[i].near][0]) / h;
+    if (distance[i] > far_enough * (here > 1.2 ? here : 1)) farthest.push_back({-distance[i], i});
+  }
   std::sort(farthest.begin(), farthest.end());
   bool any = false;
   int left = std::max(4, (int)now.tris.size() / 800);  // more would cost the mesh its regularity
