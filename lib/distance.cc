@@ -333,7 +333,7 @@ Distance distance_between(const Mesh& reference, const Bvh& reference_tree, cons
                           const Bvh& mesh_tree, int samples) {
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   // small meshes need no more than this for the mean to be right within a percent
-  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 2 + 500;
+  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 4 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   OneSided there(mesh, mesh_tree, reference, reference_tree, d),
       back(reference, reference_tree, mesh, mesh_tree, d);

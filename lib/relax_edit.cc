@@ -303,7 +303,8 @@ void Relaxer::flip_to_shape() {
     if (std::max({changed_[m_.from(h)], changed_[m_.to(h)], changed_[m_.apex(h)],
                   changed_[m_.apex(m_.opp[h])]}) < since)
       continue;
-    if (worst_flipped(h) < 0.9 * worst_now(h) && may_flip(h)) flip(h);
+    const double most = 0.9 * worst_now(h);  // no triangle has less than 1
+    if (most > 1 && worst_flipped(h) < most && may_flip(h)) flip(h);
   }
 }
 

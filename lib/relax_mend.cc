@@ -20,10 +20,16 @@ double Relaxer::quality(int t) const {
   const Vec3 p = at(a), q = at(b), r = at(c);
   const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
   // the least angle is opposite to the shortest side
-  const double least = qr <= pq && qr <= rp ? angle(q - p, r - p)
-                       : rp <= pq           ? angle(r - q, p - q)
-                                            : angle(p - r, q - r);
-  return std::min(k / good_kappa, least / good_angle);
+  const Vec3 u = qr <= pq && qr <= rp ? q - p
+                 : rp <= pq           ? r - q
+                                      : p - r,
+             v = qr <= pq && qr <= rp ? r - p
+                 : rp <= pq           ? p - q
+                                      : q - r;
+  // where it is good with a margin there is no need to know it
+  constexpr double tangent = 0.747;  // of 1.05 times the good angle
+  if (norm(cross(u, v)) > tangent * dot(u, v)) return k / good_kappa;
+  return std::min(k / good_kappa, angle(u, v) / good_angle);
 }
 
 /// What is to be made small: counts the worst triangles most, and none that is good with a margin; and inside
@@ -310,15 +316,17 @@ int Relaxer::irregularity(int v) const {
 /// 5, 6, 7; only so many, since a mesh with more of them is not to be had by mending.
 void Relaxer::mend_worst() {
   const int most = 200 + m_.live / 100;
-  int before = 0;
-  for (int round = 0; round < 4; ++round) {
+  int before = 0, first = 0;
+  for (int round = 0; round < (forced_ ? 1 : 4); ++round) {
     std::vector<std::pair<double, int>> bad;
     for (int t = 0; t < (int)m_.tris.size(); ++t)
       if (!m_.dead(t))
         if (const double q = quality(t); q < 1) bad.push_back({q, t});
     std::sort(bad.begin(), bad.end());
     const int many = (int)bad.size();
-    // where the model forces them they do not get fewer
+    // where the model or a border that is kept forces them they do not get fewer
+    if (round == 0) first = many;
+    forced_ = forced_ || (round > 1 && many > 100 && many > 0.8 * first);
     if (round > 1 && many > 100 && many > 0.98 * before) return;
     before = many;
     // far more than could be mended: what there is time for is the worst

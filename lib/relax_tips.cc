@@ -76,11 +76,15 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
     if (enough <= far_enough) break;
   }
   std::vector<std::pair<double, int>> farthest;  // the distance, negative, and the tip
-  for (int i = 0; i < n; ++i)
-    if (distance[i] > far_enough) farthest.push_back({-distance[i], i});
+  for (int i = 0; i < n; ++i) {
+    if (distance[i] <= far_enough) continue;
+    // where the size is larger than elsewhere, so is the distance that it stands for
+    const double here = size_at(m_.tris[tips[i].near][0]) / h;
+    if (distance[i] > far_enough * (here > 1.2 ? here : 1)) farthest.push_back({-distance[i], i});
+  }
   std::sort(farthest.begin(), farthest.end());
   bool any = false;
-  int left = std::max(4, (int)now.tris.size() / 400);  // more would cost the mesh its regularity
+  int left = std::max(4, (int)now.tris.size() / 800);  // more would cost the mesh its regularity
   struct Try {
     const Place* tip;
     int t;
@@ -100,7 +104,9 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
         continue;
       }
       const Tip& tip = tips[next.second];
-      if (m_.dead(tip.near)) continue;
+      if (int t = tip.near;
+          m_.dead(t) || walk_near(ground_->walk.point(tip.place), t, far_enough) <= far_enough)
+        continue;
       Try one{&tip.place, tip.near, 0, {}, {}, {}};
       one.least = nearest_triangle(ground_->walk.point(tip.place), one.t, one.q);
       if (one.least <= far_enough) continue;

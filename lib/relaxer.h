@@ -196,6 +196,7 @@ class Relaxer {
   std::vector<int> edited_;           ///< when its neighbours last became others
   int clock_ = 0;
   std::vector<int> in_vain_[2];     ///< when mending a triangle was last in vain: as it is done, thoroughly
+  bool forced_ = false;             ///< are most of the bad triangles there to stay?
   int flipped_at_ = 0;              ///< when flip_to_shape last looked
   std::vector<signed char> color_;  ///< no two joined vertices have the same; -1: none, not moved
   std::vector<int> by_color_, color_start_;
