@@ -11,7 +11,7 @@ namespace meshpipe {
 template <class F>
 void parallel_for(int n, F f) {
   std::vector<std::exception_ptr> failed(n);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (n > 1)
   for (int i = 0; i < n; ++i) {
     // nothing may leave a parallel region by an exception
     try {

@@ -6,6 +6,7 @@
 
 #include "lib/bvh.h"
 #include "lib/intersect.h"
+#include "lib/parallel.h"
 #include "lib/relaxer.h"
 
 namespace meshpipe {
@@ -285,8 +286,7 @@ int Relaxer::mend_each(std::vector<int> triangles, bool thorough, Wanted wanted)
       for (int s : round) taken[s] = 1;
       batch.push_back({std::move(round), {}});
     }
-#pragma omp parallel for schedule(dynamic) if (batch.size() > 1)
-    for (int i = 0; i < (int)batch.size(); ++i) batch[i].mended = mended(batch[i].round, thorough);
+    parallel_for((int)batch.size(), [&](int i) { batch[i].mended = mended(batch[i].round, thorough); });
     ++clock_;
     in_vain_[thorough].resize(m_.tris.size());
     for (Place& p : batch)

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lib/bvh.h"
+#include "lib/parallel.h"
 #include "lib/relaxer.h"
 #include "lib/size.h"
 
@@ -118,11 +119,10 @@ bool Relaxer::reach_tips(std::vector<Tip>& tips) {
       for (int s : one.round) taken[s] = 1;
       batch.push_back(std::move(one));
     }
-#pragma omp parallel for schedule(dynamic) if (batch.size() > 1)
-    for (int k = 0; k < (int)batch.size(); ++k) {
+    parallel_for((int)batch.size(), [&](int k) {
       Try& one = batch[k];
       one.state = reached(*one.tip, one.q, one.least, far_enough, one.round);
-    }
+    });
     for (Try& one : batch)
       if (one.state) {
         adopt(*one.state, one.round, vertices_of(one.round));
