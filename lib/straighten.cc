@@ -100,13 +100,17 @@ std::vector<Curve> find_curves(const Surface& s, const std::vector<int>& opposit
   return curves;
 }
 
+bool is_closed(const Mesh& m, const Curve& c) {
+  return target(m.tris, c.half_edges.back()) == origin(m.tris, c.half_edges.front());
+}
+
 /// The largest angle by which a curve turns on the surface between edges that `skipped` does not
 /// name.
 template <class Skipped>
 double sharpest_turn(const Surface& s, const std::vector<int>& opposite, const Curve& c, Skipped skipped) {
   double sharpest = 0;
   const std::size_t n = c.half_edges.size();
-  const bool closed = target(s.tris, c.half_edges.back()) == origin(s.tris, c.half_edges.front());
+  const bool closed = is_closed(s, c);
   for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
     const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
     if (skipped(to) || skipped(from)) continue;
@@ -489,7 +493,7 @@ void straighten_interfaces(Surface& surface, std::vector<int>& opposite, int n_p
                            int max_faces, const std::vector<char>& chosen) {
   const Limits limits{n_parts, snap, max_faces};
   const std::vector<PairColour> pairs = colour_pairs(surface, find_curves(surface, opposite));
-  constexpr double straight = 0.05;  // as a shortest line is
+  constexpr double straight = 0.05;  // as a closed shortest line is
   auto model = [&](int h) { return is_model(surface, h); };
   int n_colours = 0;
   for (const PairColour& p : pairs) n_colours = std::max(n_colours, p.colour + 1);
@@ -499,7 +503,7 @@ void straighten_interfaces(Surface& surface, std::vector<int>& opposite, int n_p
       for (const PairColour& p : pairs)
         if (p.a == c.a && p.b == c.b && p.colour == colour &&
             (chosen.empty() || chosen[p.a] || chosen[p.b]) &&
-            sharpest_turn(surface, opposite, c, model) > straight)
+            !(is_closed(surface, c) && sharpest_turn(surface, opposite, c, model) < straight))
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one

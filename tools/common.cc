@@ -487,8 +487,8 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   auto failed = [&](int status, const std::string& why, const std::string& culprit) {
     // the next program in the pipe learns whose failure it is; only the last one repeats it to the user
     const bool pass_on = io.output == "-" && !io.written_ && !::isatty(STDOUT_FILENO);
-    // the driver tells what a program failed with, once, unless it can do better: the variable is a file, which
-    // must not be another's
+    // the driver tells what a program failed with, once, unless it can do better: the variable is a file,
+    // which must not be another's
     const char* driver = std::getenv("MESHPIPE_DRIVER");
     if (culprit == program || (!driver && !pass_on)) {
       std::FILE* told = driver ? std::fopen(driver, "wx") : nullptr;
