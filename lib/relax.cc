@@ -144,7 +144,7 @@ void Relaxer::meet_count_in_the_end(double target) {
     if (shape >= sound && off(*this) <= (tries == 1 ? near_enough : near) * target) return;
     if (!best || (shape >= sound && off(*this) < off(*best))) best = *this;
     if (tries > 1) response = (m_.live - last_live) / (goal - last_goal);
-    if (shape < sound || tries == (response < sluggish ? most_sluggish : most_tries)) break;
+    if ((shape < sound && surplus > 0) || tries == (response < sluggish ? most_sluggish : most_tries)) break;
     last_goal = goal, last_live = m_.live;
     *this = start;
     goal = std::clamp(goal - surplus / std::max(std::min(response, 1.0), least_response), least * target,
