@@ -67,8 +67,8 @@ class Io {
 struct Usage {
   bool reads = true;        ///< takes FILE
   bool writes_mesh = true;  ///< -o is a mesh, its format by extension
-  bool passes = false;  ///< a few passes over all its input, in arrays of that size: most of its time would
-                        ///< go into fresh pages, so that freed memory is kept for the next arrays
+  bool passes = false;    ///< a few passes over all its input, in arrays of that size: most of its time would
+                          ///< go into fresh pages, so that freed memory is kept for the next arrays
   bool any_size = false;  ///< computes nothing of coordinates, which may be beyond what areas can be told of
 };
 
