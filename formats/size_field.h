@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/stream.h"
+#include "lib/bvh.h"
 
 namespace meshpipe {
 
@@ -26,5 +27,9 @@ bool is_size_table(std::string_view bytes);
 /// first line without a number: names of the columns. Throws BadInput with the line, of a row that has other
 /// than four values too.
 SizeField read_size_table(std::string_view bytes, const std::string& where);
+
+/// The size at the nearest point of the field; where sheets of it are as good as equally near, the smallest.
+/// `tree`: of the field.
+double size_near(const SizeField& field, const Bvh& tree, Vec3 p);
 
 }  // namespace meshpipe

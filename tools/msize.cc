@@ -44,28 +44,6 @@ SizeField read_field(const Io& io, const std::string& text) {
                               : size_field_of(read_any(bytes, path), column, path);
 }
 
-/// The size at the nearest point of the field's mesh; where sheets of it are as good as equally near, the
-/// smallest.
-double size_near(const SizeField& field, const Bvh& tree, Vec3 p) {
-  constexpr double equally = 0.1;  // of the size
-  auto size_at = [&](int t, double b0, double b1, double b2) {
-    const Tri& v = field.tris[t];
-    return b0 * field.size[v[0]] + b1 * field.size[v[1]] + b2 * field.size[v[2]];
-  };
-  const Bvh::Hit hit = tree.nearest(p);
-  const double nearest = size_at(hit.place.face, hit.place.b0, hit.place.b1, hit.place.b2);
-  double least = nearest;
-  const double reach = hit.distance + equally * nearest;
-  tree.overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}}, [&](int t) {
-    const Vec3 a = field.points[field.tris[t][0]], b = field.points[field.tris[t][1]],
-               c = field.points[field.tris[t][2]];
-    const auto w = closest_on_triangle(p, a, b, c);
-    if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= reach)
-      least = std::min(least, size_at(t, w[0], w[1], w[2]));
-  });
-  return least;
-}
-
 /// The data as doubles: read as the size later.
 void prepare_data(Surface& s, const std::string& name) {
   const Column* c = s.vertex.find(name);
@@ -83,8 +61,22 @@ bool met_count(const SizeOptions& o, const SizeReport& r) {
   return o.triangles > 0 && std::abs(r.triangles - o.triangles) <= std::max(1.0, 0.01 * o.triangles);
 }
 
-/// Says what bounds of the size have made of what was asked for.
-void tell_missed(const Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
+/// Says what came of what was asked for.
+void tell(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
+  char text[160];
+  if (r.smallest == r.largest)
+    std::snprintf(text, sizeof text, "target edge length %.6g", r.smallest);
+  else
+    std::snprintf(text, sizeof text, "target edge length %.6g to %.6g, about %.0f triangles; %d edges split",
+                  r.smallest, r.largest, r.triangles, r.added);
+  io.say(text);
+  if (r.scale != 1)
+    io.say("for this number of triangles the sizes asked for are multiplied by " + shown(r.scale));
+  if (r.lowered > 0)
+    io.say("the size is lowered at " + std::to_string(r.lowered) +
+           " vertices of narrow tubes or closed lines, which four edges go round: at " +
+           shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) + " from " +
+           shown(r.asked) + " to " + shown(r.room));
   constexpr double much = 0.1;
   if (counted && std::abs(r.triangles - o.triangles) > std::max(1.0, much * o.triangles))
     io.say("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
@@ -94,6 +86,22 @@ void tell_missed(const Io& io, const SizeOptions& o, const SizeReport& r, bool c
   if (o.size > 0 && o.max > 0 && o.max < o.size)
     io.say("the size is at most " + shown(o.max) + " by --max, instead of the " + shown(o.size) +
            " asked for");
+  io.report["size"] = r.smallest;
+  io.report["largest_size"] = r.largest;
+  io.report["expected_triangles"] = r.triangles;
+  io.report["factor"] = r.scale;
+  io.report["split_edges"] = r.added;
+}
+
+/// What was found for another triangulation: lines that came with the file, the parts' numbers of triangles.
+void follow_split(Stream& stream) {
+  for (const char* table : {"line", "line_vertex"}) stream.erase(table);
+  for (Table& t : stream.tables)
+    if (t.name == "part" && t.has("faces")) {
+      auto& faces = t.get<int>("faces");
+      std::fill(faces.begin(), faces.end(), 0);
+      for (int p : stream.surface.face.get<int>("part")) ++faces[p];
+    }
 }
 
 }  // namespace
@@ -148,9 +156,7 @@ int main(int argc, char** argv) {
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {
         double h = std::numeric_limits<double>::infinity();
-        if (tree) {
-          h = size_near(sizes, *tree, p);
-        }
+        if (tree) h = size_near(sizes, *tree, p);
         if (!expression) return h;
         const double e = (*expression)({p.x, p.y, p.z, curvature});
         return e < h || std::isnan(e) ? e : h;
@@ -167,36 +173,8 @@ int main(int argc, char** argv) {
     const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
     drop_downstream(stream, Stage::sizes);
     stream.asked_triangles = met_count(o, r) ? static_cast<int>(o.triangles) : 0;
-    if (r.added > 0) {  // lines that came with the file are not along edges any more
-      for (const char* table : {"line", "line_vertex"}) stream.erase(table);
-      for (Table& t : stream.tables)
-        if (t.name == "part" && t.has("faces")) {
-          auto& faces = t.get<int>("faces");
-          std::fill(faces.begin(), faces.end(), 0);
-          for (int p : s.face.get<int>("part")) ++faces[p];
-        }
-    }
-    char text[160];
-    if (r.smallest == r.largest)
-      std::snprintf(text, sizeof text, "target edge length %.6g", r.smallest);
-    else
-      std::snprintf(text, sizeof text,
-                    "target edge length %.6g to %.6g, about %.0f triangles; %d edges split", r.smallest,
-                    r.largest, r.triangles, r.added);
-    io.say(text);
-    if (r.scale != 1)
-      io.say("for this number of triangles the sizes asked for are multiplied by " + shown(r.scale));
-    if (r.lowered > 0)
-      io.say("the size is lowered at " + std::to_string(r.lowered) +
-             " vertices of narrow tubes or closed lines, which four edges go round: at " +
-             shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) + " from " +
-             shown(r.asked) + " to " + shown(r.room));
-    tell_missed(io, o, r, counted);
-    io.report["size"] = r.smallest;
-    io.report["largest_size"] = r.largest;
-    io.report["expected_triangles"] = r.triangles;
-    io.report["factor"] = r.scale;
-    io.report["split_edges"] = r.added;
+    if (r.added > 0) follow_split(stream);
+    tell(io, o, r, counted);
     io.write(stream);
   };
   return run_tool(
