@@ -266,7 +266,8 @@ std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kap
   const Bvh tree(boxes);
   std::vector<int> reached, seen(bad.size(), -1);
   for (int tip = 0; tip < (int)tips.size(); ++tip) {
-    const auto [p, room] = tips[tip];
+    const Vec3 p = tips[tip].point;
+    const double room = tips[tip].room;
     reached.clear();
     tree.overlapping({p, p}, [&](int i) {
       const Vec3 a = point(bad[i], 0), b = point(bad[i], 1), c = point(bad[i], 2);
