@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -134,17 +133,12 @@ Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
       unknown[v] = (int)scale.size();
       scale.push_back(angle_sum[v] - 2 * pi);
     }
-  const Factorisation<double> factorisation = laplacian(alone, weights, unknown, (int)scale.size(), time);
-  factorisation.solve(scale);
+  laplacian(alone, weights, unknown, (int)scale.size(), time).solve(scale);
   std::vector<double> at(n_points, 0);
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) at[v] = scale[unknown[v]];
   std::vector<double> turn = turns(alone, weights, angle_sum, at);
   Filled filled = open_holes(part);
-  // what fills a hole, and its border, are eliminated when the hole was
-  for (int v = 0; v < n_points; ++v)
-    filled.rank.push_back(unknown[v] >= 0 ? factorisation.order()[unknown[v]] : 0);
-  for (int l = 0; l < n_holes; ++l) filled.rank.push_back(factorisation.order()[l]);
   for (int l = 1; l <= n_holes; ++l) {
     const auto& loop = disk.loops[l];
     int centre = filled.n_vertices++;
@@ -182,17 +176,7 @@ Factorisation<double> laplacian(const Filled& filled, const std::vector<double>&
     if (i >= 0 && j >= 0) matrix.push_back({std::max(i, j), std::min(i, j), -w});
   });
   for (int i = 0; i < n; ++i) matrix.push_back({i, i, diagonal[i]});
-  std::vector<int> order;
-  if (!filled.rank.empty()) {  // sorted by rank, equal ones as they are numbered
-    std::vector<int> start(filled.n_vertices + 1, 0);
-    for (std::size_t v = 0; v < unknown.size(); ++v)
-      if (unknown[v] >= 0) ++start[filled.rank[v] + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    order.resize(n);
-    for (std::size_t v = 0; v < unknown.size(); ++v)
-      if (unknown[v] >= 0) order[unknown[v]] = start[filled.rank[v]]++;
-  }
-  return Factorisation<double>(n, std::move(matrix), time, MatrixKind::laplacian, std::move(order));
+  return Factorisation<double>(n, std::move(matrix), time, MatrixKind::laplacian);
 }
 
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,

@@ -30,8 +30,6 @@ struct Filled {
   /// Per triangle: its corners in space; those of a fan lie in a plane of their own.
   Shapes shape;
   int n_vertices = 0;
-  /// Of the vertices: the lower, the sooner eliminated in a good order; empty if none is known.
-  std::vector<int> rank;
 };
 
 /// The part alone: holes keep the natural condition.

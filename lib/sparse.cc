@@ -77,32 +77,8 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-/// The lower triangle's entries in another order of rows and columns, as those of the upper triangle.
 template <class Scalar>
-std::vector<Entry<Scalar>> reordered(std::vector<Entry<Scalar>> lower, const std::vector<int>& place) {
-  for (Entry<Scalar>& e : lower) {
-    e.row = place[e.row];
-    e.col = place[e.col];
-    if (e.row <= e.col) continue;
-    std::swap(e.row, e.col);
-    if constexpr (!std::is_same_v<Scalar, double>) e.value = std::conj(e.value);
-  }
-  return lower;
-}
-
-/// The place of every row in an order of approximate minimum degree.
-template <class Scalar>
-std::vector<int> minimum_degree(const Eigen::SparseMatrix<Scalar>& lower) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  Eigen::AMDOrdering<int>()(lower.template selfadjointView<Eigen::Lower>(), order);
-  std::vector<int> place(lower.rows());
-  for (int i = 0; i < (int)place.size(); ++i) place[order.indices()[i]] = i;
-  return place;
-}
-
-/// Of the upper triangle, which Eigen takes as it is, in the order given.
-template <class Scalar>
-struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Upper, Eigen::NaturalOrdering<int>> {
+struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> {
   /// Multiplications of the numeric factorisation, known after the symbolic one.
   double cost() const { return this->m_nonZerosPerCol.template cast<double>().squaredNorm(); }
 };
@@ -117,7 +93,6 @@ struct Factorisation<Scalar>::Impl {
   Ldlt<Scalar> ldlt;
   int n;
   SolveTime* time;
-  std::vector<int> place;                ///< of every row in the order of elimination
   std::unique_ptr<Multigrid> multigrid;  ///< takes the place of the numeric factorisation
 
   void factorise(const Eigen::SparseMatrix<Scalar>& m) {
@@ -129,9 +104,10 @@ struct Factorisation<Scalar>::Impl {
     // lost all its digits against the diagonal it started from is as singular, and a negative one as little
     // definite
     const auto& pivot = ldlt.vectorD();
+    const auto& order = ldlt.permutationP().indices();
     constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
     for (int i = 0; i < n; ++i) {
-      double d = std::real(pivot[place[i]]), a = std::real(m.coeff(place[i], place[i]));
+      double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
       if (ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
         throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
                          " has diagonal " + shown(a) + " and pivot " + shown(d));
@@ -141,17 +117,11 @@ struct Factorisation<Scalar>::Impl {
 
 template <class Scalar>
 Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time,
-                                     MatrixKind kind, std::vector<int> order)
+                                     MatrixKind kind)
     : impl_(std::make_unique<Impl>()) {
   impl_->n = n;
   impl_->time = time;
-  impl_->place = std::move(order);
-  if (impl_->place.empty()) {
-    const Eigen::SparseMatrix<Scalar> m = compress(n, lower_triangle);
-    Stopwatch watch(time ? &time->ordering : nullptr);
-    impl_->place = minimum_degree(m);
-  }
-  const Eigen::SparseMatrix<Scalar> m = compress(n, reordered(std::move(lower_triangle), impl_->place));
+  Eigen::SparseMatrix<Scalar> m = compress(n, std::move(lower_triangle));
   {
     Stopwatch watch(time ? &time->ordering : nullptr);
     impl_->ldlt.analyzePattern(m);
@@ -160,7 +130,7 @@ Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_tri
     if (kind == MatrixKind::laplacian && impl_->ldlt.cost() > cost_of_multigrid * n) {
       Stopwatch watch(time ? &time->factorisation : nullptr);
       try {
-        impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Upper>());
+        impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
         return;
       } catch (const GoalMissed&) {  // its coarsest level is singular to rounding
       }
@@ -176,41 +146,24 @@ Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
 
 template <class Scalar>
 void Factorisation<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
-  impl_->factorise(compress(impl_->n, reordered(lower_triangle, impl_->place)));
-}
-
-template <class Scalar>
-const std::vector<int>& Factorisation<Scalar>::order() const {
-  return impl_->place;
+  impl_->factorise(compress(impl_->n, lower_triangle));
 }
 
 template <class Scalar>
 void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
   if (right_hand_side.empty()) return;
-  const std::vector<int>& place = impl_->place;
-  const int n = impl_->n, n_columns = (int)(right_hand_side.size() / n);
-  std::vector<Scalar> in_order(right_hand_side.size());
-  for (int c = 0; c < n_columns; ++c)
-    for (int i = 0; i < n; ++i)
-      in_order[(std::size_t)c * n + place[i]] = right_hand_side[(std::size_t)c * n + i];
-  bool solved = false;
   if constexpr (std::is_same_v<Scalar, double>) {
     if (impl_->multigrid) {
       Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
-      solved = impl_->multigrid->solve(in_order);
+      if (impl_->multigrid->solve(right_hand_side)) return;
     }
-    if (impl_->multigrid && !solved) {
-      const Eigen::SparseMatrix<double> m = std::exchange(impl_->multigrid, nullptr)->matrix();
-      impl_->factorise(m.triangularView<Eigen::Upper>());
-    }
+    if (impl_->multigrid) impl_->factorise(std::exchange(impl_->multigrid, nullptr)->matrix());
   }
   Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
-  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(in_order.data(), n, n_columns);
-  if (!solved) x = impl_->ldlt.solve(x).eval();
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
+      right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
+  x = impl_->ldlt.solve(x).eval();
   require_finite(x);
-  for (int c = 0; c < n_columns; ++c)
-    for (int i = 0; i < n; ++i)
-      right_hand_side[(std::size_t)c * n + i] = in_order[(std::size_t)c * n + place[i]];
 }
 
 template class Factorisation<double>;

@@ -29,21 +29,19 @@ enum class MatrixKind { any, laplacian };
 
 /// A factorised symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
 /// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
-/// `order`: the place of every row in the order of elimination, 0 to n-1; empty: approximate minimum degree.
-/// `time`, if given, is added to, and has to outlive the factorisation.
+/// Order: approximate minimum degree. `time`, if given, is added to, and has to outlive the factorisation.
 /// A real matrix of kind `laplacian` whose order shows that multigrid (lib/multigrid.h) is faster, as it is
 /// for large round charts and not for long or branched ones, is factorised only if that does not converge.
 template <class Scalar>
 class Factorisation {
  public:
   Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr,
-                MatrixKind kind = MatrixKind::any, std::vector<int> order = {});
+                MatrixKind kind = MatrixKind::any);
   ~Factorisation();
   Factorisation(Factorisation&&) noexcept;
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
   /// Precondition: kind `any`.
   void refactor(const std::vector<Entry<Scalar>>& lower_triangle);
-  const std::vector<int>& order() const;
   /// Solves in place; call as often as needed, one call at a time. Several right-hand sides of n numbers each
   /// follow each other. Throws GoalMissed if the solution is beyond doubles, and like the constructor if
   /// multigrid does not converge and the factorisation is made now.
