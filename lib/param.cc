@@ -253,7 +253,7 @@ class Search {
     if (!round_) round_ = round_holes(part_, disk_);
     return *round_;
   }
-  Filled flat() { return flat_holes(part_, disk_, &report_.time); }
+  Filled flat() { return flat_holes(part_, disk_); }
 
   std::vector<Vec2> on_circle(MapKind kind, const Filled& filled) {
     Weights weights = kind == MapKind::harmonic ? Weights::finite_element : options_.weights;

@@ -111,38 +111,26 @@ Filled round_holes(const SubMesh& part, const Disk& disk) {
   return filled;
 }
 
-Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time) {
-  Filled alone = intrinsic_delaunay(open_holes(part));
-  int n_holes = (int)disk.loops.size() - 1, n_points = (int)part.points.size();
-  if (n_holes == 0) return alone;
-  std::vector<double> weights = cotangents(std::exchange(alone.shape, {})),  // which stand for the shapes now
-      angle_sum = angle_sums(alone, weights);
-
-  // unknowns: one scale for each hole, then one for each inner vertex
-  constexpr int unset = -2;
-  std::vector<int> unknown(n_points, unset);
-  std::vector<double> scale(n_holes, -2 * pi);  // the turns that are missing, then the scale
-  for (int h : disk.loops[0]) unknown[origin(part.tris, h)] = -1;
-  for (int l = 0; l < n_holes; ++l)
-    for (int h : disk.loops[l + 1]) {
-      unknown[origin(part.tris, h)] = l;
-      scale[l] -= pi - angle_sum[origin(part.tris, h)];
-    }
-  for (int v = 0; v < n_points; ++v)
-    if (unknown[v] == unset) {
-      unknown[v] = (int)scale.size();
-      scale.push_back(angle_sum[v] - 2 * pi);
-    }
-  laplacian(alone, weights, unknown, (int)scale.size(), time).solve(scale);
-  std::vector<double> at(n_points, 0);
-  for (int v = 0; v < n_points; ++v)
-    if (unknown[v] >= 0) at[v] = scale[unknown[v]];
-  std::vector<double> turn = turns(alone, weights, angle_sum, at);
+Filled flat_holes(const SubMesh& part, const Disk& disk) {
   Filled filled = open_holes(part);
-  for (int l = 1; l <= n_holes; ++l) {
+  std::vector<double> turn(part.points.size(), pi);  // of the holes' borders, on the part
+  std::vector<char> of_hole(part.points.size(), 0);
+  for (std::size_t l = 1; l < disk.loops.size(); ++l)
+    for (int h : disk.loops[l]) of_hole[origin(part.tris, h)] = 1;
+  for (const Tri& t : part.tris)
+    for (int i = 0; i < 3; ++i)
+      if (of_hole[t[i]]) {
+        const Vec3 p = part.points[t[i]];
+        turn[t[i]] -= angle(part.points[t[(i + 1) % 3]] - p, part.points[t[(i + 2) % 3]] - p);
+      }
+  for (std::size_t l = 1; l < disk.loops.size(); ++l) {
     const auto& loop = disk.loops[l];
-    int centre = filled.n_vertices++;
-    if (!add_polygon_fan(part, loop, polygon_of(part, loop, turn, lengths_of(part, loop)), centre, filled))
+    double round = 0;
+    for (int h : loop) round -= turn[origin(part.tris, h)];
+    const bool flat = std::abs(round - 2 * pi) < 0.1;
+    const int centre = filled.n_vertices++;
+    if (!flat ||
+        !add_polygon_fan(part, loop, polygon_of(part, loop, turn, lengths_of(part, loop)), centre, filled))
       add_round_fan(part, loop, disk.length[l], centre, filled);
   }
   return intrinsic_delaunay(std::move(filled));

@@ -39,11 +39,11 @@ Filled open_holes(const SubMesh& part);
 /// a round hole of the same perimeter. Angles stay below 135 degrees.
 Filled round_holes(const SubMesh& part, const Disk& disk);
 
-/// The part's intrinsic Delaunay triangulation (lib/param_intrinsic.h), each hole filled by the polygon that
-/// it is in the plane if its border is scaled as a whole: in the flat metric that is conformal to the part's,
-/// has one scale on each hole's border, and lets that turn by one round. Fans of polygons that are not
-/// star-shaped are those of round_holes. One factorisation if there are holes.
-Filled flat_holes(const SubMesh& part, const Disk& disk, SolveTime* time);
+/// The intrinsic Delaunay triangulation (lib/param_intrinsic.h) of the part with its holes filled: those
+/// whose border turns by one round on the part, to 0.1, by the polygon with its turns and lengths, if that is
+/// star-shaped around its middle, so that what is flat stays flat; the others as in round_holes. A conformal
+/// map of the filled part is one of the part whatever fills it.
+Filled flat_holes(const SubMesh& part, const Disk& disk);
 
 /// Cotangent weights (lib/sparse.h) of every half-edge.
 std::vector<double> cotangents(const Shapes& shapes, double floor = -1e30, double ceiling = 1e30);
