@@ -454,7 +454,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
     // large arrays go back when freed (by default the limit creeps up); small ones are used again, which
     // saves a quarter of the page faults of a surface of 70 000 triangles
     ::mallopt(M_MMAP_THRESHOLD, 8 << 20);
-    ::mallopt(M_TRIM_THRESHOLD, 2 << 20);
+    ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
   }
   Io io;
   io.program = program;
