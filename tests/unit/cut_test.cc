@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "tests/unit/squares.h"
+
 using namespace meshpipe;
 
 namespace {
@@ -27,17 +29,11 @@ Surface square() {
 // n x n squares of two triangles over the unit square, lifted to a wavy surface
 Surface grid(int n) {
   Surface s;
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      double x = (double)i / n, y = (double)j / n;
-      s.points.push_back({x, y, 0.1 * std::sin(7 * x + 3 * y)});
-    }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      int a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
-      s.tris.push_back({a, b, c});
-      s.tris.push_back({a, c, d});
-    }
+  static_cast<Mesh&>(s) = unit_squares(n);
+  for (Vec3& p : s.points) {
+    const double x = p.x / n, y = p.y / n;
+    p = {x, y, 0.1 * std::sin(7 * x + 3 * y)};
+  }
   return s;
 }
 

@@ -11,6 +11,7 @@
 #include "lib/regions.h"
 #include "lib/shape.h"
 #include "lib/topology.h"
+#include "tests/unit/squares.h"
 
 using namespace meshpipe;
 
@@ -19,15 +20,8 @@ namespace {
 // n x n unit squares of two triangles, y folded up by 90 degrees beyond `fold`
 Surface grid(int n, double fold = 1e9) {
   Surface s;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x)
-      s.points.push_back({(double)x, std::min<double>(y, fold), std::max(0., y - fold)});
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const int a = y * (n + 1) + x, b = a + 1, c = b + n + 1, d = a + n + 1;
-      s.tris.push_back({a, b, c});
-      s.tris.push_back({a, c, d});
-    }
+  static_cast<Mesh&>(s) = unit_squares(n);
+  for (Vec3& p : s.points) p = {p.x, std::min(p.y, fold), std::max(0., p.y - fold)};
   return s;
 }
 

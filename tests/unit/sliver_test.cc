@@ -8,6 +8,7 @@
 #include "lib/cut.h"
 #include "lib/partition.h"
 #include "lib/topology.h"
+#include "tests/unit/squares.h"
 
 using namespace meshpipe;
 
@@ -22,14 +23,7 @@ constexpr int n = 20;
 //   +--> x      10 cut
 Surface cut_beside_an_edge(double cut, int (*part_of)(double)) {
   Surface s;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x) s.points.push_back({(double)x, (double)y, 0});
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const int a = y * (n + 1) + x, b = a + 1, c = b + n + 1, d = a + n + 1;
-      s.tris.push_back({a, b, c});
-      s.tris.push_back({a, c, d});
-    }
+  static_cast<Mesh&>(s) = unit_squares(n);
   std::vector<std::uint8_t> model(s.tris.size(), 0);
   for (int h = 0; h < (int)(3 * s.tris.size()); ++h)
     if (s.points[origin(s.tris, h)].x == 10 && s.points[target(s.tris, h)].x == 10)

@@ -6,26 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/unit/squares.h"
+
 using namespace meshpipe;
 
 namespace {
 
 constexpr int n = 20;
 constexpr double step_time = 4;  // two edges wide
-
-// n x n unit squares of two triangles
-Mesh grid() {
-  Mesh m;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x) m.points.push_back({(double)x, (double)y, 0});
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const int a = y * (n + 1) + x, b = a + 1, c = b + n + 1, d = a + n + 1;
-      m.tris.push_back({a, b, c});
-      m.tris.push_back({a, c, d});
-    }
-  return m;
-}
 
 // +1 in the squares left of edge(y)
 template <class Edge>
@@ -51,14 +39,14 @@ double level_in_row(const std::vector<double>& s, int y) {
 //  ++----   ->   +++|--     teeth vanish, the line stays where it is on average
 //  ++++--        +++|--
 TEST(Threshold, TakesTheTeethOffASaw) {
-  const Mesh m = grid();
+  const Mesh m = unit_squares(n);
   const std::vector<double> time(m.tris.size(), step_time), held(m.points.size(), not_held);
   const auto s = threshold_dynamics(m, left_of([](int y) { return y % 2 ? 9 : 11; }), time, held, 3);
   for (int y = 0; y <= n; ++y) EXPECT_NEAR(level_in_row(s, y), 10, 0.7) << y;
 }
 
 TEST(Threshold, KeepsHeldVertices) {
-  const Mesh m = grid();
+  const Mesh m = unit_squares(n);
   const std::vector<double> time(m.tris.size(), step_time);
   std::vector<double> held(m.points.size(), not_held);
   // the line ends at (5, 0) and (15, n), wherever the sides were
@@ -77,7 +65,7 @@ TEST(Threshold, KeepsHeldVertices) {
 
 // a disk shrinks: its border moves towards its centre, faster the smaller it is
 TEST(Threshold, ShrinksADisk) {
-  const Mesh m = grid();
+  const Mesh m = unit_squares(n);
   const std::vector<double> time(m.tris.size(), 1), held(m.points.size(), not_held);
   std::vector<double> sign;
   for (const Tri& t : m.tris) {
