@@ -95,14 +95,11 @@ Matrix prolongation(const Matrix& a, double threshold) {
   return Eigen::Map<Matrix>(n, n_groups, row.back(), row.data(), column.data(), value.data());
 }
 
-/// Adds factor A x to K sums, over the entries `from` to `to`; x holds K numbers an unknown.
-template <int K>
-void add_row(const Matrix& a, int from, int to, double factor, const std::vector<double>& x, double* sum) {
-  for (int k = from; k < to; ++k) {
-    const double w = factor * values(a)[k];
-    const double* at = &x[(std::size_t)K * columns(a)[k]];
-    for (int c = 0; c < K; ++c) sum[c] += w * at[c];
-  }
+/// The part of A x in one row that the entries `from` to `to` are.
+double product(const Matrix& a, int from, int to, const Eigen::VectorXd& x) {
+  double sum = 0;
+  for (int k = from; k < to; ++k) sum += values(a)[k] * x[columns(a)[k]];
+  return sum;
 }
 
 }  // namespace
@@ -134,105 +131,61 @@ Multigrid::Multigrid(Matrix matrix) {
 }
 
 /// An approximate solution by one V-cycle; symmetric in its effect, as conjugate gradients need it.
-template <int K>
-void Multigrid::cycle(std::size_t at, const std::vector<double>& b, std::vector<double>& x) const {
+void Multigrid::cycle(std::size_t at, const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   const Level& level = levels_[at];
   const Matrix &a = level.matrix, &p = level.prolongation;
   const int n = (int)a.rows();
   const std::vector<int>& diagonal = level.diagonal;
   if (at + 1 == levels_.size()) {
-    std::vector<double> columns((std::size_t)K * n);
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < K; ++c) columns[(std::size_t)c * n + i] = b[(std::size_t)K * i + c];
-    coarsest_->solve(columns);
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < K; ++c) x[(std::size_t)K * i + c] = columns[(std::size_t)c * n + i];
+    std::vector<double> column(b.begin(), b.end());
+    coarsest_->solve(column);
+    x = Eigen::Map<Eigen::VectorXd>(column.data(), n);
     return;
   }
   // A sweep of Gauss and Seidel from zero meets the lower triangle only; what then is left of the right-hand
   // side is the upper triangle's part.
+  x.resize(n);
+  for (int i = 0; i < n; ++i) x[i] = (b[i] - product(a, rows(a)[i], diagonal[i], x)) / values(a)[diagonal[i]];
+  Eigen::VectorXd coarse_b = Eigen::VectorXd::Zero(p.cols()), coarse_x;
   for (int i = 0; i < n; ++i) {
-    double* s = &x[(std::size_t)K * i];
-    std::copy_n(&b[(std::size_t)K * i], K, s);
-    double sum[K] = {};
-    add_row<K>(a, rows(a)[i], diagonal[i], 1, x, sum);
-    for (int c = 0; c < K; ++c) s[c] = (s[c] - sum[c]) / values(a)[diagonal[i]];
+    const double left = -product(a, diagonal[i] + 1, rows(a)[i + 1], x);
+    for (int k = rows(p)[i]; k < rows(p)[i + 1]; ++k) coarse_b[columns(p)[k]] += values(p)[k] * left;
   }
-  std::vector<double> coarse_b(K * p.cols(), 0), coarse_x(K * p.cols());
-  for (int i = 0; i < n; ++i) {
-    double left[K] = {};
-    add_row<K>(a, diagonal[i] + 1, rows(a)[i + 1], -1, x, left);
-    for (int k = rows(p)[i]; k < rows(p)[i + 1]; ++k)
-      for (int c = 0; c < K; ++c) coarse_b[(std::size_t)K * columns(p)[k] + c] += values(p)[k] * left[c];
-  }
-  cycle<K>(at + 1, coarse_b, coarse_x);
-  for (int i = 0; i < n; ++i) add_row<K>(p, rows(p)[i], rows(p)[i + 1], 1, coarse_x, &x[(std::size_t)K * i]);
-  for (int i = n - 1; i >= 0; --i) {
-    double sum[K] = {};
-    add_row<K>(a, rows(a)[i], diagonal[i], 1, x, sum);
-    add_row<K>(a, diagonal[i] + 1, rows(a)[i + 1], 1, x, sum);
-    for (int c = 0; c < K; ++c)
-      x[(std::size_t)K * i + c] = (b[(std::size_t)K * i + c] - sum[c]) / values(a)[diagonal[i]];
-  }
+  cycle(at + 1, coarse_b, coarse_x);
+  for (int i = 0; i < n; ++i) x[i] += product(p, rows(p)[i], rows(p)[i + 1], coarse_x);
+  for (int i = n - 1; i >= 0; --i)
+    x[i] = (b[i] - product(a, rows(a)[i], diagonal[i], x) - product(a, diagonal[i] + 1, rows(a)[i + 1], x)) /
+           values(a)[diagonal[i]];
 }
 
-/// K systems side by side, which share the passes over the matrices; each has its own steps.
-template <int K>
-bool Multigrid::conjugate_gradients(double* columns) const {
-  const Matrix& a = matrix();
-  const std::size_t n = a.rows();
-  std::vector<double> r(K * n), x(K * n, 0), z(K * n), p(K * n, 0), q(K * n);
-  for (std::size_t i = 0; i < n; ++i)
-    for (int c = 0; c < K; ++c) r[K * i + c] = columns[c * n + i];
-  auto products = [n](const std::vector<double>& u, const std::vector<double>& v, double* sum) {
-    std::fill_n(sum, K, 0.0);
-    for (std::size_t i = 0; i < K * n; i += K)
-      for (int c = 0; c < K; ++c) sum[c] += u[i + c] * v[i + c];
-  };
-  double size[K], left[K], rz[K], rz_before[K] = {}, pq[K];
-  products(r, r, size);
-  for (int step = 0; step < most_steps; ++step) {
-    cycle<K>(0, r, z);
-    products(r, z, rz);
-    for (std::size_t i = 0; i < K * n; i += K)
-      for (int c = 0; c < K; ++c)
-        p[i + c] = z[i + c] + (rz_before[c] > 0 ? rz[c] / rz_before[c] : 0) * p[i + c];
-    std::fill(q.begin(), q.end(), 0);
-    for (std::size_t i = 0; i < n; ++i) add_row<K>(a, rows(a)[i], rows(a)[i + 1], 1, p, &q[K * i]);
-    products(p, q, pq);
-    for (std::size_t i = 0; i < K * n; i += K)
-      for (int c = 0; c < K; ++c) {
-        const double length = pq[c] > 0 ? rz[c] / pq[c] : 0;
-        x[i + c] += length * p[i + c];
-        r[i + c] -= length * q[i + c];
-      }
-    std::copy_n(rz, K, rz_before);
-    products(r, r, left);
-    bool done = true;
-    for (int c = 0; c < K; ++c) done = done && left[c] <= small_residual * small_residual * size[c];
-    if (!done) continue;
-    // what the steps have summed up parts from the residual where the matrix is badly conditioned
-    std::fill(q.begin(), q.end(), 0);
-    for (std::size_t i = 0; i < n; ++i) add_row<K>(a, rows(a)[i], rows(a)[i + 1], 1, x, &q[K * i]);
-    for (std::size_t i = 0; i < n; ++i)
-      for (int c = 0; c < K; ++c) q[K * i + c] -= columns[c * n + i];
-    products(q, q, left);
-    for (int c = 0; c < K; ++c)
-      if (!(left[c] <= true_residual * true_residual * size[c])) return false;
-    for (std::size_t i = 0; i < n; ++i)
-      for (int c = 0; c < K; ++c) columns[c * n + i] = x[K * i + c];
-    return true;
+/// A V-cycle as Eigen's solvers take a preconditioner.
+struct Multigrid::Cycle {
+  const Multigrid* of = nullptr;
+  template <class AnyMatrix>
+  Cycle& compute(const AnyMatrix&) {
+    return *this;
   }
-  return false;
-}
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    Eigen::VectorXd x;
+    of->cycle(0, b, x);
+    return x;
+  }
+  Eigen::ComputationInfo info() const { return Eigen::Success; }
+};
 
 bool Multigrid::solve(std::vector<double>& right_hand_side) const {
-  const std::size_t n = matrix().rows();
-  std::vector<double> solution = right_hand_side;
-  for (std::size_t at = 0; at < solution.size();) {
-    const bool two = at + 2 * n <= solution.size();
-    if (!(two ? conjugate_gradients<2>(&solution[at]) : conjugate_gradients<1>(&solution[at]))) return false;
-    at += two ? 2 * n : n;
+  const Eigen::Index n = matrix().rows();
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper, Cycle> steps;
+  steps.preconditioner().of = this;
+  steps.compute(matrix()).setTolerance(small_residual).setMaxIterations(most_steps);
+  std::vector<double> solution(right_hand_side.size());
+  for (std::size_t at = 0; at < solution.size(); at += n) {
+    const Eigen::Map<const Eigen::VectorXd> b(&right_hand_side[at], n);
+    Eigen::Map<Eigen::VectorXd> x(&solution[at], n);
+    x = steps.solve(b);
+    // what the steps have summed up parts from the residual where the matrix is badly conditioned
+    if (steps.info() != Eigen::Success || !((matrix() * x - b).norm() <= true_residual * b.norm()))
+      return false;
   }
   right_hand_side = std::move(solution);
   return true;

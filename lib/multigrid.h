@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Conjugate gradients preconditioned by algebraic multigrid, for Laplacians that cost too much to factorise.
 #pragma once
-#include <Eigen/SparseCore>
+#include <Eigen/IterativeLinearSolvers>
 #include <optional>
 #include <vector>
 
@@ -35,10 +35,8 @@ class Multigrid {
     std::vector<int> diagonal;  ///< its place in every row
     Matrix prolongation;        ///< from the next coarser level, if there is one
   };
-  template <int K>
-  void cycle(std::size_t level, const std::vector<double>& b, std::vector<double>& x) const;
-  template <int K>
-  bool conjugate_gradients(double* columns) const;
+  struct Cycle;
+  void cycle(std::size_t level, const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
 
   std::vector<Level> levels_;
   std::optional<Factorisation<double>> coarsest_;
