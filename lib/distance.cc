@@ -275,7 +275,7 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
   for (int v : vertices) found(near[v].distance, from_.points[v]);
   const double enough = limit();
   std::vector<Piece> pieces(faces);
-#pragma omp parallel for schedule(static) if (faces > chunk)
+#pragma omp parallel for schedule(dynamic, 64) if (faces > chunk)
   for (int i = 0; i < faces; ++i) {
     const Tri& t = from_.tris[triangles[i]];
     for (int k = 0; k < 3; ++k) {

@@ -178,14 +178,13 @@ std::optional<Relaxer> Relaxer::reached(const Place& tip, Vec3 q, double least, 
 /// Does so for any place; `least`: the distance from the mesh that it may not grow to near by.
 std::optional<Relaxer> Relaxer::gone_to(const Place& tip, double least, const std::vector<int>& round) const {
   const int t = round.front();
-  // about one triangle with nine tenths of the quality wanted; more for a tip that is far out
-  const double spoils = least > 0.5 * size_at(m_.tris[t][0]) ? 2e-2 : 1.8e-3;
+  // about one triangle with nine tenths of the quality wanted, for a tip a tenth of the size out; more farther
+  const double spoils = 1.8e-3 * std::pow(std::max(1.0, least / (0.1 * size_at(m_.tris[t][0]))), 1.5);
   const Vec3 p = ground_->walk.point(tip);
-  // a vertex of a border or model edge gets only to tips of that, and along it
-  auto goes_there = [&](int v) {
-    if (held_[v] != loose && held_[v] != slides) return false;
+  // along: on a border or model edge
+  auto reaches = [&](int v, bool along) {
     const Place& from = lifted_.place[v];
-    const Place to = held_[v] == loose ? ground_->walk.closest(from, p) : ground_->walk.slide(from, p);
+    const Place to = along ? ground_->walk.slide(from, p) : ground_->walk.closest(from, p);
     return norm(ground_->walk.point(to) - p) < 1e-6 * size_at(v);
   };
   const Relaxer before = patch(round, vertices_of(round));
@@ -197,10 +196,10 @@ std::optional<Relaxer> Relaxer::gone_to(const Place& tip, double least, const st
   for (int i = 0; i < 6; ++i) {
     const int h = i % 3, from = m_.tris[t][h], to = m_.tris[t][(h + 1) % 3];
     const bool hard = before.m_.hard[h], seam = held_[from] == paired && held_[to] == paired;
-    const bool stays = seam || (before.m_.opp[h] >= 0 && this->on_line(from, to) < 0);
+    const bool stays = i < 3 ? held_[from] != loose && held_[from] != slides
+                             : hard && (seam || (before.m_.opp[h] >= 0 && this->on_line(from, to) < 0));
     const bool on_line = i < 3 ? held_[from] == slides : hard;
-    if (i >= 3 && (hard ? stays : held_[from] == slides)) continue;
-    if (!goes_there(from) && !(i >= 3 && hard && goes_there(to))) continue;
+    if (stays || !(reaches(from, on_line) || (i >= 3 && hard && reaches(to, true)))) continue;
     Relaxer& after = trials.emplace_back(Trial{0, before}).state;
     int v = after.m_.from(h);
     if (i >= 3) {
