@@ -178,7 +178,8 @@ std::optional<Relaxer> Relaxer::reached(const Place& tip, Vec3 q, double least, 
 /// Does so for any place; `least`: the distance from the mesh that it may not grow to near by.
 std::optional<Relaxer> Relaxer::gone_to(const Place& tip, double least, const std::vector<int>& round) const {
   const int t = round.front();
-  // about one triangle with nine tenths of the quality wanted, for a tip a tenth of the size out; more farther
+  // about one triangle with nine tenths of the quality wanted, for a tip a tenth of the size out; more
+  // farther
   const double spoils = 1.8e-3 * std::pow(std::max(1.0, least / (0.1 * size_at(m_.tris[t][0]))), 1.5);
   const Vec3 p = ground_->walk.point(tip);
   // along: on a border or model edge

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <queue>
 
+#include "lib/neighbours.h"
 #include "lib/topology.h"
 
 namespace meshpipe {
@@ -49,22 +49,6 @@ void room_on_lines(const Mesh& mesh, const std::vector<int>& opposite, const std
     for (int u : loop) room[u] = std::min(room[u], length / ring_edges);
   }
 }
-
-/// The edges at the vertices of a mesh.
-struct Neighbours {
-  std::vector<int> start, vertex;  ///< vertex[start[v]..start[v+1]), each inner one twice
-  explicit Neighbours(const Mesh& mesh) : start(mesh.points.size() + 1, 0), vertex(6 * mesh.tris.size()) {
-    for (const Tri& t : mesh.tris)
-      for (int v : t) start[v + 1] += 2;
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<int> at(start.begin(), start.end() - 1);
-    for (const Tri& t : mesh.tris)
-      for (int i = 0; i < 3; ++i) {
-        vertex[at[t[i]]++] = t[(i + 1) % 3];
-        vertex[at[t[i]]++] = t[(i + 2) % 3];
-      }
-  }
-};
 
 using Item = std::pair<double, int>;
 using Queue = std::priority_queue<Item, std::vector<Item>, std::greater<>>;

@@ -8,6 +8,7 @@
 
 #include "lib/curvature.h"
 #include "lib/error.h"
+#include "lib/neighbours.h"
 #include "lib/number.h"
 #include "lib/room.h"
 #include "lib/split_edges.h"
@@ -262,28 +263,18 @@ void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, do
 }
 
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
-  const std::size_t n = mesh.points.size();
-  std::vector<int> start(n + 1, 0), neighbour(6 * mesh.tris.size());
-  for (const Tri& t : mesh.tris)
-    for (int v : t) start[v + 1] += 2;
-  for (std::size_t v = 0; v < n; ++v) start[v + 1] += start[v];
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (const Tri& t : mesh.tris)
-    for (int i = 0; i < 3; ++i) {
-      neighbour[at[t[i]]++] = t[(i + 1) % 3];
-      neighbour[at[t[i]]++] = t[(i + 2) % 3];
-    }
+  const Neighbours next(mesh);
   using Item = std::pair<double, int>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
   auto lower = [&](int v, const auto& found) {
-    for (int k = start[v]; k < start[v + 1]; ++k) {
-      const int u = neighbour[k];
+    for (int k = next.start[v]; k < next.start[v + 1]; ++k) {
+      const int u = next.vertex[k];
       if (size[u] <= size[v]) continue;
       const double most = size[v] + slope * norm(mesh.points[u] - mesh.points[v]);
       if (most < size[u] && found(u, most)) return;
     }
   };
-  for (int v = 0; v < static_cast<int>(n); ++v)
+  for (int v = 0; v < (int)size.size(); ++v)
     lower(v, [&](int, double) {
       queue.push({size[v], v});
       return true;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sparse solves, by Eigen's simplicial LDL^T or by multigrid; no other file of the library sees Eigen's
-// solvers.
+// Sparse solves, by Eigen's simplicial LDL^T or by multigrid.
 #pragma once
 #include <array>
 #include <complex>
