@@ -104,7 +104,8 @@ def worst_sag(model, result):
         if not inside:
             continue
         bend = sum(turn[max(0, inside[0] - 1):inside[-1] + 2])
-        allowed = (high - low) * bend / (8 if len(inside) > 2 else 4)  # one kink or two are no arc
+        kinks = sum(turn[k] > 0.05 * bend for k in inside)  # the line goes straight on at other vertices
+        allowed = (high - low) * bend / (8 if kinks > 2 else 4)  # one kink or two are no arc
         sag = max(project(model[k], [p, q])[0] for k in inside)
         worst = max(worst, sag / max(allowed, 1e-9 * total))
     return worst
