@@ -89,49 +89,77 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
   return chains;
 }
 
+/// A chain by its arc length.
+class Course {
+ public:
+  Course(const Surface& s, const Chains& chains, const Chain& c)
+      : points_(s.points), vertex_(&chains.vertex[c.first]), closed_(c.closed), length_(c.count, 0) {
+    for (int i = 1; i < c.count; ++i)
+      length_[i] = length_[i - 1] + norm(points_[vertex(i)] - points_[vertex(i - 1)]);
+  }
+  int vertex(int i) const { return vertex_[i]; }
+  double length(int i) const { return length_[i]; }
+  /// By how much the line turns at its vertex i, between its points `reach` before and after that, or as far
+  /// as it goes; a closed one is taken over no more than a twelfth each, where a circle turns by 30 degrees.
+  double turn(int i, double reach) const {
+    const auto [back, ahead] = within(i, reach);
+    const Vec3 x = points_[vertex(i)];
+    return angle(x - at(length_[i] - back), at(length_[i] + ahead) - x);
+  }
+  /// One over the radius of the circle that turns as much there.
+  double curvature(int i, double reach) const {
+    const auto [back, ahead] = within(i, reach);
+    return back > 0 && ahead > 0 ? 2 * turn(i, reach) / (back + ahead) : 0;
+  }
+
+ private:
+  std::array<double, 2> within(int i, double reach) const {
+    const double total = length_.back(), most = closed_ ? total / 12 : total;
+    return {std::min({reach, most, closed_ ? most : length_[i]}),
+            std::min({reach, most, closed_ ? most : total - length_[i]})};
+  }
+  Vec3 at(double l) const {
+    const double total = length_.back();
+    if (closed_) l = l < 0 ? l + total : l > total ? l - total : l;
+    int i = static_cast<int>(std::upper_bound(length_.begin(), length_.end(), l) - length_.begin());
+    i = std::clamp(i, 1, static_cast<int>(length_.size()) - 1);
+    const double d = length_[i] - length_[i - 1];
+    const double t = d > 0 ? std::clamp((l - length_[i - 1]) / d, 0.0, 1.0) : 0;
+    return lerp(points_[vertex(i - 1)], points_[vertex(i)], t);
+  }
+
+  const std::vector<Vec3>& points_;
+  const int* vertex_;
+  bool closed_;
+  std::vector<double> length_;
+};
+
 /// Marks the inner vertices where a chain has a corner: where it turns by more than `limit` at every scale
 /// from its edges up to the size asked for. The zig-zag of a scan's border fades with scale, a circle is
 /// straight at the small ones.
 void mark_corners(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
                   double limit, std::vector<char>& corner) {
-  const int* v = &chains.vertex[c.first];
-  std::vector<double> length(c.count, 0);
-  for (int i = 1; i < c.count; ++i) length[i] = length[i - 1] + norm(s.points[v[i]] - s.points[v[i - 1]]);
-  const double total = length.back();
-  auto at = [&](double l) {
-    if (c.closed) l = l < 0 ? l + total : l > total ? l - total : l;
-    int i = static_cast<int>(std::upper_bound(length.begin(), length.end(), l) - length.begin());
-    i = std::clamp(i, 1, c.count - 1);
-    const double d = length[i] - length[i - 1];
-    const double t = d > 0 ? std::clamp((l - length[i - 1]) / d, 0.0, 1.0) : 0;
-    return lerp(s.points[v[i - 1]], s.points[v[i]], t);
-  };
+  const Course course(s, chains, c);
   struct Candidate {
     int index;
     double turn;
   };
   std::vector<Candidate> found;
   for (int i = c.closed ? 0 : 1; i < c.count - 1; ++i) {
-    const Vec3 x = s.points[v[i]];
-    double turn = angle(x - s.points[v[i > 0 ? i - 1 : c.count - 2]], s.points[v[i + 1]] - x);
+    const int v = course.vertex(i);
+    const Vec3 x = s.points[v];
+    double turn =
+        angle(x - s.points[course.vertex(i > 0 ? i - 1 : c.count - 2)], s.points[course.vertex(i + 1)] - x);
     // borders of scans are rougher than creases, which mfeature has chosen
-    const double reach = (c.kind == border_line ? 2 : 1) * size[v[i]];
-    for (double scale : {0.25, 0.5, 1.0}) {
-      if (turn <= limit) break;
-      double back = scale * reach, ahead = back;
-      if (c.closed) {
-        back = ahead = std::min(back, total / 12);  // a circle turns by less than `limit` over two twelfths
-      } else {
-        back = std::min(back, length[i]);
-        ahead = std::min(ahead, total - length[i]);
-      }
-      turn = std::min(turn, angle(x - at(length[i] - back), at(length[i] + ahead) - x));
-    }
+    const double reach = (c.kind == border_line ? 2 : 1) * size[v];
+    for (double scale : {0.25, 0.5, 1.0})
+      if (turn > limit) turn = std::min(turn, course.turn(i, scale * reach));
     if (turn > limit) found.push_back({i, turn});
   }
   // on a rough border the neighbours of a corner turn as well, but less: within h/2 only the sharpest count
   const int n = static_cast<int>(found.size());
   for (int k = 0; k < n; ++k) {
+    const double h = size[course.vertex(found[k].index)];
     bool sharpest = true;
     for (int step : {-1, 1}) {
       if (c.kind != border_line) break;
@@ -139,16 +167,16 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
         int j = k + step * far;
         if (!c.closed && (j < 0 || j >= n)) break;
         j = (j + n) % n;
-        double apart = std::abs(length[found[j].index] - length[found[k].index]);
-        if (c.closed) apart = std::min(apart, total - apart);
-        if (apart > 0.5 * size[v[found[k].index]]) break;
+        double apart = std::abs(course.length(found[j].index) - course.length(found[k].index));
+        if (c.closed) apart = std::min(apart, course.length(c.count - 1) - apart);
+        if (apart > 0.5 * h) break;
         // much closer than h even corners that are equally sharp cannot both be kept
-        sharpest = apart > 0.15 * size[v[found[k].index]]
+        sharpest = apart > 0.15 * h
                        ? found[j].turn < 1.1 * found[k].turn
                        : found[j].turn < found[k].turn || (found[j].turn == found[k].turn && j > k);
       }
     }
-    if (sharpest) corner[v[found[k].index]] = 1;
+    if (sharpest) corner[course.vertex(found[k].index)] = 1;
   }
 }
 
@@ -175,17 +203,38 @@ std::vector<char> mark_corners(const Surface& s, const std::vector<double>& size
 /// log(1 + x) / x
 double log_over(double x) { return std::abs(x) < 1e-8 ? 1 - 0.5 * x : std::log1p(x) / x; }
 
+/// The sizes along a chain. A model edge whose segments would be more than a sixteenth of the size off it, as
+/// round a hole that the size hardly fits, has shorter ones, down to 0.8 of the size.
+std::vector<double> sizes_along(const Surface& s, const std::vector<double>& size, const Chains& chains,
+                                const Chain& c) {
+  constexpr double most_sag = 1.0 / 16, least = 0.8;
+  const Course course(s, chains, c);
+  std::vector<double> along(c.count);
+  for (int i = 0; i < c.count; ++i) {
+    const double h = along[i] = size[course.vertex(i)];
+    if (c.kind != model_line) continue;
+    // the sag of a segment of length l is l^2 / 8R
+    if (const double bend = h * course.curvature(i, 0.5 * h); bend > 0)
+      along[i] = h * std::clamp(std::sqrt(8 * most_sag / bend), least, 1.0);
+  }
+  return along;
+}
+
 /// The integral of 1/h along each chain up to each of its vertices, exact for h linear on edges.
 void measure_chains(const Surface& s, const std::vector<double>& size, Chains& chains) {
   chains.measure.assign(chains.vertex.size(), 0);
   chains.ratio.assign(chains.vertex.size(), 0);
-  for (const Chain& c : chains.chain)
-    for (int i = c.first + 1; i < c.first + c.count; ++i) {
-      const int a = chains.vertex[i - 1], b = chains.vertex[i];
-      const double x = (size[b] - size[a]) / size[a];
-      chains.ratio[i - 1] = x;
-      chains.measure[i] = chains.measure[i - 1] + norm(s.points[b] - s.points[a]) / size[a] * log_over(x);
+  for (const Chain& c : chains.chain) {
+    const std::vector<double> h = sizes_along(s, size, chains, c);
+    for (int i = 1; i < c.count; ++i) {
+      const int at = c.first + i;
+      const double x = (h[i] - h[i - 1]) / h[i - 1];
+      chains.ratio[at - 1] = x;
+      chains.measure[at] =
+          chains.measure[at - 1] +
+          norm(s.points[chains.vertex[at]] - s.points[chains.vertex[at - 1]]) / h[i - 1] * log_over(x);
     }
+  }
 }
 
 /// Does one of the cut line's segments leave out a bend that a longer line of its curvature would not: more

@@ -45,7 +45,9 @@ std::vector<char> input_border(const Surface& surface);
 /// Chains the special edges (mesh border, part borders, model bits) into lines that end at junctions and
 /// corners (a vertex where the number of special edges is not two, and model_corners), and divides each into
 /// N = round(integral of 1/h) segments, at least 1 (3 if closed), equidistributed in that measure, h = column
-/// `size` linear along edges; one more where rounding down would cut a bend of a border or model edge off. No
+/// `size` linear along edges; one more where rounding down would cut a bend of a border or model edge off.
+/// Where a model edge bends so much that its segments would be more than h / 16 off it, they are shorter, down
+/// to 0.8 h. No
 /// two lines, nor a line and itself, cross or touch in any chart but at common ends: where the chords would,
 /// or would lose the shape of a loop, the lines are refined. A line's points are the same in every chart that
 /// uses it. Precondition: charts in part order, positively oriented. `tag`, if not null, is the label of each

@@ -12,7 +12,8 @@ constexpr double size_weight = 0.012;
 constexpr double no_step = 3e-3;  ///< a step below this share of the size is none
 // over-relaxation: what is uneven over many edges evens out sooner
 constexpr double beyond = 1.5, beyond_along = 1.3;
-constexpr int worth_threads = 800;  ///< vertices of a colour
+constexpr double longest_on_line = 1.2;  ///< segment, over the size, that moving makes
+constexpr int worth_threads = 800;       ///< vertices of a colour
 }  // namespace
 
 void Star::look(Vec3 p) {
@@ -106,6 +107,9 @@ bool Relaxer::slide(int v) {
   const Place place = place_at(s);
   const Vec3 p = ground_->walk.point(place), facing = facing_on_line(v, place);
   if (star.energy(p, size) > now * (1 - 1e-4)) return false;
+  // a long segment of a line is far off a bend
+  for (const Vec3& end : {ahead, behind})
+    if (norm(end - p) > std::max(longest_on_line * size, norm(end - x))) return false;
   if (!star.unfolded(facing) && folds(star.agreement(x, facing_[v]), star.agreement(p, facing))) return false;
   put(v, place, p, facing);
   return true;

@@ -168,6 +168,31 @@ TEST(Lines, BendsAreNotCutOff) {
   EXPECT_EQ(segments(grid(20, 20, straight, all, 1)), (std::vector<int>{1, 1, 2, 2}));
 }
 
+//   .----.    a model edge between two circles: its segments are as long as the size, but where they would be
+//  / .--. \   more than h / 16 off it, shorter, and not below 0.8 h
+// | (    ) |
+TEST(Lines, ModelEdgesFollowTightBends) {
+  const double R = 1.5;
+  auto ring = [](double a, double r) {
+    return Vec3{(2 - r) * std::cos(2 * pi * a), (2 - r) * std::sin(2 * pi * a), 0};
+  };
+  for (double h : {0.2, 0.5, 1.0, 1.3, 2.0}) {
+    Surface s = grid(
+        60, 2, ring, [](int, int) { return 0; }, h);
+    for (Tri& t : s.tris)
+      for (int& v : t)
+        if (v % 61 == 60) v -= 60;
+    s.face.set("model", std::vector<std::uint8_t>(s.tris.size()));
+    for (int i = 0; i < 60; ++i) set_model_edge(s, 61 + i, 61 + (i + 1) % 60);
+    const Lines lines = make_lines(s, flat_charts(s, 1));
+    const auto model = std::find_if(lines.lines.begin(), lines.lines.end(),
+                                    [](const Line& l) { return l.kind == model_line; });
+    ASSERT_NE(model, lines.lines.end());
+    const double segment = std::clamp(std::sqrt(8 * R * h / 16), 0.8 * h, h);
+    EXPECT_NEAR(model->count, 2 * pi * R / segment, 0.6) << h;
+  }
+}
+
 TEST(Lines, CircleIsClosedAndStartsAtItsSmallestVertex) {
   auto ring = [](double a, double r) {
     return Vec3{(1 + r) * std::cos(2 * pi * a), (1 + r) * std::sin(2 * pi * a), 0};
