@@ -189,12 +189,18 @@ int cut_along_model_edges(Surface& surface, int part, int n_parts) {
   if (n == 1 || n * fewest > mesh.face.size()) return n_parts;
 
   Joiner joiner(mesh, opposite, piece, find_regions(mesh, opposite, piece, n));
+  const auto& border = joiner.regions().border;
+  // a piece with thousands of others inside it, as creases of noise make, is not worth joining with them
+  std::size_t work = 0;
+  const std::size_t most = 20 * mesh.face.size();
   for (int a = 0; a < n; ++a)
     while (joiner.regions().region[a].faces > 0 && !joiner.regions().region[a].maps_to_the_plane()) {
       int with = -1;
-      for (int h : joiner.regions().border[a]) {
+      for (int h : border[a]) {
         const int b = opposite[h] < 0 ? a : piece[opposite[h] / 3];
         if (b == a || b == with) continue;
+        work += border[a].size() + border[b].size();
+        if (work > most) return n_parts;
         if (with < 0 || joiner.joined(a, b).maps_to_the_plane()) with = b;
       }
       if (with < 0) return n_parts;

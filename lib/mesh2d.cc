@@ -2,6 +2,7 @@
 #include "lib/mesh2d.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "lib/adapt.h"
@@ -19,37 +20,19 @@ struct Drawing {
   std::vector<FixedEdge> segments;
 };
 
-Drawing draw(const Lines& lines, int part) {
-  std::vector<char> used(lines.lines.size(), 0);
-  for (const LineUse& u : lines.uses)
-    if (u.part == part) used[u.line] = 1;
-  // a model line may lie inside the part: it does if no other part uses it
-  std::vector<char> shared(lines.lines.size(), 0);
-  for (const LineUse& u : lines.uses)
-    if (used[u.line] && u.part != part) shared[u.line] = 1;
-
-  // ends of lines that are the same surface vertex are one point: that of the smallest row
-  std::vector<std::pair<int, int>> ends;  // vertex, row
-  for (const Line& l : lines.lines)
-    for (int row : {l.first, l.first + l.count - 1})
-      if (lines.points[row].a == lines.points[row].b) ends.push_back({lines.points[row].a, row});
-  std::sort(ends.begin(), ends.end());
-  auto same = [&](int row) {
-    const LinePoint& p = lines.points[row];
-    if (p.a != p.b) return row;
-    auto first = std::lower_bound(ends.begin(), ends.end(), std::pair{p.a, -1});
-    return first != ends.end() && first->first == p.a ? first->second : row;
-  };
-
+Drawing draw(const PartLines& parts, int part) {
   Drawing d;
-  for (std::size_t i = 0; i < lines.lines.size(); ++i) {
-    if (!used[i]) continue;
-    const Line& l = lines.lines[i];
-    bool border = l.kind != model_line || shared[i];
+  for (int i = parts.start[part]; i < parts.start[part + 1]; ++i) {
+    const int line = parts.line[i];
+    if (i > parts.start[part] && line == parts.line[i - 1]) continue;
+    const Line& l = parts.lines.lines[line];
+    // a model line may lie inside the part: it does if no other part uses it
+    const bool border = l.kind != model_line || parts.shared[line];
     for (int k = 0; k < l.count; ++k) {
-      int a = same(l.first + k);
+      const int a = parts.point[l.first + k];
       d.row.push_back(a);
-      if (k + 1 < l.count || l.closed) d.segments.push_back({a, same(l.first + (k + 1) % l.count), border});
+      if (k + 1 < l.count || l.closed)
+        d.segments.push_back({a, parts.point[l.first + (k + 1) % l.count], border});
     }
   }
   std::sort(d.row.begin(), d.row.end());
@@ -107,9 +90,10 @@ class Numbers {
   std::vector<int> global_, half_edge_;
 };
 
-PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLines& parts, int part,
                Mesher mesher) {
-  Drawing drawing = draw(lines, part);
+  const Lines& lines = parts.lines;
+  Drawing drawing = draw(parts, part);
   int n = (int)drawing.row.size();
   std::vector<int> wanted;
   for (int row : drawing.row) wanted.push_back(lines.points[row].a);
@@ -156,7 +140,38 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const Lines&
 
 }  // namespace
 
-PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+PartLines::PartLines(const Lines& given, int n_parts)
+    : lines(given),
+      start(n_parts + 1, 0),
+      line(given.uses.size()),
+      shared(given.lines.size()),
+      point(given.points.size()) {
+  std::vector<int> part(lines.lines.size(), -1);
+  for (const LineUse& u : lines.uses) {
+    ++start[u.part + 1];
+    if (part[u.line] >= 0 && part[u.line] != u.part) shared[u.line] = 1;
+    part[u.line] = u.part;
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (const LineUse& u : lines.uses) line[at[u.part]++] = u.line;
+  for (int p = 0; p < n_parts; ++p) std::sort(line.begin() + start[p], line.begin() + start[p + 1]);
+
+  std::iota(point.begin(), point.end(), 0);
+  std::vector<std::pair<int, int>> ends;  // vertex, row
+  for (const Line& l : lines.lines)
+    for (int row : {l.first, l.first + l.count - 1})
+      if (lines.points[row].a == lines.points[row].b) ends.push_back({lines.points[row].a, row});
+  std::sort(ends.begin(), ends.end());
+  for (int row = 0; row < (int)point.size(); ++row) {
+    const LinePoint& p = lines.points[row];
+    if (p.a != p.b) continue;
+    const auto first = std::lower_bound(ends.begin(), ends.end(), std::pair{p.a, -1});
+    if (first != ends.end() && first->first == p.a) point[row] = first->second;
+  }
+}
+
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
                      Mesher mesher) {
   try {
     return mesh(chart, size, lines, part, mesher);

@@ -26,6 +26,17 @@ struct PlaneMesh {
 /// collapsed and swapped.
 enum class Mesher { frontal, delaunay, meshadapt };
 
+/// The lines by the parts 0..n_parts-1 that use them; made once for all. Keeps a reference to them. Linear
+/// but for sorting. Precondition: uses name parts and lines that there are.
+struct PartLines {
+  PartLines(const Lines& given, int n_parts);
+  const Lines& lines;
+  std::vector<int> start, line;      ///< part p uses line[start[p]..start[p+1]), ascending
+  std::vector<std::uint8_t> shared;  ///< per line: several parts use it
+  std::vector<int>
+      point;  ///< per row of Lines::points: the first end of a line at the same vertex, or the row
+};
+
 /// Meshes one chart: constrained Delaunay triangulation of the lines that the part uses (borders, interfaces,
 /// embedded model edges), then the mesher's operations until every triangle is sized, and smoothing.
 /// `size` is per vertex of the chart's mesh; lengths and sizes are judged in space through the map's metric,
@@ -35,7 +46,7 @@ enum class Mesher { frontal, delaunay, meshadapt };
 /// Throws, with the part: GoalMissed, with a point, if segments cross or touch, points coincide, the borders
 /// are not closed, or bound no region (then nothing is meshed); NotAdmissible if a line point lies on an edge
 /// that the chart has not.
-PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const Lines& lines, int part,
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
                      Mesher mesher = Mesher::frontal);
 
 }  // namespace meshpipe

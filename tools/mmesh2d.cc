@@ -65,9 +65,10 @@ int main(int argc, char** argv) {
     const std::clock_t start = std::clock();
     const int n = static_cast<int>(charts.size());
     std::vector<PlaneMesh> meshes(n);
+    const PartLines parts(lines, n);
     parallel_for(n, [&](int part) {
       index_chart(charts[part]);
-      meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), lines, part, meshers.at(mesher));
+      meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), parts, part, meshers.at(mesher));
       if (pictures.empty()) charts[part].opposite = {};
       charts[part].grid = {};
       add_progress((double)charts[part].mesh.tris.size() / (double)stream.surface.tris.size());

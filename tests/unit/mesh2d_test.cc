@@ -167,7 +167,7 @@ Figures examine(const PlaneMesh& mesh, const Lines& lines, const Map3& lift) {
 }
 
 PlaneMesh mesh_with(const Chart& chart, const Lines& lines, double h, Mesher mesher = Mesher::frontal) {
-  return mesh_chart(chart, std::vector<double>(chart.uv.size(), h), lines, 0, mesher);
+  return mesh_chart(chart, std::vector<double>(chart.uv.size(), h), PartLines(lines, 1), 0, mesher);
 }
 
 constexpr Mesher all_meshers[] = {Mesher::frontal, Mesher::delaunay, Mesher::meshadapt};
@@ -471,7 +471,7 @@ TEST(Mesh2d, FollowsAGradedSize) {
   for (Vec2 p : chart.uv) size.push_back(0.01 + 0.06 * p.x);
   // the lines have the finest size throughout, so the mesh must coarsen from them without crowding
   Lines lines = border_lines(chart, 0.03);
-  PlaneMesh mesh = mesh_chart(chart, size, lines, 0);
+  PlaneMesh mesh = mesh_chart(chart, size, PartLines(lines, 1), 0);
   Figures f = examine(mesh, lines, flat);
   EXPECT_GT(f.kappa_mean, 0.9);
   EXPECT_NEAR(f.area_uv, 1, 1e-12);
