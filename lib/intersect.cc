@@ -215,7 +215,8 @@ std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
         longest =
             std::max(longest, norm(mesh.points[mesh.tris[u][(i + 1) % 3]] - mesh.points[mesh.tris[u][i]]));
     const auto [a, b] = contact(mesh, s, t);
-    const auto is_known = [&](Vec3 p) { return tree.nearest(p).distance <= 2 * longest; };
+    const double near = 2 * longest;
+    const auto is_known = [&](Vec3 p) { return tree.nearest(p, 1e300, near).distance <= near; };
     if (!is_known(lerp(a, b, 0.5)) && !is_known(a) && !is_known(b)) found.push_back({s, t});
   }
   return found;
