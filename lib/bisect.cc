@@ -190,9 +190,9 @@ int cut_along_model_edges(Surface& surface, int part, int n_parts) {
 
   Joiner joiner(mesh, opposite, piece, find_regions(mesh, opposite, piece, n));
   const auto& border = joiner.regions().border;
-  // a piece with thousands of others inside it, as creases of noise make, is not worth joining with them
+  // a large surface in thousands of pieces, as creases of noise make, is not worth joining them one by one
   std::size_t work = 0;
-  const std::size_t most = 20 * mesh.face.size();
+  const std::size_t most = std::max<std::size_t>(20 * mesh.face.size(), 5000000);  // half-edges looked at
   for (int a = 0; a < n; ++a)
     while (joiner.regions().region[a].faces > 0 && !joiner.regions().region[a].maps_to_the_plane()) {
       int with = -1;

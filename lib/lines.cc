@@ -208,11 +208,12 @@ double log_over(double x) { return std::abs(x) < 1e-8 ? 1 - 0.5 * x : std::log1p
 std::vector<double> sizes_along(const Surface& s, const std::vector<double>& size, const Chains& chains,
                                 const Chain& c) {
   constexpr double most_sag = 1.0 / 16, least = 0.8;
-  const Course course(s, chains, c);
   std::vector<double> along(c.count);
+  for (int i = 0; i < c.count; ++i) along[i] = size[chains.vertex[c.first + i]];
+  if (c.kind != model_line) return along;
+  const Course course(s, chains, c);
   for (int i = 0; i < c.count; ++i) {
-    const double h = along[i] = size[course.vertex(i)];
-    if (c.kind != model_line) continue;
+    const double h = along[i];
     // the sag of a segment of length l is l^2 / 8R
     if (const double bend = h * course.curvature(i, 0.5 * h); bend > 0)
       along[i] = h * std::clamp(std::sqrt(8 * most_sag / bend), least, 1.0);

@@ -180,7 +180,7 @@ std::optional<Relaxer> Relaxer::gone_to(const Place& tip, double least, const st
   const int t = round.front();
   // about one triangle with nine tenths of the quality wanted, for a tip a tenth of the size out; more
   // farther
-  const double spoils = 1.8e-3 * std::pow(std::max(1.0, least / (0.1 * size_at(m_.tris[t][0]))), 1.5);
+  const double spoils = 1.8e-3 * std::pow(std::clamp(least / (0.1 * size_at(m_.tris[t][0])), 1.0, 5.0), 1.5);
   const Vec3 p = ground_->walk.point(tip);
   // along: on a border or model edge
   auto reaches = [&](int v, bool along) {

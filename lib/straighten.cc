@@ -42,6 +42,7 @@ constexpr Attempt last_attempt = {0, 0, 100, true};
 /// What happens near the curves that are straightened together: each has a band of triangles of its own.
 struct Bands {
   SubMesh mesh;                   // of all bands
+  std::vector<int> opposite;      // of the bands' half-edges
   std::vector<int> curve;         // of each triangle of the surface: its band, or -1
   std::vector<double> held;       // of each vertex of the bands: the value it is held at, or not_held
   std::vector<signed char> apex;  // the side (+1 a, -1 b) of a triangle on an interface edge that stays, or 0
@@ -190,6 +191,12 @@ Bands make_bands(const Surface& s, const std::vector<int>& opposite, const std::
         apex[origin(s.tris, prev(opposite[h]))] = -1;
       }
   }
+  // where two fans of a band meet in a vertex, the line could move in one of them only
+  bands.opposite = opposite_halfedges(bands.mesh.tris, (int)bands.mesh.points.size());
+  std::vector<int> fans(bands.mesh.points.size(), 0);
+  for (int h = 0; h < (int)bands.opposite.size(); ++h)
+    if (bands.opposite[h] < 0 && ++fans[origin(bands.mesh.tris, h)] > 1)
+      marks[bands.mesh.vertex[origin(bands.mesh.tris, h)]] |= rim;
   for (int v : bands.mesh.vertex) {
     const int m = marks[v];
     const bool both = (m & side_a) && (m & side_b);
@@ -217,7 +224,6 @@ std::vector<double> sides(const Bands& bands, const std::vector<double>& sign) {
 /// The zero level of the bands' field, pulled straight, as a line of the surface with so many vertices.
 LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, const Attempt& attempt,
                         std::size_t n) {
-  const std::vector<int> opposite = opposite_halfedges(bands.mesh.tris, (int)field.size());
   std::vector<Hold> hold;
   for (std::size_t v = 0; v < field.size(); ++v) {
     double& f = field[v];
@@ -225,10 +231,10 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
     if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
     hold.push_back(bands.held[v] == not_held && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
   }
-  for (int h = 0; attempt.ends_stay && h < (int)opposite.size(); ++h)
-    if (opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
+  for (int h = 0; attempt.ends_stay && h < (int)bands.opposite.size(); ++h)
+    if (bands.opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
   LevelLine line = zero_level(bands.mesh, field);
-  pull_straight(bands.mesh, opposite, line, hold, snap, attempt.sweeps);
+  pull_straight(bands.mesh, bands.opposite, line, hold, snap, attempt.sweeps);
   return in_whole(line, bands.mesh.vertex, n);
 }
 

@@ -71,7 +71,7 @@ std::vector<double> threshold_dynamics(const Mesh& mesh, std::vector<double> sig
     right.setZero();
     for (std::size_t k = 0; k < sign.size(); ++k)
       for (int v : mesh.tris[k]) right[v] += area[k] / 3 * sign[k];
-    if (step == 0) s = right.cwiseQuotient(mass);
+    if (step == 0) s = (mass.array() > 0).select(right.cwiseQuotient(mass), 0);
     for (Eigen::Index v = 0; v < n; ++v)
       if (held[v] != not_held) right[v] = s[v] = 0;
     s = solver.solveWithGuess(right + given, s).eval();
