@@ -3,25 +3,25 @@
 
 #include <cstring>
 
-#include "formats/abaqus.h"
-#include "formats/gts.h"
-#include "formats/inria.h"
-#include "formats/msh.h"
-#include "formats/nastran.h"
-#include "formats/obj.h"
-#include "formats/off.h"
-#include "formats/ply.h"
-#include "formats/stl.h"
-#include "formats/tetgen.h"
+#include "formats/foreign/abaqus.h"
+#include "formats/foreign/gts.h"
+#include "formats/foreign/inria.h"
+#include "formats/foreign/msh.h"
+#include "formats/foreign/nastran.h"
+#include "formats/foreign/obj.h"
+#include "formats/foreign/off.h"
+#include "formats/foreign/ply.h"
+#include "formats/foreign/stl.h"
+#include "formats/foreign/tetgen.h"
+#include "formats/foreign/vtk_legacy.h"
+#include "formats/foreign/vtk_xml.h"
 #include "formats/text.h"
-#include "formats/vtk_legacy.h"
-#include "formats/vtk_xml.h"
-#include "lib/error.h"
+#include "lib/core/error.h"
 
 namespace meshpipe {
 namespace {
 
-/// What can be told of bytes that match no format.
+/// Guesses what bytes are that match no format, for the message.
 std::string guess(std::string_view bytes) {
   if (bytes.starts_with("\x1f\x8b")) return "; it is compressed: gzip -dc gives the file";
   if (std::string size = binary_stl_mismatch(bytes); !size.empty()) return "; " + size;
@@ -31,7 +31,7 @@ std::string guess(std::string_view bytes) {
 }  // namespace
 
 const std::vector<Reader>& readers() {
-  // binary STL comes first: its size tells it, and its first bytes may be anything
+  // binary STL comes first: it is recognized by its size, and its first bytes may be anything
   static const std::vector<Reader> all = {
       {"stl", is_stl, read_stl},
       {"mply", is_stream, read_stream},
@@ -48,12 +48,30 @@ const std::vector<Reader>& readers() {
 }
 
 const std::vector<Writer>& writers() {
+  using namespace holds;
+  constexpr unsigned named = patches | labels | names, gmsh = named | lines | line_names | data | nodes,
+                     medit = patches | labels | lines | marks;
   static const std::vector<Writer> all = {
-      {".mply", write_stream}, {".ply", write_ply},     {".stl", write_stl},      {".obj", write_obj},
-      {".off", write_off},     {".msh", write_msh2},    {".msh2", write_msh2},    {".msh4", write_msh4},
-      {".vtu", write_vtu},     {".vtp", write_vtp},     {".vtk", write_vtk_grid}, {".mesh", write_mesh},
-      {".meshb", write_meshb}, {".sol", write_sol},     {".solb", write_solb},    {".gts", write_gts},
-      {".bdf", write_nastran}, {".nas", write_nastran}, {".inp", write_abaqus},   {".poly", write_poly},
+      {".mply", write_stream, holds::all},
+      {".ply", write_ply, named | data},
+      {".stl", write_stl, patches | names, patches | names},
+      {".obj", write_obj, patches | names | colors},
+      {".off", write_off, colors | face_colors},
+      {".msh", write_msh2, gmsh},
+      {".msh2", write_msh2, gmsh},
+      {".msh4", write_msh4, gmsh},
+      {".vtu", write_vtu, named | data | nodes},
+      {".vtp", write_vtp, named | data},
+      {".vtk", write_vtk_grid, named | data},
+      {".mesh", write_mesh, medit},
+      {".meshb", write_meshb, medit},
+      {".sol", write_sol, holds::all},  // holds sizes: nobody expects a mesh in it
+      {".solb", write_solb, holds::all},
+      {".gts", write_gts, 0},
+      {".bdf", write_nastran, named},
+      {".nas", write_nastran, named},
+      {".inp", write_abaqus, patches | names},
+      {".poly", write_poly, patches | labels},
   };
   return all;
 }

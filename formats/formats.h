@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every mesh format by one door: sniffed on input, chosen by the file's extension on output.
+// All mesh formats: recognized by their first bytes on input, chosen by the extension on output.
 #pragma once
 #include <functional>
 #include <string>
@@ -10,20 +10,23 @@
 
 namespace meshpipe {
 
-/// Reads any known format, the stream included. Foreign meshes come as they are in the file (only STL, which
-/// does not number its vertices, is welded), polygons triangulated, with face column `patch` and its names.
-/// Throws BadInput with place and both numbers.
+/// Reads any known format, the stream included. Foreign meshes come as they are in the file, with polygons
+/// triangulated, face column `patch` and its names; only STL, which does not number its vertices, is welded.
+/// Throws: BadInput with the place in the file.
 Stream read_any(std::string_view bytes, const std::string& where);
 
-/// ".stl" of "a/part.STL": the last dot of the file's name and what follows, in lower case; empty without a
-/// dot.
+/// Returns ".stl" for "a/part.STL": in lower case; empty if the name has no dot.
 std::string extension_of(const std::string& path);
 
-/// The mesh in the format of the extension of `path` (".stl", ".vtu", ...; ".mply" is the stream).
-/// `ascii` asks for text where the format has both. Throws like writer_of.
+/// Returns the mesh in the format of the extension of `path` (".mply": the stream). `ascii` asks for text
+/// where the format has both encodings. Throws like writer_of.
 std::string write_as(const Stream& stream, const std::string& path, bool ascii);
 
-/// A reader knows its format by its first bytes (`matches`) and reads the whole.
+/// Lists what of a stream the format of `path` cannot hold, for a message; empty if nothing is lost. Tables
+/// and columns that only programs of the chain use do not count.
+std::string lost_in(const Stream& stream, const std::string& path, bool ascii);
+
+/// A reader recognizes its format by the first bytes (`matches`).
 struct Reader {
   const char* format;
   bool (*matches)(std::string_view bytes);
@@ -31,13 +34,32 @@ struct Reader {
 };
 const std::vector<Reader>& readers();
 
+/// What a format can hold of a stream besides its triangles.
+namespace holds {
+enum : unsigned {
+  patches = 1,        ///< which triangles belong together
+  labels = 2,         ///< the numbers of patches
+  names = 4,          ///< the names of patches
+  lines = 8,          ///< model edges with their labels
+  line_names = 16,    ///< the names of lines
+  data = 32,          ///< columns of vertices and faces
+  colors = 64,        ///< columns red, green, blue of vertices
+  face_colors = 128,  ///< columns red, green, blue of faces
+  marks = 256,        ///< columns ref, corner, required, as Medit has them
+  nodes = 512,        ///< nodes of triangles of second order
+  all = 1023,
+};
+}
+
 /// A writer by extension.
 struct Writer {
   const char* extension;
   std::string (*write)(const Stream& stream, bool ascii);
+  unsigned holds;
+  unsigned only_as_text = 0;  ///< what of that the binary encoding does not hold
 };
 const std::vector<Writer>& writers();
-/// The writer of the extension of `path`; throws BadUsage naming the known ones for an unknown extension.
+/// Returns the writer for the extension of `path`. Throws BadUsage with the known ones for any other.
 const Writer& writer_of(const std::string& path);
 
 }  // namespace meshpipe

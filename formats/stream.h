@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stream that the programs speak: mply, a strict profile of PLY (formats/mply.md), in memory and in
-// bytes.
+// The stream that the programs exchange: mply, a strict profile of PLY (formats/mply.md).
 #pragma once
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "lib/mesh.h"
+#include "lib/core/mesh.h"
 
 namespace meshpipe {
 
-/// The name of a patch (dim 2) or a line (dim 1) by its tag: the solid, group or physical name of the file it
-/// came from.
+/// The name of a patch (dim 2) or a line (dim 1): the solid, group or physical name in the input file.
 struct Name {
   int dim, tag;
   std::string text;
 };
 
-/// One program that wrote the stream: its version and the options that change the result.
+/// A program that wrote the stream, with the options that change the result.
 struct Provenance {
   std::string program, version, arguments;
 };
@@ -30,36 +28,36 @@ struct Stream {
   std::vector<Provenance> history;   ///< in the order the programs ran
   std::vector<std::string> remarks;  ///< other comments, kept as they are
   int input_triangles = 0;           ///< after mclean; 0: not recorded
-  int asked_triangles = 0;           ///< of the mesh to be; 0: the sizes say how many
-  bool ascii = false;                ///< encoding it was read in, and is written in unless told otherwise
+  int asked_triangles = 0;           ///< of the mesh to be made; 0: as the sizes ask
+  bool ascii = false;                ///< encoding of the input, and by default of the output
 
   const Table* find(std::string_view table) const;
-  /// The table; throws NotAdmissible "no section 'chart_vertex'; run mparam first" if it is not there
-  /// (`writer` = mparam).
+  /// Returns the table. Throws NotAdmissible if it is missing: "no section 'chart_vertex'; run mparam first"
+  /// for `writer` mparam.
   const Table& need(std::string_view table, std::string_view writer) const;
   /// Replaces the table of this name, or appends it.
   void set(Table table);
   void erase(std::string_view table);
-  /// Name of a patch, or an empty string.
+  /// Returns the name of a patch or line, or an empty string.
   std::string name_of(int dim, int tag) const;
 };
 
-/// True for a stream (a PLY with the line "comment mply"), and for the line a failed program leaves in its
-/// place.
+/// Returns whether bytes are a stream (a PLY with the line "comment mply"), or the line that a failed program
+/// leaves in its place.
 bool is_stream(std::string_view bytes);
 
-/// Reads a stream and checks all that formats/mply.md says: header, types, counts, index ranges, finite
-/// numbers, no trailing bytes. Throws BadInput with the line (ascii) or byte (binary): `where` is the file's
-/// name for the message. If the bytes are "mply-failed PROGRAM STATUS", throws UpstreamFailed.
+/// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
+/// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".
 Stream read_stream(std::string_view bytes, const std::string& where);
 
-/// The stream in bytes: ascii with shortest round-trip numbers, or binary little endian.
+/// Returns the stream in bytes: ascii with the shortest numbers that read back the same, or binary.
 std::string write_stream(const Stream& stream, bool ascii);
-/// The same bytes in pieces of about a megabyte, handed on as they are made.
+/// Takes the bytes of a file piece by piece.
 using Sink = std::function<void(std::string_view)>;
+/// Writes the same bytes in pieces of about a megabyte.
 void write_stream(const Stream& stream, bool ascii, const Sink& sink);
 
-/// The program before this one in the pipe failed, and has said why.
+/// Thrown when a program before this one in the pipe failed and reported why.
 struct UpstreamFailed {
   std::string program;
   int status;

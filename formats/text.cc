@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "lib/error.h"
+#include "lib/core/error.h"
+#include "lib/core/number.h"
 
 namespace meshpipe {
 namespace {
@@ -21,7 +22,7 @@ std::string_view without_leading_blanks(std::string_view text) {
 }
 
 std::string_view without_plus(std::string_view word) {
-  // from_chars knows no plus sign, and must not see "+-1" as a number
+  // from_chars takes no plus sign, and must not see "+-1" as a number
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
 
@@ -69,33 +70,16 @@ double Text::number(const char* what) {
   left_ = without_leading_blanks(left_);
   const char* const end = left_.data() + left_.size();
   double value;
-  // nearly always the number is as from_chars wants it, and the word need not be found first
-  if (auto [stop, error] = std::from_chars(left_.data(), end, value);
+  // from_chars takes almost every number, and the word need not be found first
+  if (auto [stop, error] = from_chars(left_.data(), end, value);
       error == std::errc() && (stop == end || is_blank(*stop)) && std::isfinite(value)) {
     left_.remove_prefix(stop - left_.data());
     return value;
   }
   std::string_view w = word();
-  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
-  if (!parse_number(w, value)) fail(quoted(w) + " where " + what + " is due");
+  if (w.empty()) fail(std::string("expected ") + what + ", found the end of the line");
+  if (!parse_number(w, value)) fail(std::string("expected ") + what + ", found " + quoted(w));
   return value;
-}
-
-std::string_view Text::next_word() {
-  for (;;) {
-    if (std::string_view w = word(); !w.empty()) return w;
-    if (!next_line()) return {};
-  }
-}
-
-double Text::next_number(const char* what) {
-  if (line_ends()) need_line(what);
-  return number(what);
-}
-
-int Text::next_integer(const char* what) {
-  if (line_ends()) need_line(what);
-  return integer(what);
 }
 
 void Text::skip(std::size_t n) {
@@ -103,24 +87,18 @@ void Text::skip(std::size_t n) {
   bytes_.remove_prefix(n);
 }
 
-Vec3 Text::point() {
-  const double x = number("a coordinate"), y = number("a coordinate"), z = number("a coordinate");
-  return {x, y, z};
-}
-
 int Text::integer(const char* what) {
   left_ = without_leading_blanks(left_);
   const char* const end = left_.data() + left_.size();
   int small;
-  if (auto [stop, error] = std::from_chars(left_.data(), end, small);
+  if (auto [stop, error] = from_chars(left_.data(), end, small);
       error == std::errc() && (stop == end || is_blank(*stop))) {
     left_.remove_prefix(stop - left_.data());
     return small;
   }
   const long long value = wide(what);
   if (value < INT_MIN || value > INT_MAX)
-    fail(std::string(what) + " is " + std::to_string(value) + ", beyond the largest, " +
-         std::to_string(INT_MAX));
+    fail(std::string(what) + " is " + std::to_string(value) + ", the limit is " + std::to_string(INT_MAX));
   return static_cast<int>(value);
 }
 
@@ -131,14 +109,14 @@ bool Text::at_nan() const {
   if (end - at < 3 || !same_word({at, 3}, "nan")) return false;
   at += 3;
   const char* const word_end = std::find_if(at, end, is_blank);
-  // C writes what kind of NaN it is in parentheses
+  // C writes the kind of NaN in parentheses
   return at == word_end || (*at == '(' && word_end[-1] == ')');
 }
 
 bool Text::leading_integer(int& value, bool slash) {
   const char *at = left_.data(), *const end = at + left_.size();
   while (at < end && is_blank(*at)) ++at;
-  auto [stop, error] = std::from_chars(at, end, value);
+  auto [stop, error] = from_chars(at, end, value);
   if (error != std::errc() || (stop < end && !is_blank(*stop) && !(slash && *stop == '/'))) return false;
   while (stop < end && !is_blank(*stop)) ++stop;
   left_.remove_prefix(stop - left_.data());
@@ -148,8 +126,8 @@ bool Text::leading_integer(int& value, bool slash) {
 long long Text::wide(const char* what) {
   const std::string_view w = word();
   long long value;
-  if (w.empty()) fail(std::string("the line ends where ") + what + " is due");
-  if (!parse_integer(w, value)) fail(quoted(w) + " where " + what + " is due");
+  if (w.empty()) fail(std::string("expected ") + what + ", found the end of the line");
+  if (!parse_integer(w, value)) fail(std::string("expected ") + what + ", found " + quoted(w));
   return value;
 }
 
@@ -167,11 +145,34 @@ void Text::need_line(const char* what, int i, int n) {
   if (next_line()) return;
   std::string which = what;
   if (i >= 0) which += ' ' + std::to_string(i) + " of " + std::to_string(n);
-  fail("the file ends where " + which + " is due");
+  fail("expected " + which + ", found the end of the file");
 }
 
 void Text::fail_at(std::size_t line, const std::string& what) const {
   throw BadInput(where_ + ":" + std::to_string(line) + ": " + what);
+}
+
+std::string_view next_word(Text& text) {
+  for (;;) {
+    if (std::string_view w = text.word(); !w.empty()) return w;
+    if (!text.next_line()) return {};
+  }
+}
+
+double next_number(Text& text, const char* what) {
+  if (text.line_ends()) text.need_line(what);
+  return text.number(what);
+}
+
+int next_integer(Text& text, const char* what) {
+  if (text.line_ends()) text.need_line(what);
+  return text.integer(what);
+}
+
+Vec3 next_point(Text& text) {
+  const double x = text.number("a coordinate"), y = text.number("a coordinate"),
+               z = text.number("a coordinate");
+  return {x, y, z};
 }
 
 bool parse_number(std::string_view word, double& value) {
@@ -183,16 +184,16 @@ bool parse_number(std::string_view word, double& value) {
     if (d + 1 < fortran.size() && fortran[d + 1] == '+') fortran.erase(d + 1, 1);
     word = fortran;
   }
-  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty()) return false;
-  // too small a number is 0 or denormal, as strtod says; too large a one is not finite
+  // strtod makes too small a number 0 or denormal, and too large a one infinite
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
   return error != std::errc::invalid_argument && std::isfinite(value);
 }
 
 bool parse_integer(std::string_view word, long long& value) {
   word = without_plus(word);
-  auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  auto [end, error] = from_chars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size();
 }
 

@@ -1,67 +1,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines, words and numbers of a text format, read without copies; and numbers written so that nothing is
-// lost.
+// Text formats: lines, words and numbers read without copies, and numbers written without loss.
 #pragma once
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "lib/vec.h"
+#include "lib/core/vec.h"
 
 namespace meshpipe {
 
-/// Without blanks at either end.
+/// Returns the text without blanks at either end.
 std::string_view trim(std::string_view text);
-/// Equal but for upper and lower case of ASCII letters; `lower` is in lower case.
+/// Compares with a word in lower case, ignoring the case of ASCII letters.
 bool same_word(std::string_view word, std::string_view lower);
 
-/// A cursor over the lines of a text that knows where it is. Blanks are space, tab and carriage return, so
-/// CRLF files need no care. Every failure is a BadInput "WHERE:LINE: what", with both numbers where there are
-/// two.
+/// A cursor over the lines of a text. Blanks are space, tab and carriage return, so that CRLF files need no
+/// care. Every failure is a BadInput "WHERE:LINE: message".
 class Text {
  public:
-  /// `comment`: the character that starts a comment running to the line's end, or 0 for none.
+  /// `comment` starts a comment that runs to the end of the line; 0: there are none.
   Text(std::string_view bytes, std::string where, char comment = 0);
 
-  /// Moves to the next line that holds a word; false at the end.
+  /// Moves to the next line that holds a word; returns false at the end.
   bool next_line();
-  /// The next word of the line; empty at its end.
-  std::string_view word();
-  /// The next word, on whatever line it is; empty at the end of the text.
-  std::string_view next_word();
-  /// The next word, on whatever line it is, as a number or an int.
-  double next_number(const char* what);
-  int next_integer(const char* what);
-  /// The next word of the line as a whole number, which may be beyond int.
-  long long wide(const char* what);
-  /// The next word of the line if it is an int, alone or (with `slash`) before a "/", with what follows that;
-  /// false for any other, which is left.
-  bool leading_integer(int& value, bool slash = true);
-  /// Is the next word NaN, of either sign, as C writes it: "nan", "-NaN", "nan(ind)"?
-  bool at_nan() const;
-  /// Leaves the current line and the n bytes after it, which are not text: no more than there are.
+  /// Moves to the next line, which must exist; `what` (item i of n) is for the message.
+  void need_line(const char* what, int i = -1, int n = -1);
+  /// Drops the rest of the line and the n bytes after it, which are no text. Requires n bytes.
   void skip(std::size_t n);
-  /// The next word again.
+
+  /// Takes the next word of the line; empty at its end.
+  std::string_view word();
+  /// Returns the next word without taking it.
   std::string_view peek() const;
-  /// What is left of the line, without blanks at either end.
+  /// Takes the rest of the line, without blanks at either end.
   std::string_view rest();
   bool line_ends() const;
-  /// The next word of the line as a finite number; `what` names it in the message when it is not one.
+  /// Takes the next word of the line as a finite number; `what` is for the message.
   double number(const char* what);
-  /// The next three words as a point.
-  Vec3 point();
-  /// The next word of the line as an int.
+  /// The same for whole numbers: an int, or one of 64 bits.
   int integer(const char* what);
-  /// A count of things that take at least `least` bytes each: not negative, and no more than the text can
-  /// hold.
+  long long wide(const char* what);
+  /// Takes a count of things of at least `least` bytes each: neither negative nor more than the text holds.
   int count(const char* what, std::size_t least);
-  /// Moves to the next line, which must exist: "the file ends where WHAT is due" otherwise, or "WHAT i of n".
-  void need_line(const char* what, int i = -1, int n = -1);
+  /// Takes the next word if it is an int, alone or (with `slash`) before a "/" and more; else returns false.
+  bool leading_integer(int& value, bool slash = true);
+  /// Returns whether the next word is a NaN as C writes it: "nan", "-NaN", "nan(ind)".
+  bool at_nan() const;
 
   std::size_t line() const { return line_; }
-  /// The bytes that are left of the current line.
+  /// Number of bytes left of the current line, and the bytes after it.
   std::size_t rest_size() const { return left_.size(); }
-  /// The bytes after the current line.
   std::string_view after() const { return bytes_; }
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
@@ -73,23 +61,30 @@ class Text {
   std::size_t line_ = 0;
 };
 
-/// The whole of `word` as a number: decimal, as C writes them, an initial + included; false for anything
-/// else, inf and nan too.
+/// Takes the next word, on whatever line it is; empty at the end of the text.
+std::string_view next_word(Text& text);
+/// Takes the next word, on whatever line it is, as a number or an int.
+double next_number(Text& text, const char* what);
+int next_integer(Text& text, const char* what);
+/// Takes the next three words of the line as a point.
+Vec3 next_point(Text& text);
+
+/// Parses the whole of a word as a finite decimal number, as C or Fortran write it, also with a leading +.
 bool parse_number(std::string_view word, double& value);
 bool parse_integer(std::string_view word, long long& value);
 
-/// `word` in quotes for a message: cut if long, control characters replaced.
+/// Returns the word in quotes for a message: cut if long, control characters replaced.
 std::string quoted(std::string_view word);
-/// Names as the comments of a PLY header hold them: blanks, %, and all but printable ASCII as %XX.
+/// Encodes blanks, % and all that is not printable ASCII as %XX, for names in a PLY header; and decodes it.
 std::string percent_encode(std::string_view text);
 std::string percent_decode(std::string_view text);
-/// A name as formats with one name a line can hold it: control characters are blanks, none at either end.
+/// Returns a name for formats with one name per line: control characters become blanks, none at either end.
 std::string one_line(std::string_view name);
 
 /// Appends the shortest text that reads back as the same number.
 void append(std::string& out, double value);
 void append(std::string& out, long long value);
-/// "x y z" after `before`, and a line end.
+/// Appends `before`, "x y z" and a line end.
 void append_point(std::string& out, const char* before, Vec3 p);
 
 }  // namespace meshpipe

@@ -7,7 +7,10 @@
 #
 # EXT is vtu, vtp, vtk, stl, obj, off, ply, msh, msh2, msh4, mesh, meshb, gts, inp, bdf, nas or poly; NAME has no blanks.
 # NAME.mesh.EXT is made from NAME.stl, .obj, .off, .ply, .msh, .vtu, .vtp, .vtk, .mesh or .meshb, whichever is there first.
+# Where the result misses its contract, sizes are made smaller there and the chain is repeated from msize on, as mremesh does:
+# in NAME.stages/again.
 #   SIZE, TRIANGLES      what mremesh takes as --size and --triangles (default: as many triangles as the input has)
+#   BOUNDS               --min, --max and --gradation, which hold for smaller sizes, too
 #   CLEAN_ARGS, FEATURE_ARGS, PARTITION_ARGS, ... CHECK_ARGS
 #                        further options of a stage's program: FEATURE_ARGS='--feature-angle none'
 #   FLAGS                options of all programs (default -q)
@@ -19,9 +22,11 @@ stages := 01-clean 02-topo 03-feature 04-partition 05-multiscale 06-param 07-siz
 
 goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
-args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)))
+args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
+  $(if $(filter RELAX,$(1)),--accept))
 
 # programs of this build first
+this := $(abspath $(lastword $(MAKEFILE_LIST)))
 here := $(dir $(abspath $(lastword $(MAKEFILE_LIST))))
 programs := $(firstword $(dir $(wildcard $(here)mclean $(here)../bin/mclean $(here)../build/bin/mclean)))
 export PATH := $(if $(programs),$(programs):)$(PATH)
@@ -32,11 +37,11 @@ endif
 .SUFFIXES:
 .SECONDARY:
 .DELETE_ON_ERROR:
-.PHONY: FORCE
+.PHONY: FORCE again
 FORCE:
 
 # make takes a name with a blank for two
-parts := $(filter-out $(foreach e,$(outputs),%.mesh.$(e)) %.ply %.options,$(MAKECMDGOALS))
+parts := $(filter-out $(foreach e,$(outputs),%.mesh.$(e)) %.ply %.options again,$(MAKECMDGOALS))
 ifneq ($(parts),)
   $(error '$(firstword $(parts))' is no NAME.mesh.EXT, where EXT is one of: $(outputs); and NAME has no blanks)
 endif
@@ -66,8 +71,31 @@ $(foreach s,$(filter-out 01-clean,$(stages)),\
   $(eval $(call stage,$(s),$(previous),m$(name),$(call upper,$(name))))\
   $(eval previous := $(s)))
 
+# mcheck of a stem's mesh into a result; it says in the verdict what is next
+check = mcheck $(FLAGS) $(call args,CHECK) --json $(1).stages/12-check.json --verdict $(1).stages/verdict \
+  --refine $(1).stages/refined.ply $(2) -o $(3) || \
+  $(MAKE) --no-print-directory -f $(this) again STEM='$(1)' RESULT='$(3)'
+
 define result
 %.mesh.$(1): %.stages/11-relax.ply %.stages/12-check.options
-	mcheck $$(FLAGS) $$(call args,CHECK) --json $$*.stages/12-check.json $$< -o $$@
+	@rm -f $$*.stages/verdict
+	+$$(call check,$$*,$$<,$$@)
 endef
 $(foreach e,$(outputs),$(eval $(call result,$(e))))
+
+# one more round, if the verdict asks for it; a number of triangles holds as long as it says
+dir := $(STEM).stages
+again_args = $(FLAGS) $(call args,$(1)) $(dir)/again/$(2).ply -o $(dir)/again/$(3).ply
+again:
+	@[ -e $(dir)/verdict ]
+	@tail -n 1 $(dir)/verdict | grep -qx next=refine || \
+	  { sed -n 's/^message=/mcheck: error: /p' $(dir)/verdict | tail -n 1 >&2; exit 1; }
+	@mkdir -p $(dir)/again; mv $(dir)/refined.ply $(dir)/again/field.ply
+	msize $(FLAGS) $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),$$(tail -n 2 $(dir)/verdict | \
+	  grep -qx count=free || echo --triangles $(TRIANGLES))) $(BOUNDS) --field $(dir)/again/field.ply:size \
+	  $(dir)/06-param.ply -o $(dir)/again/07-size.ply
+	mlines $(call again_args,LINES,07-size,08-lines)
+	mmesh2d $(call again_args,MESH2D,08-lines,09-mesh2d)
+	mlift $(call again_args,LIFT,09-mesh2d,10-lift)
+	mrelax $(call again_args,RELAX,10-lift,11-relax)
+	+$(call check,$(STEM),$(dir)/again/11-relax.ply,$(RESULT))

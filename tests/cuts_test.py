@@ -111,7 +111,7 @@ def union_faults(before, after):
     for k, origin in enumerate(after.face["origin"]):
         gap[origin] -= norm(after.area_vector(k))
         if dot(after.area_vector(k), before.area_vector(origin)) < 0:
-            yield f"triangle {k} is turned over"
+            yield f"triangle {k} is inverted"
         if "patch" in after.face and after.face["patch"][k] != before.face["patch"][origin]:
             yield f"triangle {k} has patch {after.face['patch'][k]}, not {before.face['patch'][origin]}"
     if sum(map(abs, gap)) > 1e-12 * total:
@@ -247,7 +247,7 @@ def check(name, path, most):
         faults.append(f"{len(after.parts)} parts, {most} would do")
     if turning > 25:
         faults.append(f"the cuts turn by {turning:.1f} degrees")
-    faults += [f"a region of {n} triangles beside a cut, {width:.3f} of theirs wide" for width, n in slivers(before, after)]
+    faults += [f"a region of {n} triangles next to a cut, {width:.3f} of theirs wide" for width, n in slivers(before, after)]
     for fault in faults[:5]:
         print(f"FAILED: {name}: {fault}")
     failed += len(faults)

@@ -99,11 +99,11 @@ failures = []
 checked = 0
 
 
-def check(what, found, due):
+def check(what, found, expected):
     global checked
     checked += 1
-    if found != due:
-        failures.append(f"{what}: {found}, not {due}")
+    if found != expected:
+        failures.append(f"{what}: {found}, not {expected}")
 
 
 def missing(tool):
@@ -161,10 +161,10 @@ def meshio_checks(path):
     cells = sum(len(c.data) for c in mesh.cells if c.type == "triangle")
     points = len(mesh.points)
     if kind == "stl":
-        points, due = 0, 0  # merged or not by version
+        points, expected = 0, 0  # merged or not by version
     else:
-        due = VERTICES
-    check(f"meshio, {path}", (points, cells), (due, FACES))
+        expected = VERTICES
+    check(f"meshio, {path}", (points, cells), (expected, FACES))
     if kind.startswith("msh"):
         check(f"meshio, tags of {path}", [int(t) for c in mesh.cell_data["gmsh:physical"] for t in c], [1, 1, 5, 5])
         check(f"meshio, names of {path}", {n: int(v[0]) for n, v in mesh.field_data.items()}, {"inlet": 1, "outer wall": 5})
@@ -247,7 +247,7 @@ def second_order_checks(mconvert, scratch):
     with open(sample, "w") as file:
         file.write(LINES.replace("end_header\n", table + "end_header\n") + rows)
     number = {frozenset(e): 4 + i for i, e in enumerate(nodes)}
-    due = [[a, b, c] + [number[frozenset(e)] for e in ((a, b), (b, c), (c, a))] for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    expected = [[a, b, c] + [number[frozenset(e)] for e in ((a, b), (b, c), (c, a))] for a, b, c in ((0, 1, 2), (0, 2, 3))]
     lines = [[1, 2, 7], [2, 3, 8]]
     for encoding in ("ascii", "binary"):
         for kind in ("msh2", "msh4", "vtu"):
@@ -257,12 +257,12 @@ def second_order_checks(mconvert, scratch):
             if meshio:
                 mesh = meshio.read(path, file_format="gmsh" if kind.startswith("msh") else None)
                 found = {c.type: c.data.tolist() for c in mesh.cells}
-                wanted = {"triangle6": due} | ({"line3": lines} if kind != "vtu" else {})
+                wanted = {"triangle6": expected} | ({"line3": lines} if kind != "vtu" else {})
                 check(f"meshio, nodes of {path}", (len(mesh.points), found), (9, wanted))
             if vtk and kind == "vtu":
                 grid = vtk_read(path)
                 found = [[grid.GetCell(t).GetPointId(i) for i in range(6)] for t in range(grid.GetNumberOfCells())]
-                check(f"VTK, nodes of {path}", ([grid.GetCellType(0)], found), ([22], due))
+                check(f"VTK, nodes of {path}", ([grid.GetCellType(0)], found), ([22], expected))
             if shutil.which("gmsh") and kind != "vtu":
                 check(f"Gmsh, types of {path}", gmsh_types(path, scratch), ["8", "8", "9", "9"])
 
@@ -340,13 +340,13 @@ def gmsh_written(path, scratch):
         yield out
 
 
-def reads(mconvert, path, due, said=""):
+def reads(mconvert, path, expected, said=""):
     """What mconvert makes of another program's file, and says: rows of faces, without the vertex numbers."""
     done = subprocess.run([mconvert, "--surface", "--ascii", path], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           check=False, text=True)
     rows = done.stdout.split("end_header\n")[-1].splitlines()
     patches = sorted(int(r.split()[4]) for r in rows if r.startswith("3 ") and len(r.split()) == 5)
-    check(f"mconvert on {path}", (done.stderr, patches), (said, due))
+    check(f"mconvert on {path}", (done.stderr, patches), (said, expected))
 
 
 def intermediates(programs, scratch):
@@ -409,15 +409,15 @@ def main():
         streams += [os.path.join(scratch, f"{encoding}.{kind}") for encoding in ("ascii", "binary")
                     for kind in ("mply", "ply")]
         for path in streams:
-            due = header_counts(path)
+            expected = header_counts(path)
             # these programs go by the extension
             as_ply = os.path.join(scratch, "stream.ply")
             shutil.copy(path, as_ply)
             if vtk:
                 data = vtk_read(as_ply)
-                check(f"VTK, {path}", (data.GetNumberOfPoints(), data.GetNumberOfCells()), due)
+                check(f"VTK, {path}", (data.GetNumberOfPoints(), data.GetNumberOfCells()), expected)
             if display:
-                check(f"MeshLab, {path}", meshlab_checks(as_ply, scratch), due)
+                check(f"MeshLab, {path}", meshlab_checks(as_ply, scratch), expected)
     for failure in failures:
         print(f"failed: {failure}")
     print(f"{checked} checks, {len(failures)} failed")

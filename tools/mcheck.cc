@@ -2,21 +2,24 @@
 // mcheck: verify a result against the surface it was made from.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 
-#include "formats/lift_tables.h"
-#include "formats/line_tables.h"
-#include "formats/verdict.h"
-#include "lib/clean.h"
-#include "lib/contract.h"
-#include "lib/weld.h"
+#include "formats/stream/lift_tables.h"
+#include "formats/stream/line_tables.h"
+#include "lib/check/check.h"
+#include "lib/clean/clean.h"
+#include "lib/core/weld.h"
 #include "tools/common.h"
+#include "tools/report/rounds.h"
+#include "tools/report/verdict.h"
 
 using namespace meshpipe;
 
 namespace {
 
 struct Options {
-  std::string reference, require = default_contract, histogram, culprits, refine;
+  std::string reference, require = default_contract, histogram, offending, refine, verdict;
   double max_error = 0;
   bool accept = false;
   int samples = 10000;
@@ -51,7 +54,7 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   return f;
 }
 
-void tell(Io& io, const Findings& f) {
+void say(Io& io, const Findings& f) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
   auto &report = io.report, reference = nlohmann::ordered_json::object();
   for (const Figure& x : figures(f))
@@ -62,7 +65,7 @@ void tell(Io& io, const Findings& f) {
       else
         (*where)[x.key] = value;
     }
-  const Connectivity &m = f.mesh, &r = f.reference;
+  const Soundness &m = f.mesh, &r = f.reference;
   report["topology_same"] =
       m.sound() && r.sound() && m.components == r.components && m.genus == r.genus && m.loops == r.loops;
   for (auto [where, q] : {std::pair{&report, &f.quality}, std::pair{&reference, &f.reference_quality}}) {
@@ -72,9 +75,20 @@ void tell(Io& io, const Findings& f) {
   report["reference"] = reference;
 }
 
-/// The result with sizes that would be small enough where it is too far from the reference, and smaller ones
-/// where it is at fault; none if that is nowhere.
-void write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o,
+/// Reports what mclean has done to the input's topology, which the comparison with the cleaned input hides.
+void say_cleaning(Io& io, const Stream& stream) {
+  for (const std::string& text : stream.remarks) {
+    const Remark r = parse_remark(text);
+    if (r.opened + r.split + r.dropped == 0) continue;
+    io.say("of the input, mclean has opened " + std::to_string(r.opened) + " edges, split " +
+           std::to_string(r.split) + " vertices, dropped " + std::to_string(r.dropped) + " triangles");
+    io.report["input"] = {{"opened", r.opened}, {"split", r.split}, {"dropped", r.dropped}};
+  }
+}
+
+/// Writes the result with sizes that are small enough where it is too far from the reference, and smaller
+/// ones where it fails. Returns whether any size changed: if not, nothing is written.
+bool write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o,
                    const Surface& faulty) {
   Stream refined;
   static_cast<Mesh&>(refined.surface) = stream.surface;
@@ -85,28 +99,62 @@ void write_refined(const Io& io, const Stream& stream, const Surface& reference,
     size = refined_size(refined.surface, size, errors, o.max_error * diagonal(reference));
   }
   size = refined_size(refined.surface, size, severity_of(faulty, refined.surface), 1);
-  if (size == given) return;
+  if (size == given) return false;
   refined.surface.vertex.set("size", std::move(size));
   io.write_to(o.refine, refined);
+  return true;
 }
 
-void check(Io& io, const Options& o) {
+/// The verdict on one round of a chain, added to the file that holds those of the rounds before it.
+class Verdict {
+ public:
+  Verdict(Io& io, const Options& o) : file_(o.verdict) {
+    if (file_.empty()) return;
+    io.expect_report("--verdict", file_);
+    if (std::filesystem::exists(file_)) before_ = Io::read_bytes(file_);
+    outcome.bounded_distance = o.max_error > 0;
+    io.on_failure = [this, &io](int status, const std::string& why, const std::string& program) {
+      outcome.status = status;
+      outcome.program = program;
+      outcome.message = why;
+      try {
+        write();
+      } catch (const CannotWrite& e) {
+        io.say(e.what());
+      }
+      return !repeats();
+    };
+  }
+  /// Returns whether the chain is to be repeated: then this round writes nothing else.
+  bool repeats() const { return !file_.empty() && is_repeated(before_, outcome); }
+  void write() const {
+    if (!file_.empty()) Io::write_file(file_, before_ + verdict_block(before_, outcome));
+  }
+
+  Outcome outcome;
+
+ private:
+  std::string file_, before_;
+};
+
+void check(Io& io, const Options& o, Verdict& verdict) {
   Contract contract = parse_contract(o.require);
   if (o.max_error > 0) contract.push_back({"hausdorff", o.max_error});
   if (!o.histogram.empty()) io.expect_report("--histogram", o.histogram);
-  if (!o.culprits.empty()) io.expect_report("--culprits", o.culprits, true);
+  if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
   if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
   Stream stream = io.read();
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
   const Findings f = compare(io, stream, o, reference);
-  tell(io, f);
+  say(io, f);
+  say_cleaning(io, stream);
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
-  if (!o.culprits.empty()) {
+  if (!o.offending.empty()) {
     Stream faulty;
-    faulty.surface = culprits(contract, f, stream.surface);
-    io.write_to(o.culprits, faulty);
+    faulty.surface = offending_faces(contract, f, stream.surface);
+    io.write_to(o.offending, faulty);
   }
   const std::vector<Failure> failures = judge(contract, f, stream.surface);
   io.report["failed"] = nlohmann::ordered_json::array();
@@ -114,10 +162,15 @@ void check(Io& io, const Options& o) {
     io.say("failed: " + x.requirement + ": " + x.fact);
     io.report["failed"].push_back({{"requirement", x.requirement}, {"fact", x.fact}});
   }
+  verdict.outcome.failures = failures;
   if (!o.refine.empty() && !failures.empty())
-    write_refined(io, stream, reference, o, culprits(contract, f, stream.surface));
-  if (failures.empty() || o.accept) io.write(stream);
-  if (failures.empty()) return;
+    verdict.outcome.refined =
+        write_refined(io, stream, reference, o, offending_faces(contract, f, stream.surface));
+  if (verdict.repeats())
+    io.json.clear();
+  else if (failures.empty() || o.accept)
+    io.write(stream);
+  if (failures.empty()) return verdict.write();
   throw ContractMissed(
       "contract missed: " + failures[0].requirement + ": " + failures[0].fact +
       (failures.size() > 1 ? " (and " + std::to_string(failures.size() - 1) + " more)" : ""));
@@ -127,6 +180,7 @@ void check(Io& io, const Options& o) {
 
 int main(int argc, char** argv) {
   Options o;
+  std::optional<Verdict> verdict;  // outlives the body, which may fail
   auto add_options = [&](CLI::App& app) {
     app.add_option("--reference", o.reference,
                    "the surface to compare with; without it the stream's own, from mlift")
@@ -146,7 +200,9 @@ int main(int argc, char** argv) {
     report("--histogram", o.histogram, "draw kappa and angles of both meshes")->type_name("FILE.svg");
     report("--refine", o.refine, "if the contract is missed, write the sizes that may meet it")
         ->type_name("FILE");
-    report("--culprits", o.culprits, "write the triangles at fault")->type_name("FILE");
+    report("--verdict", o.verdict, "add the outcome as lines key=value, errors too: see mcheck(1)")
+        ->type_name("FILE");
+    report("--culprits", o.offending, "write the triangles at fault")->type_name("FILE");
   };
   return run_tool(
       argc, argv, "mcheck",
@@ -154,5 +210,5 @@ int main(int argc, char** argv) {
       "made from.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/11-relax.ply -o checked.ply\n"
       "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 --json tree.json -o tree.ply",
-      add_options, [&](Io& io) { check(io, o); });
+      add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o)); });
 }

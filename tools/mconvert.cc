@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mconvert: between mesh formats and the stream; strips, colours, shows charts as a flat mesh.
+// mconvert: converts between mesh formats and the stream; strips, colors, shows charts as a flat mesh.
 #include <algorithm>
 #include <cmath>
 
-#include "formats/inria.h"
-#include "formats/line_tables.h"
-#include "formats/vtk_legacy.h"
+#include "formats/foreign/feature_edges.h"
+#include "formats/foreign/inria.h"
+#include "formats/foreign/vtk_legacy.h"
+#include "formats/stream/line_tables.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -14,11 +15,11 @@ namespace {
 
 struct Options {
   bool charts = false, surface = false, polydata = false;
-  std::string color, sol;
+  std::string color, sol, feature_edges;
 };
 
-/// The charts in place of the surface: vertices (u, v, 0), one for each part a vertex touches; face columns
-/// stay.
+/// Replaces the surface by its charts: vertices (u, v, 0), one for each part that a vertex touches. Face
+/// columns stay.
 void flatten(Stream& stream) {
   Surface& s = stream.surface;
   std::vector<Vec3> flat;
@@ -35,8 +36,7 @@ void flatten(Stream& stream) {
   stream.tables.clear();
 }
 
-/// Face columns red green blue: a colour for each label, as far apart as can be for labels that follow each
-/// other.
+/// Adds face columns red green blue: a color for each label; consecutive labels differ most.
 void color_by(Surface& s, const std::string& column) {
   const std::vector<int>& label = s.face.get<int>(column);
   std::vector<std::uint8_t> rgb[3];
@@ -56,7 +56,7 @@ void color_by(Surface& s, const std::string& column) {
   s.face.set("blue", std::move(rgb[2]));
 }
 
-/// Leaves vertices, faces, patches and colours.
+/// Keeps only vertices, faces, patches and colors.
 void strip(Stream& stream) {
   Surface& s = stream.surface;
   stream.tables.clear();
@@ -83,13 +83,20 @@ int main(int argc, char** argv) {
             ->type_name("part|patch");
         app.add_option("--sol", o.sol, "add the values of this .sol or .solb file to the vertices")
             ->type_name("FILE");
+        app.add_option("--feature-edges", o.feature_edges,
+                       "also write the model edges, as lines: .obj, .vtk or .eMesh")
+            ->type_name("FILE")
+            ->group("Reports");
         app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
-        app.add_flag("--surface", o.surface, "leave out all but vertices, faces, patches and colours");
+        app.add_flag("--surface", o.surface, "leave out all except vertices, faces, patches and colors");
       },
       [&](Io& io) {
         if (o.polydata && !io.output.ends_with(".vtk"))
           throw BadUsage("--polydata is for -o FILE.vtk, not '" + io.output + "'");
+        if (!o.feature_edges.empty()) io.expect_report("--feature-edges", o.feature_edges);
         Stream stream = io.read();
+        if (!o.feature_edges.empty())
+          Io::write_file(o.feature_edges, write_feature_edges(stream, o.feature_edges));
         if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
         if (o.charts) flatten(stream);
         if (!o.color.empty()) color_by(stream.surface, o.color);

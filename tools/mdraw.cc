@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mdraw: a picture of one or several meshes, side by side.
-#include "formats/png.h"
 #include "tools/common.h"
+#include "tools/report/png.h"
 
 using namespace meshpipe;
 
@@ -17,11 +17,11 @@ int main(int argc, char** argv) {
         ->type_name("BY");
     app.add_option("--beside", others, "more meshes, drawn to the right in the same way")->type_name("FILE");
     app.add_option("--azimuth", view.azimuth,
-                   "direction of the viewer round the z axis, degrees (default 30)");
+                   "direction of the viewer around the z axis, degrees (default 30)");
     app.add_option("--elevation", view.elevation, "height of the viewer, degrees (default 20)");
-    app.add_option("--zoom", view.zoom, "enlarge about the centre (default 1)")->check(positive_number());
-    app.add_option("--right", view.shift_x, "move the centre right by this share of the width");
-    app.add_option("--up", view.shift_y, "move the centre up by this share of the width");
+    app.add_option("--zoom", view.zoom, "enlarge about the center (default 1)")->check(positive_number());
+    app.add_option("--right", view.shift_x, "move the center right by this share of the width");
+    app.add_option("--up", view.shift_y, "move the center up by this share of the width");
     app.add_option("--width", width, "pixels of one picture (default 800)")->check(CLI::Range(16, 8192));
     app.add_option("--height", height, "pixels (default 800)")->check(CLI::Range(16, 8192));
     app.add_flag("--no-edges", smooth, "leave the mesh lines out");

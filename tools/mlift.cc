@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mlift: map the plane meshes back to the surface and glue them along the lines.
-#include "formats/lift_tables.h"
-#include "formats/line_tables.h"
-#include "formats/plane_tables.h"
-#include "formats/second_order.h"
+#include "formats/stream/lift_tables.h"
+#include "formats/stream/line_tables.h"
+#include "formats/stream/plane_tables.h"
 #include "tools/common.h"
+#include "tools/on_reference.h"
 
 using namespace meshpipe;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mlines: divide borders, model edges and interfaces between parts by the size
 // field.
-#include "formats/line_tables.h"
-#include "formats/model_edges.h"
-#include "formats/stages.h"
-#include "lib/size.h"
+#include "formats/stream/line_tables.h"
+#include "formats/stream/model_edges.h"
+#include "formats/stream/stages.h"
+#include "lib/size/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
-    const Lines lines = make_lines(stream.surface, read_charts(stream), 0.7, &tag, keep_boundary);
+    const Lines lines = make_lines(stream.surface, read_charts(stream), corner_turn, &tag, keep_boundary);
     drop_downstream(stream, Stage::lines);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <map>
 
-#include "formats/chart_svg.h"
-#include "formats/line_tables.h"
-#include "formats/plane_tables.h"
-#include "lib/number.h"
-#include "lib/parallel.h"
-#include "lib/progress.h"
-#include "lib/size.h"
+#include "formats/stream/line_tables.h"
+#include "formats/stream/plane_tables.h"
+#include "lib/core/number.h"
+#include "lib/core/parallel.h"
+#include "lib/core/progress.h"
+#include "lib/size/size.h"
 #include "tools/common.h"
+#include "tools/report/chart_svg.h"
 
 using namespace meshpipe;
 
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   auto options = [&](CLI::App& app) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
-    app.add_option("--svg", pictures, "draw each chart in this directory, its mesh beside its map")
+    app.add_option("--svg", pictures, "draw each chart in this directory, its map and its mesh side by side")
         ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
         ->type_name("DIR")
         ->group("Reports");
@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
     if (!stream.surface.vertex.has("size"))
       throw NotAdmissible("no column 'size' in table 'vertex'; run msize first");
     const auto& size = stream.surface.vertex.get<double>("size");
+    refuse_unresolved_sizes(stream.surface, size);
     refuse_more_triangles(stream.surface, size, most_triangles());
 
     const std::clock_t start = std::clock();

@@ -3,13 +3,14 @@
 #include <filesystem>
 #include <numeric>
 
-#include "formats/level_svg.h"
-#include "formats/stages.h"
-#include "lib/multiscale.h"
-#include "lib/number.h"
-#include "lib/partition.h"
-#include "lib/topology.h"
+#include "formats/stream/stages.h"
+#include "lib/core/number.h"
+#include "lib/core/topology.h"
+#include "lib/multiscale/multiscale.h"
+#include "lib/partition/partition.h"
+#include "lib/plan/plan.h"
 #include "tools/common.h"
+#include "tools/report/level_svg.h"
 
 using namespace meshpipe;
 
@@ -30,6 +31,49 @@ void draw_levels(const std::string& directory, const std::vector<MultiscaleCut>&
     }
     Io::write_file(directory + "/" + stem + ".svg", levels_svg(maps.levels, files));
   }
+}
+
+/// Reports every cut, and the parts that no cut makes short enough.
+void report_cuts(Io& io, const MultiscaleOptions& options, const std::vector<MultiscaleCut>& cuts,
+                 const std::vector<Topology>& topology) {
+  io.report["cuts"] = nlohmann::ordered_json::array();
+  for (const MultiscaleCut& c : cuts) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "part %d: aspect ratio %.2f, %d levels, cut of %.3g diagonals, now parts %d and %d", c.part,
+                  c.eta, c.levels, c.length, c.halves[0], c.halves[1]);
+    io.say(text);
+    if (options.method == CutMethod::maxcut) {
+      std::snprintf(text, sizeof text, "one map: %d triangles below 1e-15 of area, %d reversed", c.too_small,
+                    c.reversed);
+      io.say(text);
+    }
+    io.report["cuts"].push_back({{"part", c.part},
+                                 {"eta", c.eta},
+                                 {"levels", c.levels},
+                                 {"length", c.length},
+                                 {"too_small", c.too_small},
+                                 {"turned_over", c.reversed},
+                                 {"halves", {c.halves[0], c.halves[1]}}});
+  }
+  for (std::size_t p = 0; p < topology.size(); ++p)
+    if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
+      io.say("part " + std::to_string(p) + " keeps aspect ratio " + shown(topology[p].eta_geo) +
+             ": no cut makes it shorter");
+}
+
+/// Reports how long and how straight the interfaces are.
+void report_interfaces(Io& io, int n_parts, const Interfaces& cut) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%), %.0f at most",
+                n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle,
+                cut.largest_angle);
+  io.say(text);
+  io.report["cut_length"] = cut.length;
+  io.report["junctions"] = cut.junctions;
+  io.report["turning_angle"] = cut.turning_angle;
+  io.report["largest_angle"] = cut.largest_angle;
 }
 
 }  // namespace
@@ -73,41 +117,10 @@ int main(int argc, char** argv) {
       stream.surface.face.set("origin", std::move(same));
     }
     io.report["parts"] = n_parts;
-    io.report["cuts"] = nlohmann::ordered_json::array();
-    for (const MultiscaleCut& c : cuts) {
-      char text[200];
-      std::snprintf(text, sizeof text,
-                    "part %d: aspect ratio %.2f, %d levels, cut of %.3g diagonals, now parts %d and %d",
-                    c.part, c.eta, c.levels, c.length, c.halves[0], c.halves[1]);
-      io.say(text);
-      if (options.method == CutMethod::maxcut) {
-        std::snprintf(text, sizeof text, "one map: %d triangles below 1e-15 of area, %d turned over",
-                      c.too_small, c.turned_over);
-        io.say(text);
-      }
-      io.report["cuts"].push_back({{"part", c.part},
-                                   {"eta", c.eta},
-                                   {"levels", c.levels},
-                                   {"length", c.length},
-                                   {"too_small", c.too_small},
-                                   {"turned_over", c.turned_over},
-                                   {"halves", {c.halves[0], c.halves[1]}}});
-    }
-    for (std::size_t p = 0; p < topology.size(); ++p)
-      if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
-        io.say("part " + std::to_string(p) + " keeps aspect ratio " + shown(topology[p].eta_geo) +
-               ": no cut makes it shorter");
-    const Interfaces cut = measure_interfaces(stream.surface, opposite);
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%), %.0f at most",
-                  n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle,
-                  cut.largest_angle);
-    io.say(text);
-    io.report["cut_length"] = cut.length;
-    io.report["junctions"] = cut.junctions;
-    io.report["turning_angle"] = cut.turning_angle;
-    io.report["largest_angle"] = cut.largest_angle;
+    report_cuts(io, options, cuts, topology);
+    report_interfaces(io, n_parts,
+                      measure_interfaces({stream.surface, opposite, model_of(stream.surface)},
+                                         stream.surface.face.get<int>("part")));
     drop_downstream(stream, Stage::parts);
     stream.set(part_table(topology));
     io.write(stream);

@@ -2,15 +2,48 @@
 // mparam: a one-to-one map of every part to the plane.
 #include <algorithm>
 
-#include "formats/chart_report.h"
-#include "formats/line_tables.h"
-#include "formats/stages.h"
-#include "lib/param.h"
-#include "lib/param_svg.h"
-#include "lib/topology.h"
+#include "formats/stream/line_tables.h"
+#include "formats/stream/stages.h"
+#include "lib/core/topology.h"
+#include "lib/plan/plan.h"
 #include "tools/common.h"
+#include "tools/report/chart_report.h"
+#include "tools/report/charts_svg.h"
 
 using namespace meshpipe;
+
+namespace {
+
+/// Reports every chart, and the worst of them.
+void report_charts(Io& io, const ParamOptions& options, const std::vector<Chart>& charts,
+                   const std::vector<ParamReport>& reports, int n_before) {
+  const int n_parts = (int)charts.size();
+  double median = 1, p99 = 1, smallest = 1;
+  int other = 0, repaired = 0;
+  io.report["parts"] = n_parts;
+  io.report["cut"] = n_parts - n_before;
+  io.report["charts"] = nlohmann::ordered_json::array();
+  for (int p = 0; p < n_parts; ++p) {
+    const ParamReport& r = reports[p];
+    io.detail("part " + std::to_string(p) + ": " + chart_line(r, charts[p].mesh.tris.size()));
+    io.report["charts"].push_back(chart_record(r, p, charts[p].mesh.tris.size()));
+    median = std::max(median, r.anisotropy_median);
+    p99 = std::max(p99, r.anisotropy_p99);
+    smallest = std::min(smallest, r.smallest_area);
+    const bool as_asked = r.used == options.map && (r.used != MapKind::conformal || r.form == options.form);
+    other += !as_asked;
+    repaired += as_asked && (r.flips_before > 0 || !r.border_was_simple);
+  }
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "%d charts, %d cut here, %d repaired, %d on another map than asked for; worst "
+                "sigma1/sigma2 median %.3f, "
+                "p99 %.3f, smallest area %.2e",
+                n_parts, n_parts - n_before, repaired, other, median, p99, smallest);
+  io.say(text);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   ParamOptions options;
@@ -39,7 +72,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app.add_flag("--strict", options.strict,
                  "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
-    app.add_option("--svg", svg, "draw the charts, coloured by area scale")
+    app.add_option("--svg", svg, "draw the charts, colored by area scale")
         ->type_name("FILE")
         ->group("Reports");
   };
@@ -63,29 +96,7 @@ int main(int argc, char** argv) {
     stream.set(std::move(parts));
     write_charts(stream, charts);
 
-    double median = 1, p99 = 1, smallest = 1;
-    int other = 0, repaired = 0;
-    io.report["parts"] = n_parts;
-    io.report["cut"] = n_parts - n_before;
-    io.report["charts"] = nlohmann::ordered_json::array();
-    for (int p = 0; p < n_parts; ++p) {
-      const ParamReport& r = reports[p];
-      io.detail("part " + std::to_string(p) + ": " + chart_line(r, charts[p].mesh.tris.size()));
-      io.report["charts"].push_back(chart_record(r, p, charts[p].mesh.tris.size()));
-      median = std::max(median, r.anisotropy_median);
-      p99 = std::max(p99, r.anisotropy_p99);
-      smallest = std::min(smallest, r.smallest_area);
-      const bool as_asked = r.used == options.map && (r.used != MapKind::conformal || r.form == options.form);
-      other += !as_asked;
-      repaired += as_asked && (r.flips_before > 0 || !r.border_was_simple);
-    }
-    char text[300];
-    std::snprintf(text, sizeof text,
-                  "%d charts, %d cut here, %d repaired, %d on another map than asked for; worst "
-                  "sigma1/sigma2 median %.3f, "
-                  "p99 %.3f, smallest area %.2e",
-                  n_parts, n_parts - n_before, repaired, other, median, p99, smallest);
-    io.say(text);
+    report_charts(io, options, charts, reports, n_before);
     if (!svg.empty()) Io::write_file(svg, charts_svg(charts, reports));
     io.write(stream);
   };

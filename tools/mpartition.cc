@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mpartition: cut until every part has genus 0 and a boundary.
-#include "formats/stages.h"
-#include "lib/partition.h"
-#include "lib/topology.h"
+#include "formats/stream/stages.h"
+#include "lib/core/topology.h"
+#include "lib/partition/partition.h"
+#include "lib/plan/plan.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -29,7 +30,8 @@ int main(int argc, char** argv) {
     Stream stream = io.read();
     std::vector<int> opposite;
     const int n_parts = partition_to_disks(stream.surface, options, &opposite);
-    const Interfaces cut = measure_interfaces(stream.surface, opposite);
+    const Interfaces cut = measure_interfaces({stream.surface, opposite, model_of(stream.surface)},
+                                              stream.surface.face.get<int>("part"));
     char text[200];
     std::snprintf(text, sizeof text, "%d %s, cut of %.3g diagonals, %d junctions, turning angle %.1f (90 %%)",
                   n_parts, n_parts == 1 ? "part" : "parts", cut.length, cut.junctions, cut.turning_angle);
@@ -40,7 +42,7 @@ int main(int argc, char** argv) {
     io.report["turning_angle"] = cut.turning_angle;
     drop_downstream(stream, Stage::parts);
     stream.set(part_table(
-        topology_of_parts(stream.surface, opposite, stream.surface.face.get<int>("part"), n_parts)));
+        topology_of_parts({stream.surface, opposite}, stream.surface.face.get<int>("part"), n_parts)));
     io.write(stream);
   };
   return run_tool(argc, argv, "mpartition",

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mrelax: optimise a lifted mesh on its reference surface, across interfaces that are not model edges.
-#include "formats/lift_tables.h"
-#include "formats/line_tables.h"
-#include "formats/second_order.h"
-#include "lib/clean.h"
-#include "lib/place.h"
-#include "lib/relax.h"
+// mrelax: optimize a lifted mesh on its reference surface, across interfaces that are not model edges.
+#include "formats/stream/lift_tables.h"
+#include "formats/stream/line_tables.h"
+#include "formats/stream/second_order.h"
+#include "lib/clean/clean.h"
+#include "lib/lift/lift.h"
+#include "lib/relax/relax.h"
 #include "tools/common.h"
+#include "tools/on_reference.h"
 
 using namespace meshpipe;
 
@@ -18,7 +19,7 @@ struct Options {
   bool accept = false;
 };
 
-/// The reference from a file, with what mlines would know of it.
+/// The reference from a file, with the columns that earlier stages would have written.
 Surface reference_from(const Stream& file, std::size_t triangles) {
   Surface s = file.surface;
   clean(s);
@@ -30,7 +31,7 @@ Surface reference_from(const Stream& file, std::size_t triangles) {
   return s;
 }
 
-/// What misses the goal: pairs of the result that intersect where the reference does not.
+/// Describes the pairs of the result that intersect where the reference does not; empty if there are none.
 std::string left_over(const RelaxReport& r, const LiftedMesh& mesh) {
   if (r.intersections.empty()) return "";
   const auto [s, t] = r.intersections.front();
@@ -82,7 +83,7 @@ int main(int argc, char** argv) {
       if (stream.find("line_use"))  // lines on another surface
         for (const char* table : {"line", "line_use", "line_vertex"}) stream.erase(table);
     }
-    stream.surface = {};  // it is written anew: memory
+    stream.surface = {};  // written anew later; frees its memory now
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
     const bool second_order = stream.find("mid_vertex") != nullptr;
     const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);
@@ -96,7 +97,7 @@ int main(int argc, char** argv) {
     if (const double asked = o.relax.target_triangles;
         std::abs((double)mesh.tris.size() - asked) > much * asked && asked > 0)
       io.say("narrow places of the model keep it from the " + std::to_string(stream.asked_triangles) +
-             " triangles meant");
+             " triangles asked for");
     if (r.corners_merged > 0)
       io.say(std::to_string(r.corners_merged) +
              " corners merged with another that was nearer than a twentieth of the size");
@@ -104,6 +105,7 @@ int main(int argc, char** argv) {
     io.report["triangles"] = mesh.tris.size();
     io.report["kappa_mean"] = r.kappa_mean;
     io.report["kappa_min"] = r.kappa_min;
+    io.report["tries"] = r.tries;
     io.report["splits"] = r.splits;
     io.report["collapses"] = r.collapses;
     io.report["flips"] = r.flips;
@@ -117,7 +119,7 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "mrelax",
-      "Optimise a lifted mesh on the surface it came from: flip, collapse, split and move vertices over "
+      "Optimize a lifted mesh on the surface it came from: flip, collapse, split and move vertices over "
       "that surface, across every interface that is not a model edge.\n\n"
       "examples:\n"
       "  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o "

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mshape: make test surfaces.
-#include "lib/shape.h"
+#include <numbers>
+
+#include "lib/shape/shape.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -9,16 +11,16 @@ namespace {
 
 struct Options {
   std::string kind;
-  int triangles = 0;  // 0: as many as is usual for the kind
+  int triangles = 0;  // 0: the usual number of the kind
   double aspect = 0, ratio = 0, noise = 0, slivers = 0, dirt = 0;
   int patches = 0;
   bool closed = false;
   int genus = 2, generations = 0, outlets = 0, seed = 1;
 };
 
-/// Vertices round a tube of about n triangles.
+/// Returns the number of vertices around a tube of about n triangles.
 int around(double aspect, bool closed, int n) {
-  const double pi = 3.14159265358979, per_square = 4 * aspect / (std::sqrt(3) * pi) + (closed ? 1 / pi : 0);
+  const double pi = std::numbers::pi, per_square = 4 * aspect / (std::sqrt(3) * pi) + (closed ? 1 / pi : 0);
   return std::max(3, (int)std::lround(std::sqrt(n / per_square)));
 }
 
@@ -27,11 +29,11 @@ Body make(const Options& o) {
   auto ratio = [&](double usual) { return o.ratio > 0 ? o.ratio : usual; };
   if (o.kind == "cube") return cube(triangles(1200));
   if (o.kind == "body") {
-    // two patches a cell, and the six sides
-    const int cells = o.patches > 0 ? std::max(1, (o.patches - 5) / 2) : 8;
-    const int columns = o.patches > 0 ? (int)std::ceil(std::sqrt(cells)) : 4;
-    const int rows = std::max(1, (cells + columns / 2) / columns);
-    return cad_body(columns, rows, triangles(300 * cells) / (5 * columns * rows));
+    // two patches per square, and the six sides
+    const int squares = o.patches > 0 ? std::max(1, (o.patches - 5) / 2) : 8;
+    const int columns = o.patches > 0 ? (int)std::ceil(std::sqrt(squares)) : 4;
+    const int rows = std::max(1, (squares + columns / 2) / columns);
+    return cad_body(columns, rows, triangles(300 * squares) / (5 * columns * rows));
   }
   Body body;
   Mesh& mesh = body;
@@ -83,7 +85,8 @@ int main(int argc, char** argv) {
     app.add_option("--slivers", o.slivers, "split this fraction of the edges close to one end")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--dirt", o.dirt,
-                   "fraction of bad triangles of each kind: doubled, without area, turned, not welded")
+                   "fraction of bad triangles of each kind: doubled, without area, inconsistently oriented, "
+                   "not welded")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--seed", o.seed, "seed of all that is random (default 1)");
     app.get_formatter()->column_width(30);

@@ -3,20 +3,20 @@
 #include <cmath>
 #include <filesystem>
 
-#include "formats/inria.h"
-#include "formats/size_field.h"
-#include "formats/stages.h"
-#include "lib/bvh.h"
-#include "lib/expression.h"
-#include "lib/number.h"
-#include "lib/size.h"
+#include "formats/foreign/inria.h"
+#include "formats/foreign/size_table.h"
+#include "formats/stream/stages.h"
+#include "lib/core/bvh.h"
+#include "lib/core/number.h"
+#include "lib/numeric/expression.h"
+#include "lib/size/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
 
 namespace {
 
-/// A .sol file has values only: the mesh they are for has its name.
+/// Reads a .sol file, which has values only, with the mesh of the same name.
 Stream read_with_mesh(const Io& io, const std::string& path) {
   for (const char* extension : {".mesh", ".meshb"})
     if (const auto mesh = std::filesystem::path(path).replace_extension(extension);
@@ -26,10 +26,10 @@ Stream read_with_mesh(const Io& io, const std::string& path) {
       read_sol(stream, Io::read_bytes(path), path);
       return stream;
     }
-  throw BadInput(path + ": the mesh it is for is not there: a .mesh or .meshb of the same name");
+  throw BadInput(path + ": expected its mesh next to it, a .mesh or .meshb of the same name");
 }
 
-/// FILE or FILE:COLUMN, the first if that is there.
+/// Reads FILE or FILE:COLUMN; the first if a file has that name.
 SizeField read_field(const Io& io, const std::string& text) {
   std::string path = text, column;
   if (const std::size_t colon = text.rfind(':');
@@ -44,48 +44,8 @@ SizeField read_field(const Io& io, const std::string& text) {
                               : size_field_of(read_any(bytes, path), column, path);
 }
 
-/// The data as doubles: read as the size later.
-void prepare_data(Surface& s, const std::string& name) {
-  const Column* c = s.vertex.find(name);
-  if (!c) {
-    std::string known;
-    for (const Column& other : s.vertex.columns) known += (known.empty() ? "" : ", ") + other.name;
-    throw NotAdmissible("no vertex data '" + name + "'; there is " + (known.empty() ? "none" : known));
-  }
-  std::visit([&](const auto& v) { s.vertex.set(name, std::vector<double>(v.begin(), v.end())); },
-             decltype(Column::data)(c->data));
-}
-
-/// Does the field ask for the number of triangles that was given? Bounds may keep it from that.
-bool met_count(const SizeOptions& o, const SizeReport& r) {
-  return o.triangles > 0 && std::abs(r.triangles - o.triangles) <= std::max(1.0, 0.01 * o.triangles);
-}
-
-/// Says what came of what was asked for.
-void tell(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
-  char text[160];
-  if (r.smallest == r.largest)
-    std::snprintf(text, sizeof text, "target edge length %.6g", r.smallest);
-  else
-    std::snprintf(text, sizeof text, "target edge length %.6g to %.6g, about %.0f triangles; %d edges split",
-                  r.smallest, r.largest, r.triangles, r.added);
-  io.say(text);
-  if (r.scale != 1)
-    io.say("for this number of triangles the sizes asked for are multiplied by " + shown(r.scale));
-  if (r.lowered > 0)
-    io.say("the size is lowered at " + std::to_string(r.lowered) +
-           " vertices of narrow tubes or closed lines, which four edges go round: at " +
-           shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) + " from " +
-           shown(r.asked) + " to " + shown(r.room));
-  constexpr double much = 0.1;
-  if (counted && std::abs(r.triangles - o.triangles) > std::max(1.0, much * o.triangles))
-    io.say("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
-           " triangles instead of the " + std::to_string(std::llround(o.triangles)) + " asked for");
-  if (o.size > 0 && r.smallest > o.size)
-    io.say("the size is " + shown(r.smallest) + " by --min, instead of the " + shown(o.size) + " asked for");
-  if (o.size > 0 && o.max > 0 && o.max < o.size)
-    io.say("the size is at most " + shown(o.max) + " by --max, instead of the " + shown(o.size) +
-           " asked for");
+void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
+  for (const std::string& line : describe(r, o, counted)) io.say(line);
   io.report["size"] = r.smallest;
   io.report["largest_size"] = r.largest;
   io.report["expected_triangles"] = r.triangles;
@@ -93,7 +53,7 @@ void tell(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
   io.report["split_edges"] = r.added;
 }
 
-/// What was found for another triangulation: lines that came with the file, the parts' numbers of triangles.
+/// Drops lines that came with the file, and counts the triangles of the parts again.
 void follow_split(Stream& stream) {
   for (const char* table : {"line", "line_vertex"}) stream.erase(table);
   for (Table& t : stream.tables)
@@ -151,7 +111,6 @@ int main(int argc, char** argv) {
       sizes = read_field(io, field);
       tree = std::make_unique<Bvh>(sizes);
     }
-    if (!o.data.empty()) prepare_data(s, o.data);
     o.at_curvature = expression && expression->uses("curvature");
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {
@@ -172,9 +131,9 @@ int main(int argc, char** argv) {
     o.most_triangles = most_triangles();
     const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
     drop_downstream(stream, Stage::sizes);
-    stream.asked_triangles = met_count(o, r) ? static_cast<int>(o.triangles) : 0;
+    stream.asked_triangles = met_count(r, o) ? static_cast<int>(o.triangles) : 0;
     if (r.added > 0) follow_split(stream);
-    tell(io, o, r, counted);
+    report(io, o, r, counted);
     io.write(stream);
   };
   return run_tool(

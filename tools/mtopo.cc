@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "lib/clean.h"
-#include "lib/topology.h"
+#include "lib/clean/clean.h"
+#include "lib/core/topology.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -15,7 +15,7 @@ std::string plural(std::size_t n, const std::string& what) {
 }
 
 /// The table of one kind of pieces, "component" or "part": on standard error, for JSON, for TSV.
-void tell(Io& io, const std::string& kind, const std::vector<Topology>& pieces, std::string& tsv) {
+void say(Io& io, const std::string& kind, const std::vector<Topology>& pieces, std::string& tsv) {
   char line[320];
   std::snprintf(
       line, sizeof line,
@@ -104,10 +104,10 @@ int main(int argc, char** argv) {
             throw NotAdmissible("no two of the " + std::to_string(n) +
                                 " triangles share an edge; run mclean first");
           if (required == "manifold")
-            if (int v = find_pinched_vertex(s.tris, opposite, (int)s.points.size()); v >= 0)
+            if (int v = find_pinched_vertex({s, opposite}); v >= 0)
               throw NotAdmissible("vertex " + std::to_string(v) +
                                   " joins triangles that share no edge; run mclean first");
-          return topology_of_components(mesh, opposite, component, n);
+          return topology_of_components({mesh, opposite}, component, n);
         };
         Mesh apart;
         const Mesh* mesh = &s;
@@ -125,11 +125,11 @@ int main(int argc, char** argv) {
             "box\teta_geo\t"
             "verdict\tloop_lengths\n";
         std::string kind = "component";
-        tell(io, kind, pieces, tsv);
+        say(io, kind, pieces, tsv);
         if (s.face.has("part")) {
           kind = "part";
           pieces = topology_of_parts(*mesh, s.face.get<int>("part"), count_parts(s));
-          tell(io, kind, pieces, tsv);
+          say(io, kind, pieces, tsv);
         } else {
           s.face.set("part", std::move(component));
         }

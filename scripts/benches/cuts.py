@@ -6,7 +6,7 @@ usage: scripts/bench cuts [options] [FILE ...]
 Without files, surfaces made by mshape are used. A row holds the surface's genus G, boundary loops N_B and geodesic aspect
 ratio (0: closed); the parts after mpartition, after mmultiscale and after mparam; the interfaces' length over the diagonal
 and their turning angle on the surface, away from creases (90 % quantile and largest), after mmultiscale; the CPU seconds
-of mpartition and mmultiscale together, on one thread, best of --runs. Beside it, where Gmsh is there and succeeds: the
+of mpartition and mmultiscale together, on one thread, best of --runs. Next to it, where Gmsh is there and succeeds: the
 patches that it makes of the surface so that they can be parametrised, by its log, and its CPU seconds of splitting and of
 creating the geometry.
 
@@ -91,21 +91,21 @@ def main(words):
     p.add_argument("--timeout", type=float, default=120)
     p.add_argument("--no-gmsh", action="store_true")
     args = common.parse(p, words)
-    beside = not args.no_gmsh and shutil.which("gmsh")
+    with_gmsh = not args.no_gmsh and shutil.which("gmsh")
     rows = []
     with tempfile.TemporaryDirectory() as work:
         columns = ["surface", "triangles", "G", "N_B", "eta", "mpartition", "mmultiscale", "mparam", "cut", "turn p90", "max", "CPU s"]
-        line = common.table(columns + (["Gmsh patches", "split CPU s", "create CPU s"] if beside else []))
+        line = common.table(columns + (["Gmsh patches", "split CPU s", "create CPU s"] if with_gmsh else []))
         for name, path, _ in common.surfaces(args, work, GENERATED):
             row = cut(name, path, work, args)
             if not isinstance(row, dict):
-                line(name, row[0], *[""] * (len(columns) - 2 + (3 if beside else 0)))
+                line(name, row[0], *[""] * (len(columns) - 2 + (3 if with_gmsh else 0)))
                 rows.append({"surface": name, "failed": row[0]})
                 continue
             cells = [name, row["triangles"], row["genus"], row["loops"], f"{row['eta']:.1f}", row["partition"], row["parts"],
                      row["charts"] or "failed", f"{row['cut_length']:.2f}", f"{row['turning_angle']:.1f}", f"{row['largest_angle']:.0f}",
                      f"{row['seconds']:.2f}"]
-            if beside:
+            if with_gmsh:
                 stl = os.path.join(work, "surface.stl")
                 made = common.run(f"mconvert -q {os.path.join(work, 'clean.ply')} -o {stl}", args.timeout)
                 figures = None if made.status else gmsh(stl, work, args.timeout)

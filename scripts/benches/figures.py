@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Quality of results, beside the cuts and at model edges: no trace of the parts, and what CAD leaves room for.
+"""Quality of results, next to the cuts and at model edges: no trace of the parts, and what CAD leaves room for.
 
 usage: scripts/bench figures [options] [FILE[:TRIANGLES] ...]
 
 Without files, surfaces made by mshape are used. One mremesh of each, judged by mcheck: smallest kappa, the smallest off
-wedges (two triangles away from model edges that meet at less than 40 degrees), smallest angle; mean kappa of the
+sharp corners (two triangles away from model edges that meet at less than 40 degrees), smallest angle; mean kappa of the
 triangles within an edge of a former interface, of all others, and the difference (positive: the cuts show; the goal is no
 more than 0.003); Hausdorff distance and that of borders and model edges, over the diagonal.
 

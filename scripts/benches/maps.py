@@ -8,7 +8,7 @@ Surfaces are the FILEs, or made by mshape. Three tables: the charts of every sur
 seconds of CPU in mparam and its share of the whole chain, on one thread (best of N, default 3); and the time of one chart
 from 10 000 triangles to --largest (default 1 000 000), with the exponent of its growth. --only TABLE makes only one of
 distortion, share, growth and figures. --figures DIR (default here) writes two pictures, with a table of their distortion:
-harmonic beside conformal charts of an arterial tree with nine ends and eta 28, and the same of a short tube.
+harmonic next to conformal charts of an arterial tree with nine ends and eta 28, and the same of a short tube.
 """
 import json
 import math
@@ -157,7 +157,7 @@ def growth(work, largest, times):
 
 
 def figures(work, folder):
-    """The paper's Figs. 8 and 1: harmonic (left) beside conformal (right), with their distortion."""
+    """The paper's Figs. 8 and 1: harmonic (left) next to conformal (right), with their distortion."""
     os.makedirs(folder, exist_ok=True)
     rows = []
     row = common.table(["figure", "eta", "N_B", "map", "charts", "median", "p99", "area scale"])

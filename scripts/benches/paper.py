@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of the paper's section 5, with this project's figures beside the published ones.
+"""The tables of the paper's section 5, with this project's figures next to the published ones.
 
 usage: scripts/bench paper [options] [NAME=FILE ...]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plane meshers: what each makes of the same lines before mrelax, and its rate, beside Gmsh's.
+"""The plane meshers: what each makes of the same lines before mrelax, and its rate, next to Gmsh's.
 
 usage: scripts/bench plane [options] [FILE[:TRIANGLES] ...]
 

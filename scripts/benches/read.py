@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reading: binary STL with welding and topology, and text against a bare loop over its numbers, beside Gmsh.
+"""Reading: binary STL with welding and topology, and text against a bare loop over its numbers, next to Gmsh.
 
 usage: scripts/bench read [options]
 

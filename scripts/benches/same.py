@@ -3,7 +3,7 @@
 
 usage: scripts/bench same [options] [FILE[:TRIANGLES] ...]
 
-Without files, surfaces made by mshape are used. A row a surface: the exit status, the size of the result, and how many
+Without files, surfaces made by mshape are used. One row per surface: the exit status, the size of the result, and how many
 different results there were (1 is right; a failure's result is its status). Exits 1 if there was more than one anywhere.
 
   --runs N        runs of each surface (default 10): in turn -j1 by a pipe, -j2 by a pipe, -j1 through files, -j2 through files

@@ -3,7 +3,7 @@
 
 usage: scripts/bench scale [options]
 
-Surfaces of mshape, each remeshed to as many triangles as it has by one pipe. A row a size: wall and CPU seconds, and the
+Surfaces of mshape, each remeshed to as many triangles as it has by one pipe. One row per size: wall and CPU seconds, and the
 largest sum of resident memory of all live programs of the pipe (pages that only one has, and once those that they share),
 in MB and in bytes per triangle. The last row has the exponents: the slope of the logarithm over that of the triangles, by
 least squares over the sizes from 10^5 on (or all, if there are less than two).

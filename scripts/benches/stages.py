@@ -3,7 +3,7 @@
 
 usage: scripts/bench stages [options] [FILE[:TRIANGLES] ...]
 
-Without files, surfaces made by mshape are used. A row a program: median wall and CPU seconds (reading and writing
+Without files, surfaces made by mshape are used. One row per program: median wall and CPU seconds (reading and writing
 included), its share of the chain's wall time, the largest resident size, and that in bytes per triangle of the input or
 the result, whichever has more.
 

@@ -3,7 +3,7 @@
 
 usage: scripts/bench whole [options] [FILE[:TRIANGLES] ...]
 
-Without files, surfaces made by mshape are used. Beside mremesh runs Gmsh, where it is installed, in its own way to remesh
+Without files, surfaces made by mshape are used. Next to mremesh runs Gmsh, where it is installed, in its own way to remesh
 an STL (ClassifySurfaces, CreateGeometry, Mesh 2), by its frontal mesher and by MeshAdapt; and every --peer. Their edge length
 is searched first, so that they come within 2 % of the triangles mremesh made. Then all run whole, file to file, in turn,
 several times; who takes longer than --slow is not run again after the search. The table shows median wall and CPU seconds,
@@ -134,7 +134,7 @@ def gmsh(args, algorithm, surface, work):
 
 
 def programs(args, path, count, clean, work):
-    """mremesh, and who runs beside it."""
+    """mremesh, and who runs next to it."""
     out = os.path.join(work, "mremesh.off")
     threads = f"-j {args.threads}" if args.threads else ""
     found = [Program("mremesh", out, lambda _: f"mremesh -q --triangles {count} '{path}' -o '{out}' {threads}")]

@@ -3,10 +3,10 @@
 // read or refused by BadInput; what is read is a sound mesh, which the stream can hold.
 #include HEADER
 
+#include "formats/foreign/inria.h"
+#include "formats/foreign/size_table.h"
 #include "formats/formats.h"
-#include "formats/inria.h"
-#include "formats/size_field.h"
-#include "lib/error.h"
+#include "lib/core/error.h"
 
 using namespace meshpipe;
 

@@ -2,16 +2,16 @@
 // Micro-benchmarks of the primitives that the chain spends its time in, over the number of elements.
 #include <benchmark/benchmark.h>
 
-#include "lib/bvh.h"
-#include "lib/cdt.h"
-#include "lib/chart.h"
-#include "lib/cut.h"
-#include "lib/edit_mesh.h"
-#include "lib/intersect.h"
-#include "lib/random.h"
-#include "lib/shape.h"
-#include "lib/sparse.h"
-#include "lib/topology.h"
+#include "lib/core/bvh.h"
+#include "lib/core/chart.h"
+#include "lib/core/cut.h"
+#include "lib/core/edit_mesh.h"
+#include "lib/core/intersect.h"
+#include "lib/core/random.h"
+#include "lib/core/topology.h"
+#include "lib/mesh2d/cdt.h"
+#include "lib/numeric/laplacian.h"
+#include "lib/shape/shape.h"
 
 namespace meshpipe {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A flat mesh that several tests cut.
 #pragma once
-#include "lib/mesh.h"
+#include "lib/core/mesh.h"
 
 namespace meshpipe {
 

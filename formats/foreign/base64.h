@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes in base64, as the XML formats of VTK hold them.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace meshpipe {
+
+void append_base64(std::string& out, std::string_view bytes);
+
+/// Decodes base64 text piece by piece. Blanks and line ends are skipped; padding may come within.
+class Base64 {
+ public:
+  explicit Base64(std::string_view text) : text_(text) {}
+  /// Appends n bytes; or all that are left, and returns false.
+  bool take(std::size_t n, std::string& out);
+  /// Returns an upper bound of the bytes that are left.
+  std::size_t most() const { return (text_.size() + 3) / 4 * 3 + held_.size(); }
+
+ private:
+  bool quad();  ///< decodes the next four digits into held_
+
+  std::string_view text_;
+  std::string held_;  ///< decoded and not yet taken: at most two bytes between calls
+};
+
+}  // namespace meshpipe

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The formats of INRIA's Medit, which mmg reads: .mesh (text), .meshb (binary), and .sol and .solb for sizes.
+#pragma once
+#include "formats/stream.h"
+
+namespace meshpipe {
+
+bool is_inria(std::string_view bytes);
+/// Reads triangles and quadrilaterals. References become patches, and column `ref` of vertices; edges become
+/// model edges, labelled by their references (set_model_lines); corners, required vertices and triangles
+/// become columns `corner` and `required`; SolAtVertices becomes `size` if it is one positive number each,
+/// else `sol`. Volumes, normals and tangents are left out.
+Stream read_inria(std::string_view bytes, const std::string& where);
+/// Adds the values of a .sol or .solb file to the vertices. Throws BadInput if their numbers differ.
+void read_sol(Stream& stream, std::string_view bytes, const std::string& where);
+
+/// Write text (.mesh) and binary of version 3 (.meshb), whatever `ascii` is. Model edges become edges, with
+/// the label of their line as reference, and ridges.
+std::string write_mesh(const Stream& stream, bool ascii);
+std::string write_meshb(const Stream& stream, bool ascii);
+/// Write vertex column `size` as mmg reads it, in text (.sol) or binary (.solb). Throw NotAdmissible without
+/// it.
+std::string write_sol(const Stream& stream, bool ascii);
+std::string write_solb(const Stream& stream, bool ascii);
+
+}  // namespace meshpipe

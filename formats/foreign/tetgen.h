@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// TetGen's .poly: the surface as facets with boundary markers.
+#pragma once
+#include "formats/stream.h"
+
+namespace meshpipe {
+
+/// Writes text with patches as markers of facets. Output only.
+std::string write_poly(const Stream& stream, bool ascii);
+
+}  // namespace meshpipe

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lifted mesh in the stream, and its reference surface: tables ref_vertex and ref_face.
+#pragma once
+#include "formats/stream.h"
+#include "lib/lift/lift.h"
+
+namespace meshpipe {
+
+/// Reads the mesh in `vertex` and `face` with each vertex's place on the reference.
+/// Throws: NotAdmissible if mlift has not run; BadInput with the row of a wrong index or weight.
+LiftedMesh read_lifted(const Stream& stream);
+
+/// Replaces `vertex` and `face` by the mesh and drops table mid_vertex. Vertex data of the input is
+/// interpolated from the reference. Requires write_reference before.
+void write_lifted(Stream& stream, const LiftedMesh& mesh);
+
+/// Reads the surface that the mesh was lifted to, with face columns patch, part, origin and model, and
+/// `curved` if vertices lie on the smooth surface above it. Throws NotAdmissible if mlift has not run.
+Surface read_reference(const Stream& stream);
+
+/// Adds the tables ref_vertex, with the surface's vertex data, and ref_face. Missing columns become 0
+/// (`origin`: the triangle itself).
+void write_reference(Stream& stream, const Surface& reference);
+
+}  // namespace meshpipe

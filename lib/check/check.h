@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Verification of a result against the surface it was made from: findings, figures, contract, offending
+// faces.
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lib/check/distance.h"
+#include "lib/check/needles.h"
+#include "lib/check/quality.h"
+#include "lib/check/soundness.h"
+#include "lib/lines/lines.h"
+
+namespace meshpipe {
+
+struct Findings {
+  Soundness mesh, reference;
+  Quality quality, reference_quality;
+  Distance distance;
+  double boundary = 0;  ///< Hausdorff distance of the borders over the diagonal; infinite if only one has any
+  std::optional<double> features;  ///< the same of borders and model edges, if both know their model edges
+  std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
+  std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
+  int reference_intersections = -1;                    ///< counted only when the mesh has some
+  std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
+  std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
+  int farthest = -1;             ///< the vertex with the largest `off`
+  std::vector<char> forced;      ///< per triangle, see forced_needles; empty if kappa is above 0.1
+  int worst_unforced = -1;       ///< the triangle with the smallest kappa of those that are not forced
+  double kappa_off_corners = 0;  ///< see needles.h; kappa_min if no model edges are known
+  int worst_off_corners = -1;
+  std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
+  std::vector<std::string> lost_patches;
+};
+
+/// Measures everything but the patches. Reads, where present, the result's vertex columns `size` and
+/// `ref_face`, and of both surfaces face column `model`; the reference is compared as it was before cuts
+/// (face column `origin`), and as the smooth surface where face column `curved` is there.
+/// `lines`: those that the result was made with, or null. `samples`: see distance_between.
+Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples);
+
+/// Finds the edges where two triangles turn by more than 150 degrees while the reference within an edge
+/// length has only one of their two orientations. Thin plates and sharp ridges are no folds.
+std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
+
+/// Returns the mean kappa of triangles within one edge length of an interface line, and of all others; none
+/// where there are no such triangles. Triangles at borders and model edges count in neither. The means are
+/// equal where a result shows no trace of the cuts. The lines lie on `surface`.
+std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
+                                                                       const Bvh& tree,
+                                                                       const Quality& quality,
+                                                                       const Lines& lines,
+                                                                       const Mesh& surface);
+
+/// One figure of the report; NaN where a mesh has none.
+struct Figure {
+  std::string key, label;
+  int decimals;  ///< or one of the two below
+  double reference, result;
+};
+/// Instead of decimals: a whole number; three significant digits.
+constexpr int count_figure = -1, short_figure = -2;
+/// Returns all figures, in the order of the table; distances over the reference's diagonal.
+std::vector<Figure> figures(const Findings& findings);
+
+constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
+
+/// A kind of requirement, and its limit where it has one. The table of them is in contract.cc.
+struct Requirement {
+  std::string name;
+  double limit = 0;
+};
+using Contract = std::vector<Requirement>;
+/// What mcheck requires by default.
+extern const char* const default_contract;
+
+/// Parses a list such as "topology,intersections,kappa=0.1". Throws: BadUsage naming what is wrong in it.
+Contract parse_contract(const std::string& list);
+
+/// A requirement that is not met. Figures are NaN where it has none.
+struct Failure {
+  std::string requirement, fact;  ///< "kappa", "smallest is 0.03 in triangle 12 at (0 1 2), not above 0.1"
+  double value = no_figure, limit = no_figure;
+  int triangle = -1;  ///< the worst or the first, -1: none
+  Vec3 place{no_figure, no_figure, no_figure};
+};
+/// Returns what fails, in the order of the contract.
+std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh);
+
+/// What a face offends against: bits.
+enum Offense {
+  offends_topology = 1,
+  offends_intersections = 2,
+  offends_folds = 4,
+  offends_kappa = 8,
+  offends_vertices = 16
+};
+/// Returns the faces in which the contract fails, with face columns int `triangle` (number in the mesh) and
+/// uchar `fault` (bits of Offense). Vertices stay, some unused.
+Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh);
+
+/// Returns per triangle the factor by which its size is too large for a sound mesh, as `errors` of
+/// refined_size with limit 1; 0 where no triangle at its vertices is offending.
+std::vector<double> severity_of(const Surface& offending, const Mesh& mesh);
+
+}  // namespace meshpipe

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "lib/check/check.h"
+#include "lib/core/error.h"
+#include "lib/core/number.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double nan = no_figure;
+// Requirements without a limit. topology: sound, and components, genus and loops of the reference;
+// intersections: none where the reference has none; folds: none; patches: all of the reference's.
+constexpr const char* flags[] = {"topology", "intersections", "folds", "patches"};
+// Lower limits: kappa (of triangles that are not forced), kappa_off_wedges, kappa_mean, angle (degrees).
+// Upper limits: hausdorff (of its bound), mean, rms, boundary, features (over the diagonal), vertices (of
+// Findings::off), size (edge deviation), trace (kappa_elsewhere - kappa_by_cuts).
+constexpr const char* limits[] = {
+    "kappa", "kappa_off_wedges", "kappa_mean", "angle",    "hausdorff", "mean",
+    "rms",   "boundary",         "features",   "vertices", "size",      "trace"};
+
+template <class Names>
+bool among(const Names& names, const std::string& name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+std::string place(Vec3 p) { return "at (" + shown(p.x) + " " + shown(p.y) + " " + shown(p.z) + ")"; }
+
+std::string triangle(const Mesh& mesh, int t) {
+  return "triangle " + std::to_string(t) + " " + place(centroid(mesh, t));
+}
+
+std::string edge(const Mesh& mesh, int h) {
+  return "triangle " + std::to_string(h / 3) + " " +
+         place(lerp(mesh.points[origin(mesh.tris, h)], mesh.points[target(mesh.tris, h)], 0.5));
+}
+
+/// Failures of one requirement: the text, the figure, and the triangle or place of each.
+struct Facts {
+  const Mesh& mesh;
+  std::string requirement;
+  double limit = no_figure;
+  std::vector<Failure> failures;
+  void push_back(std::string text, double value = no_figure, int triangle = -1) {
+    failures.push_back({requirement, std::move(text), value, limit, triangle});
+    if (triangle >= 0) failures.back().place = centroid(mesh, triangle);
+  }
+};
+
+void judge_topology(const Findings& f, const Mesh& mesh, Facts& facts) {
+  const Soundness &m = f.mesh, &r = f.reference;
+  auto count = [&](const std::vector<int>& t, const char* one, const char* many) {
+    if (!t.empty())
+      facts.push_back(std::to_string(t.size()) + " " + (t.size() == 1 ? one : many) + ", the first in " +
+                          triangle(mesh, t[0]),
+                      (double)t.size(), t[0]);
+  };
+  count(m.degenerate, "triangle with a repeated vertex", "triangles with a repeated vertex");
+  count(m.nonmanifold, "edge with more than two triangles", "edges with more than two triangles");
+  count(m.misoriented, "edge whose triangles disagree on orientation",
+        "edges whose triangles disagree on orientation");
+  count(m.pinched, "pinched vertex", "pinched vertices");
+  if (!m.sound()) return;
+  if (!r.sound()) return facts.push_back("the reference is not sound: nothing to compare with");
+  auto same = [&](const char* what, int has, int needs, const std::string& where) {
+    if (has != needs)
+      facts.push_back(std::string(what) + " " + std::to_string(has) + ", the reference has " +
+                          std::to_string(needs) + where,
+                      has);
+  };
+  same("components", m.components, r.components, "; the smallest holds " + triangle(mesh, m.small_component));
+  same("genus", m.genus, r.genus, "");
+  same("boundary loops", m.loops, r.loops, m.loop < 0 ? "" : "; the shortest passes " + edge(mesh, m.loop));
+}
+
+void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Facts& facts) {
+  if (name == "topology") {
+    judge_topology(f, mesh, facts);
+  } else if (name == "intersections") {
+    const std::size_t n = f.new_intersections.size();
+    if (n > 0)
+      facts.push_back(std::to_string(n) +
+                          (n == 1 ? " pair of triangles intersects" : " pairs of triangles intersect") +
+                          " where the reference does not; the first is triangle " +
+                          std::to_string(f.new_intersections[0].second) + " with " +
+                          triangle(mesh, f.new_intersections[0].first),
+                      (double)n, f.new_intersections[0].first);
+  } else if (name == "folds") {
+    if (!f.folds.empty())
+      facts.push_back(std::to_string(f.folds.size()) + (f.folds.size() == 1 ? " edge is" : " edges are") +
+                          " folded, the first in " + edge(mesh, f.folds[0]),
+                      (double)f.folds.size(), f.folds[0] / 3);
+  } else {
+    for (const std::string& patch : f.lost_patches) facts.push_back("patch " + patch + " is lost");
+  }
+}
+
+void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Facts& facts) {
+  const Quality& q = f.quality;
+  const Distance& d = f.distance;
+  auto above = [&](double value, int worst) {
+    if (value > r.limit) return;
+    const std::string what =
+        worst < 0 ? shown(value) : "smallest is " + shown(value) + " in " + triangle(mesh, worst);
+    facts.push_back(what + ", not above " + shown(r.limit), value, worst);
+  };
+  auto within = [&](double value, const std::string& where = "") {
+    if (value <= r.limit) return;
+    facts.push_back(shown(value) + where + ", above " + shown(r.limit), value);
+  };
+  if (r.name == "kappa")
+    return above(f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced], f.worst_unforced);
+  if (r.name == "kappa_off_wedges") return above(f.kappa_off_corners, f.worst_off_corners);
+  if (r.name == "kappa_mean") return above(q.kappa_mean, -1);
+  if (r.name == "angle") return above(q.min_angle, -1);
+  if (r.name == "hausdorff")
+    return within(d.hausdorff + d.bound,
+                  " is the bound, " + shown(d.hausdorff) + " the distance found " + place(d.place));
+  if (r.name == "mean") return within(d.mean);
+  if (r.name == "rms") return within(d.rms);
+  if (r.name == "boundary") return within(f.boundary);
+  if (r.name == "features") {
+    if (f.features) within(*f.features);
+    return;
+  }
+  if (r.name == "size") return within(q.edge_deviation);
+  if (r.name == "trace") {
+    if (f.kappa_by_cuts && f.kappa_elsewhere) within(*f.kappa_elsewhere - *f.kappa_by_cuts);
+    return;
+  }
+  if (f.farthest >= 0)
+    within(f.off[f.farthest], " of its edges is how far vertex " + std::to_string(f.farthest) +
+                                  " lies off the reference, " + place(mesh.points[f.farthest]));
+}
+
+/// Of every triangle, its faults.
+std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f, const Mesh& mesh) {
+  std::vector<std::uint8_t> faults(mesh.tris.size(), 0);
+  for (const Requirement& r : contract) {
+    if (r.name == "topology")
+      for (const auto* kind : {&f.mesh.degenerate, &f.mesh.nonmanifold, &f.mesh.misoriented, &f.mesh.pinched})
+        for (int t : *kind) faults[t] |= offends_topology;
+    if (r.name == "intersections")
+      for (auto [s, t] : f.new_intersections)
+        faults[s] |= offends_intersections, faults[t] |= offends_intersections;
+    if (r.name == "folds")
+      for (int h : f.folds) faults[h / 3] |= offends_folds, faults[f.mesh.opposite[h] / 3] |= offends_folds;
+    for (std::size_t t = 0; t < faults.size(); ++t) {
+      const Tri& v = mesh.tris[t];
+      if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit) && (f.forced.empty() || !f.forced[t]))
+        faults[t] |= offends_kappa;
+      if (r.name == "vertices" &&
+          !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
+        faults[t] |= offends_vertices;
+    }
+  }
+  return faults;
+}
+
+}  // namespace
+
+const char* const default_contract = "topology,intersections,folds,patches,vertices=0.1,kappa=0.1";
+
+Contract parse_contract(const std::string& list) {
+  Contract contract;
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t end = std::min(list.find(',', at), list.size());
+    const std::string item = list.substr(at, end - at), name = item.substr(0, item.find('='));
+    at = end + 1;
+    if (among(flags, item)) {
+      contract.push_back({item});
+      continue;
+    }
+    if (!among(limits, name)) {
+      std::string all;
+      for (const char* n : flags) all += std::string(all.empty() ? "" : ", ") + n;
+      for (const char* n : limits) all += std::string(", ") + n + "=X";
+      throw BadUsage("no requirement '" + item + "'; there are " + all);
+    }
+    const std::string number = item.substr(std::min(name.size() + 1, item.size()));
+    double value = 0;
+    const auto r = from_chars(number.data(), number.data() + number.size(), value);
+    if (r.ec != std::errc() || r.ptr != number.data() + number.size() ||
+        !(value >= 0 && std::isfinite(value)))
+      throw BadUsage("requirement '" + item + "' needs a number, as in " + name + "=0.1");
+    contract.push_back({name, value});
+  }
+  return contract;
+}
+
+std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh) {
+  std::vector<Failure> failures;
+  for (const Requirement& r : contract) {
+    const bool flag = among(flags, r.name);
+    Facts facts{mesh, r.name, flag ? no_figure : r.limit, {}};
+    if (flag)
+      judge_flag(r.name, findings, mesh, facts);
+    else
+      judge_limit(r, findings, mesh, facts);
+    std::move(facts.failures.begin(), facts.failures.end(), std::back_inserter(failures));
+  }
+  return failures;
+}
+
+Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh) {
+  const std::vector<std::uint8_t> faults = faults_of(contract, findings, mesh);
+  Surface s;
+  s.points = mesh.points;
+  std::vector<int> number;
+  std::vector<std::uint8_t> fault;
+  for (std::size_t t = 0; t < faults.size(); ++t) {
+    if (!faults[t]) continue;
+    s.tris.push_back(mesh.tris[t]);
+    number.push_back((int)t);
+    fault.push_back(faults[t]);
+  }
+  s.vertex.rows = s.points.size();
+  s.face.rows = number.size();
+  s.face.set("triangle", std::move(number));
+  s.face.set("fault", std::move(fault));
+  return s;
+}
+
+std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
+  constexpr double crowded = 2, crossing = 1.7;  // sizes of three tenths, and a little more
+  std::vector<double> at(mesh.points.size(), 0), severity(mesh.tris.size(), 0);
+  const auto& triangle = offending.face.get<int>("triangle");
+  const auto& fault = offending.face.get<std::uint8_t>("fault");
+  for (std::size_t i = 0; i < triangle.size(); ++i)
+    for (int v : mesh.tris[triangle[i]])
+      at[v] = std::max(at[v], fault[i] & offends_kappa ? crowded : crossing);
+  // the next mesh has other triangles there: include the neighbors
+  for (std::size_t t = 0; t < severity.size(); ++t)
+    for (int v : mesh.tris[t]) severity[t] = std::max(severity[t], at[v]);
+  return severity;
+}
+
+std::vector<Figure> figures(const Findings& f) {
+  const Soundness &m = f.mesh, &r = f.reference;
+  const Quality &q = f.quality, &p = f.reference_quality;
+  const Distance& d = f.distance;
+  constexpr int count = count_figure, digits = short_figure;
+  auto known = [](const Soundness& c, int value) { return c.sound() ? value : nan; };
+  return {
+      {"vertices", "vertices", count, (double)r.vertices, (double)m.vertices},
+      {"triangles", "triangles", count, (double)r.faces, (double)m.faces},
+      {"components", "components", count, known(r, r.components), known(m, m.components)},
+      {"genus", "genus", count, known(r, r.genus), known(m, m.genus)},
+      {"loops", "boundary loops", count, known(r, r.loops), known(m, m.loops)},
+      {"degenerate", "repeated vertices", count, (double)r.degenerate.size(), (double)m.degenerate.size()},
+      {"nonmanifold_edges", "non-manifold edges", count, (double)r.nonmanifold.size(),
+       (double)m.nonmanifold.size()},
+      {"turned_edges", "misoriented edges", count, (double)r.misoriented.size(),
+       (double)m.misoriented.size()},
+      {"pinched_vertices", "pinched vertices", count, (double)r.pinched.size(), (double)m.pinched.size()},
+      {"self_intersections", "self-intersections", count,
+       f.reference_intersections < 0 ? nan : f.reference_intersections, (double)f.intersections.size()},
+      {"new_intersections", "where reference has none", count, nan, (double)f.new_intersections.size()},
+      {"folds", "folded edges", count, nan, (double)f.folds.size()},
+      {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},
+      {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},
+      {"kappa_mean", "kappa mean", 4, p.kappa_mean, q.kappa_mean},
+      {"needles", "needles at corners", count, nan, (double)std::count(f.forced.begin(), f.forced.end(), 1)},
+      {"kappa_off_wedges", "kappa off sharp corners", 4, nan, f.kappa_off_corners},
+      {"kappa_by_cuts", "kappa mean at the cuts", 4, nan, f.kappa_by_cuts.value_or(nan)},
+      {"kappa_elsewhere", "kappa mean elsewhere", 4, nan, f.kappa_elsewhere.value_or(nan)},
+      {"min_angle", "angle min", 2, p.min_angle, q.min_angle},
+      {"mean_min_angle", "angle min, mean", 2, p.mean_min_angle, q.mean_min_angle},
+      {"max_angle", "angle max", 2, p.max_angle, q.max_angle},
+      {"valence567", "valence 5 to 7", 4, p.valence567, q.valence567},
+      {"edge_min", "edge min", 3, p.edge_min, q.edge_min},
+      {"edge_mean", "edge mean", 3, p.edge_mean, q.edge_mean},
+      {"edge_max", "edge max", 3, p.edge_max, q.edge_max},
+      {"edge_deviation", "edge deviation", 3, p.edge_deviation, q.edge_deviation},
+      {"hausdorff_to_reference", "distance of the result", digits, nan, d.to_reference},
+      {"hausdorff_to_result", "distance of the reference", digits, nan, d.to_mesh},
+      {"hausdorff", "Hausdorff, at least", digits, nan, d.hausdorff},
+      {"hausdorff_bound", "Hausdorff, at most", digits, nan, d.hausdorff + d.bound},
+      {"mean_distance", "distance mean", digits, nan, d.mean},
+      {"rms_distance", "distance rms", digits, nan, d.rms},
+      {"boundary_distance", "distance of borders", digits, nan, f.boundary},
+      {"feature_distance", "distance of features", digits, nan, f.features.value_or(nan)},
+      {"vertex_distance", "vertices off, in edges", digits, nan, f.farthest < 0 ? 0 : f.off[f.farthest]},
+  };
+}
+
+}  // namespace meshpipe

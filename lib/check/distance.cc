@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/check/distance.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <span>
+
+namespace meshpipe {
+namespace {
+
+constexpr int chunk = 256;  // points that one thread takes on: each search starts where the last ended
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double relative = 0.05, absolute = 1e-4;  // of the Hausdorff distance, of the diagonal
+
+/// A point's distance to the other surface, and the nearest triangle.
+struct Near {
+  double distance = 0;
+  int face = -1;
+};
+
+/// Searches for points that come close to each other one by one: what is known of the last bounds the next.
+class Seeker {
+ public:
+  explicit Seeker(const Bvh& tree) : tree_(tree) {}
+  Near operator()(Vec3 p) {
+    const Bvh::Hit hit = known_ ? tree_.nearest(p, distance_ + norm(p - last_)) : tree_.nearest(p);
+    known_ = true;
+    last_ = p;
+    distance_ = hit.distance;
+    return {hit.distance, hit.place.face};
+  }
+
+ private:
+  const Bvh& tree_;
+  bool known_ = false;
+  Vec3 last_;
+  double distance_ = 0;
+};
+
+/// Vertices in the order of the triangles that use them first.
+std::vector<int> vertices_of(const Mesh& mesh, std::span<const int> triangles) {
+  std::vector<int> vertices;
+  std::vector<char> seen(mesh.points.size(), 0);
+  for (int t : triangles)
+    for (int v : mesh.tris[t])
+      if (!seen[v]) {
+        seen[v] = 1;
+        vertices.push_back(v);
+      }
+  return vertices;
+}
+
+/// One direction: the distances of one surface's points from the other.
+class OneSided {
+ public:
+  OneSided(const Mesh& from, const Bvh& from_tree, const Mesh& to, const Bvh& to_tree, double diagonal)
+      : from_(from), from_tree_(from_tree), to_(to), to_tree_(to_tree), diagonal_(diagonal) {}
+
+  double largest = 0;  ///< found
+  Vec3 place;
+  double known = 0;  ///< found on either side: what is not beyond it need not be known any better
+  double upper = 0;  ///< no point is farther
+  double mean = 0, rms = 0;
+
+  void sample(int samples);
+  void bound(int budget);
+
+ private:
+  struct Piece {
+    std::array<Vec3, 3> corner;
+    std::array<Near, 3> near;
+    double upper;
+  };
+
+  double limit() const {
+    const double d = std::max(largest, known);
+    return std::max((1 + relative) * d, d + absolute * diagonal_);
+  }
+  void found(double distance, Vec3 p) {
+    if (distance > largest) {
+      largest = distance;
+      place = p;
+    }
+  }
+  std::vector<int> doubtful_triangles();
+  std::vector<Piece> doubtful_pieces(std::span<const int> triangles);
+  void set_upper(Piece& piece, double enough) const;
+  double from_triangle(Vec3 p, int face) const;
+  double farthest_corner(const Piece& piece, int face) const;
+  double overlay_upper(const Piece& piece, double enough) const;
+
+  const Mesh& from_;
+  const Bvh& from_tree_;
+  const Mesh& to_;
+  const Bvh& to_tree_;
+  const double diagonal_;
+};
+
+void OneSided::sample(int samples) {
+  const auto& order = from_tree_.order();
+  const int n = (int)order.size();
+  std::vector<double> area(n);
+  double total = 0;
+  for (int i = 0; i < n; ++i) {
+    const Tri& t = from_.tris[order[i]];
+    area[i] = total += 0.5 * norm(area_vector(from_.points[t[0]], from_.points[t[1]], from_.points[t[2]]));
+  }
+  const int chunks = (samples + chunk - 1) / chunk;
+  struct Part {
+    double largest = -1, sum = 0, squares = 0;
+    Vec3 place;
+  };
+  std::vector<Part> part(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+  for (int k = 0; k < chunks; ++k) {
+    Seeker seek(to_tree_);
+    for (int j = k * chunk; j < std::min(samples, (k + 1) * chunk); ++j) {
+      const double at = (j + 0.5) / samples * total;
+      const int i = std::min(n - 1, (int)(std::lower_bound(area.begin(), area.end(), at) - area.begin()));
+      // within the triangle by the additive sequence of the plane's golden ratio, folded
+      double u = std::fmod(0.5 + 0.7548776662466927 * j, 1.0),
+             v = std::fmod(0.5 + 0.5698402909980532 * j, 1.0);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Tri& t = from_.tris[order[i]];
+      const Vec3 p = (1 - u - v) * from_.points[t[0]] + u * from_.points[t[1]] + v * from_.points[t[2]];
+      const double d = seek(p).distance;
+      if (d > part[k].largest) part[k].largest = d, part[k].place = p;
+      part[k].sum += d;
+      part[k].squares += d * d;
+    }
+  }
+  for (const Part& p : part) {
+    found(p.largest, p.place);
+    mean += p.sum / samples;
+    rms += p.squares / samples;
+  }
+  rms = std::sqrt(rms);
+}
+
+/// Returns the triangles that bounding balls of groups of neighbors do not prove to be within the limit.
+std::vector<int> OneSided::doubtful_triangles() {
+  const auto& order = from_tree_.order();
+  const int n = (int)order.size();
+  const double most = limit();
+  std::vector<int> groups, split;  // where in the order they start
+  for (int first = 0; first < n; first += 64) groups.push_back(first);
+  for (int size = 64; size > 1; size /= 4) {
+    std::vector<double> reach(groups.size());
+#pragma omp parallel for schedule(dynamic, 64) if (groups.size() > 256)
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      Box box = box_of(from_, order[groups[g]]);
+      for (int i = groups[g]; i < std::min(n, groups[g] + size); ++i)
+        box = join(box, box_of(from_, order[i]));
+      reach[g] = 0.5 * norm(box.hi - box.lo);
+      // a search only where it can be expected to settle the matter
+      reach[g] += reach[g] + mean < most ? to_tree_.nearest(0.5 * (box.lo + box.hi)).distance : infinity;
+    }
+    split.clear();
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (reach[g] <= most)
+        upper = std::max(upper, reach[g]);
+      else
+        for (int i = groups[g]; i < std::min(n, groups[g] + size); i += size / 4) split.push_back(i);
+    groups.swap(split);
+  }
+  for (int& g : groups) g = order[g];
+  return groups;
+}
+
+double OneSided::from_triangle(Vec3 p, int face) const {
+  const Tri& v = to_.tris[face];
+  const Vec3 &a = to_.points[v[0]], &b = to_.points[v[1]], &c = to_.points[v[2]];
+  const auto w = closest_on_triangle(p, a, b, c);
+  return norm(w[0] * a + w[1] * b + w[2] * c - p);
+}
+
+/// The largest distance of the corners from one triangle of the other surface.
+double OneSided::farthest_corner(const Piece& piece, int face) const {
+  double farthest = 0;
+  for (int i = 0; i < 3; ++i)
+    farthest = std::max(
+        farthest, piece.near[i].face == face ? piece.near[i].distance : from_triangle(piece.corner[i], face));
+  return farthest;
+}
+
+/// A point in a triangle's own frame: x and y in its plane, z above it.
+using Polygon = std::array<Vec3, 8>;
+
+/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative; nothing if that
+/// has no area.
+template <class Height>
+int clip(Polygon*& polygon, Polygon*& spare, int n, const Height& height) {
+  double heights[std::tuple_size_v<Polygon>];
+  bool all = true, none = true;
+  for (int i = 0; i < n; ++i) {
+    heights[i] = height((*polygon)[i]);
+    all &= heights[i] >= 0;
+    none &= heights[i] <= 0;
+  }
+  if (all || none) return all ? n : 0;
+  int kept = 0;
+  for (int i = 0; i < n; ++i) {
+    const int j = i + 1 < n ? i + 1 : 0;
+    const double a = heights[i], b = heights[j];
+    if (a >= 0) (*spare)[kept++] = (*polygon)[i];
+    if ((a < 0) != (b < 0)) (*spare)[kept++] = lerp((*polygon)[i], (*polygon)[j], a / (a - b));
+  }
+  std::swap(polygon, spare);
+  return kept;
+}
+
+/// Projects the part of the other surface with the same orientation onto a triangle: if it covers the
+/// triangle once, no point of the triangle is farther than the highest corner of the overlay.
+double OneSided::overlay_upper(const Piece& piece, double enough) const {
+  const auto& c = piece.corner;
+  const Vec3 n = area_vector(c[0], c[1], c[2]), x = normalized(c[1] - c[0]), z = normalized(n),
+             y = cross(z, x);
+  const double area = norm(n), length = norm(c[1] - c[0]), apex_x = dot(c[2] - c[0], x),
+               apex_y = dot(c[2] - c[0], y);
+  if (!(area > 0)) return infinity;
+  double covered = 0, highest = 0;
+  Polygon polygons[2];
+  const Vec3 margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
+  to_tree_.overlapping(
+      {lower(lower(c[0], c[1]), c[2]) - margin, meshpipe::upper(meshpipe::upper(c[0], c[1]), c[2]) + margin},
+      [&](int t) {
+        Polygon *p = &polygons[0], *spare = &polygons[1];
+        for (int k = 0; k < 3; ++k) {
+          const Vec3 d = to_.points[to_.tris[t][k]] - c[0];
+          (*p)[k] = {dot(d, x), dot(d, y), dot(d, z)};
+        }
+        const Vec3 u = (*p)[1] - (*p)[0], v = (*p)[2] - (*p)[0];
+        if (!(u.x * v.y > u.y * v.x)) return;
+        int m = clip(p, spare, 3, [](const Vec3& q) { return q.y; });
+        m = clip(p, spare, m,
+                 [&](const Vec3& q) { return (apex_x - length) * q.y - apex_y * (q.x - length); });
+        m = clip(p, spare, m, [&](const Vec3& q) { return apex_y * q.x - apex_x * q.y; });
+        for (int k = 0; k < m; ++k) {
+          const Vec3 &o = (*p)[0], &a = (*p)[k], &b = (*p)[k + 1 < m ? k + 1 : 0];
+          covered += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+          highest = std::max(highest, std::abs(a.z));
+        }
+      });
+  // what rounding may leave uncovered is no wider than this
+  constexpr double gap = 1e-8;
+  return std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
+}
+
+/// No point of a triangle is farther from a corner than its longest side over sqrt(3). And distance from a
+/// convex set is convex: a triangle is within the largest distance of its corners from any one triangle of
+/// the other surface. The dearer bounds are looked at only if the cheaper ones are not `enough`.
+void OneSided::set_upper(Piece& p, double enough) const {
+  double side = 0, distance = 0;
+  for (int i = 0; i < 3; ++i) {
+    side = std::max(side, norm(p.corner[(i + 1) % 3] - p.corner[i]));
+    distance = std::max(distance, p.near[i].distance);
+  }
+  p.upper = distance + side / std::sqrt(3.0);
+  for (int i = 0; i < 3 && p.upper > enough; ++i)
+    if (i == 0 || (p.near[i].face != p.near[0].face && p.near[i].face != p.near[i - 1].face))
+      p.upper = std::min(p.upper, farthest_corner(p, p.near[i].face));
+  if (p.upper > enough) p.upper = std::min(p.upper, overlay_upper(p, enough));
+}
+
+std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> triangles) {
+  const std::vector<int> vertices = vertices_of(from_, triangles);
+  std::vector<Near> near(from_.points.size());
+  const int n = (int)vertices.size(), faces = (int)triangles.size();
+#pragma omp parallel for schedule(dynamic) if (n > chunk)
+  for (int first = 0; first < n; first += chunk) {
+    Seeker seek(to_tree_);
+    for (int i = first; i < std::min(n, first + chunk); ++i)
+      near[vertices[i]] = seek(from_.points[vertices[i]]);
+  }
+  for (int v : vertices) found(near[v].distance, from_.points[v]);
+  const double enough = limit();
+  std::vector<Piece> pieces(faces);
+#pragma omp parallel for schedule(dynamic, 64) if (faces > chunk)
+  for (int i = 0; i < faces; ++i) {
+    const Tri& t = from_.tris[triangles[i]];
+    for (int k = 0; k < 3; ++k) {
+      pieces[i].corner[k] = from_.points[t[k]];
+      pieces[i].near[k] = near[t[k]];
+    }
+    set_upper(pieces[i], enough);
+  }
+  return pieces;
+}
+
+void OneSided::bound(int budget) {
+  std::vector<Piece> pieces = doubtful_pieces(doubtful_triangles()), halves;
+  for (;;) {
+    const double enough = limit();
+    const auto done =
+        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.upper > enough; });
+    for (auto p = done; p < pieces.end(); ++p) upper = std::max(upper, p->upper);
+    pieces.erase(done, pieces.end());
+    const int n = (int)pieces.size();
+    budget -= n;
+    if (n == 0 || budget < 0) break;
+    halves.resize(2 * n);
+#pragma omp parallel for schedule(dynamic, 64) if (n > 256)
+    for (int i = 0; i < n; ++i) {
+      const Piece& p = pieces[i];
+      int longest = 0;
+      double length = -1;
+      for (int k = 0; k < 3; ++k)
+        if (const double l = norm(p.corner[(k + 1) % 3] - p.corner[k]); l > length) length = l, longest = k;
+      const int a = longest, b = (longest + 1) % 3;
+      const Vec3 middle = lerp(p.corner[a], p.corner[b], 0.5);
+      const auto hit =
+          to_tree_.nearest(middle, std::min(p.near[a].distance, p.near[b].distance) + 0.5 * length);
+      const Near near{hit.distance, hit.place.face};
+      for (int side = 0; side < 2; ++side) {
+        Piece& half = halves[2 * i + side] = p;
+        half.corner[side ? a : b] = middle;
+        half.near[side ? a : b] = near;
+        set_upper(half, enough);
+        half.upper = std::min(half.upper, p.upper);
+      }
+    }
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < 3; ++k) found(halves[2 * i].near[k].distance, halves[2 * i].corner[k]);
+    pieces.swap(halves);
+  }
+  for (const Piece& p : pieces) upper = std::max(upper, p.upper);
+  upper = std::max(upper, largest);
+}
+
+}  // namespace
+
+Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                          const Bvh& mesh_tree, int samples) {
+  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  // small meshes need no more than this for the mean to be right within a percent
+  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 4 + 500;
+  const int n = (int)std::min<long long>(samples, enough);
+  OneSided there(mesh, mesh_tree, reference, reference_tree, d),
+      back(reference, reference_tree, mesh, mesh_tree, d);
+  for (OneSided* side : {&there, &back}) side->sample(n);
+  there.known = back.largest;
+  there.bound(8 * samples);
+  back.known = there.largest;
+  back.bound(8 * samples);
+  const OneSided& worse = there.largest >= back.largest ? there : back;
+  Distance r;
+  r.to_reference = there.largest / unit;
+  r.to_mesh = back.largest / unit;
+  r.hausdorff = worse.largest / unit;
+  r.place = worse.place;
+  r.bound = std::max(there.upper, back.upper) / unit - r.hausdorff;
+  r.mean = std::max(there.mean, back.mean) / unit;
+  r.rms = std::max(there.rms, back.rms) / unit;
+  return r;
+}
+
+std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree) {
+  const std::vector<int> vertices = vertices_of(mesh, mesh_tree.order());
+  std::vector<double> distances(mesh.points.size(), 0);
+  const int n = (int)vertices.size();
+#pragma omp parallel for schedule(dynamic) if (n > chunk)
+  for (int first = 0; first < n; first += chunk) {
+    Seeker seek(tree);
+    for (int i = first; i < std::min(n, first + chunk); ++i)
+      distances[vertices[i]] = seek(mesh.points[vertices[i]]).distance;
+  }
+  return distances;
+}
+
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree) {
+  std::vector<double> errors(mesh.tris.size(), 0);
+  struct Found {
+    int triangle;
+    double distance;
+  };
+  for (const bool back : {false, true}) {
+    const Mesh& from = back ? reference : mesh;
+    const Bvh &from_tree = back ? reference_tree : mesh_tree, &tree = back ? mesh_tree : reference_tree;
+    const auto& order = from_tree.order();
+    const int n = (int)order.size(), chunks = (n + chunk - 1) / chunk;
+    constexpr double weights[7][3] = {{1, 0, 0},   {0, 1, 0},   {0, 0, 1},  {1.0 / 3, 1.0 / 3, 1.0 / 3},
+                                      {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}};
+    std::vector<std::vector<Found>> found(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+    for (int c = 0; c < chunks; ++c) {
+      Seeker seek(tree);
+      for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+        const Tri& t = from.tris[order[i]];
+        for (const auto& w : weights) {
+          const Near near =
+              seek(w[0] * from.points[t[0]] + w[1] * from.points[t[1]] + w[2] * from.points[t[2]]);
+          if (near.distance > 0) found[c].push_back({back ? near.face : order[i], near.distance});
+        }
+      }
+    }
+    for (const auto& part : found)
+      for (const Found& f : part) errors[f.triangle] = std::max(errors[f.triangle], f.distance);
+  }
+  return errors;
+}
+
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit) {
+  std::vector<double> factor(size.size(), 1);
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t) {
+    if (errors[t] <= 0.6 * limit) continue;  // well within, since the next mesh is another
+    for (int v : mesh.tris[t]) factor[v] = std::min(factor[v], std::max(0.25, 0.6 * limit / errors[t]));
+  }
+  // the neighbours too, or a dip as narrow as a triangle would be lost in the next mesh
+  std::vector<double> refined = size;
+  for (const Tri& t : mesh.tris) {
+    const double least = std::min({factor[t[0]], factor[t[1]], factor[t[2]]});
+    for (int v : t) refined[v] = std::min(refined[v], least * size[v]);
+  }
+  return refined;
+}
+
+double curve_distance(const Mesh& a, const Mesh& b) {
+  if (a.tris.empty() && b.tris.empty()) return 0;
+  if (a.tris.empty() || b.tris.empty()) return infinity;
+  double worst = 0;
+  for (bool swapped : {false, true}) {
+    const Mesh *from = swapped ? &b : &a, *to = swapped ? &a : &b;
+    const Bvh from_tree(*from), tree(*to);
+    const int n = (int)from->tris.size();
+#pragma omp parallel for schedule(dynamic) reduction(max : worst) if (n > chunk)
+    for (int first = 0; first < n; first += chunk) {
+      Seeker seek(tree);
+      for (int i = first; i < std::min(n, first + chunk); ++i) {
+        const Tri& t = from->tris[from_tree.order()[i]];
+        for (int k = 0; k <= 8; ++k)
+          worst = std::max(worst, seek(lerp(from->points[t[0]], from->points[t[1]], k / 8.0)).distance);
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances between two surfaces.
+#pragma once
+#include "lib/core/bvh.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Lengths over the diagonal of the reference's bounding box.
+struct Distance {
+  double hausdorff = 0;      ///< two-sided, the largest distance found: a lower bound
+  double bound = 0;          ///< the true distance is at most hausdorff + bound
+  double to_reference = 0;   ///< one-sided: from the mesh to the reference
+  double to_mesh = 0;        ///< one-sided: from the reference to the mesh
+  Vec3 place;                ///< the point with the largest distance
+  double mean = 0, rms = 0;  ///< over the area; the worse of both sides
+};
+
+/// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
+/// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
+/// the diagonal, where these suffice. Deterministic at any thread count. Requires: both have triangles.
+Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                          const Bvh& mesh_tree, int samples = 10000);
+
+/// Returns the distance of each vertex of the mesh from a surface (0 for unused vertices). `mesh_tree` is the
+/// mesh's, `tree` the surface's.
+std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree);
+
+/// Returns for each triangle of the mesh how far the surfaces are apart there, a length: the largest distance
+/// of its seven sample points (corners, edge midpoints, center) from the reference, and of those of the
+/// reference's triangles to which it is the nearest.
+std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+                                    const Bvh& mesh_tree);
+
+/// Reduces the size per vertex where a triangle's error is above 0.6 `limit`, in proportion to the error and
+/// at most fourfold; elsewhere it stays. (The error of a smooth surface falls with the square of the size,
+/// but on ridges only linearly.)
+std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
+                                 const std::vector<double>& errors, double limit);
+
+/// Appends the half-edges with wanted(h) as degenerate triangles (a, b, b), which a Bvh handles as segments.
+template <class Wanted>
+void add_segments(Mesh& segments, const Mesh& mesh, const Wanted& wanted) {
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) {
+    if (!wanted(h)) continue;
+    const int n = (int)segments.points.size();
+    segments.points.push_back(mesh.points[origin(mesh.tris, h)]);
+    segments.points.push_back(mesh.points[target(mesh.tris, h)]);
+    segments.tris.push_back({n, n + 1, n + 1});
+  }
+}
+
+/// Returns the two-sided Hausdorff distance of two sets of segments (a, b, b), a length, from nine points per
+/// segment. 0 if both are empty, infinite if one is.
+double curve_distance(const Mesh& a, const Mesh& b);
+
+}  // namespace meshpipe

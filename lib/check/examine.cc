@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <tuple>
+
+#include "lib/check/check.h"
+#include "lib/core/intersect.h"
+#include "lib/core/original_triangles.h"
+#include "lib/core/parallel.h"
+#include "lib/core/progress.h"
+#include "lib/core/topology.h"
+#include "lib/lift/lift.h"
+
+namespace meshpipe {
+namespace {
+
+/// Returns the reference as it was before cuts, or the cut one if it has no origins.
+Mesh before_cuts(const Surface& reference) {
+  const Mesh& cut = reference;
+  if (!reference.face.has("origin")) return cut;
+  const std::vector<int>& origin = reference.face.get<int>("origin");
+  if (std::any_of(origin.begin(), origin.end(), [](int o) { return o < 0; })) return cut;
+  return recover_triangles(cut, origin);
+}
+
+/// Distances over the mean edge at each vertex.
+void over_edges(const Mesh& mesh, std::vector<double>& distance) {
+  std::vector<double> length(mesh.points.size(), 0);
+  std::vector<int> count(mesh.points.size(), 0);
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const double l = norm(mesh.points[a] - mesh.points[b]);
+      for (int v : {a, b}) length[v] += l, ++count[v];
+    }
+  for (std::size_t v = 0; v < distance.size(); ++v)
+    distance[v] = length[v] > 0 ? distance[v] * count[v] / length[v] : distance[v] > 0 ? 1e300 : 0;
+}
+
+/// Lowers the distances of vertices to those from their places on the smooth surface above the reference.
+void lower_to_curved(const Surface& result, const Surface& reference, std::vector<double>& distance) {
+  const auto& face = result.vertex.get<int>("ref_face");
+  const auto &b1 = result.vertex.get<double>("b1"), &b2 = result.vertex.get<double>("b2");
+  const CurvedSurface smooth(reference);
+  for (std::size_t v = 0; v < distance.size(); ++v) {
+    const Vec3 p = smooth.point({face[v], 1 - b1[v] - b2[v], b1[v], b2[v]});
+    distance[v] = std::min(distance[v], norm(result.points[v] - p));
+  }
+}
+
+/// Finds the triangles that sharp corners of the reference force to be needles.
+void find_needles(Findings& f, const Surface& result, const Surface& reference) {
+  f.worst_unforced = f.quality.worst;
+  if (!(f.quality.kappa_min <= 0.1) || !f.mesh.sound() || !f.reference.sound()) return;
+  const std::vector<int> opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
+  const std::vector<std::uint8_t> none;
+  const auto& model = reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : none;
+  f.forced = forced_needles(result, f.quality.kappas, needle_corners({reference, opposite, model}));
+  f.worst_unforced = -1;
+  for (int t = 0; t < (int)f.forced.size(); ++t)
+    if (!f.forced[t] && (f.worst_unforced < 0 || f.quality.kappas[t] < f.quality.kappas[f.worst_unforced]))
+      f.worst_unforced = t;
+}
+
+bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
+  const Vec3 d = b - a;
+  const double dd = dot(d, d), t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0;
+  return norm(lerp(a, b, t) - p) <= distance;
+}
+
+}  // namespace
+
+std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree) {
+  const Mesh& mesh = result.mesh;
+  constexpr double sharp = -0.8660254037844386;  // cos 150 degrees
+  const int n = (int)mesh.tris.size();
+  std::vector<Vec3> normal(n);
+  for (int t = 0; t < n; ++t) normal[t] = normalized(area_vector(mesh, t));
+  std::vector<int> folds;
+  for (int h = 0; h < 3 * n; ++h) {
+    const int g = result.opposite[h];
+    if (g < h || !(dot(normal[h / 3], normal[g / 3]) < sharp)) continue;
+    const Vec3 &a = mesh.points[origin(mesh.tris, h)], &b = mesh.points[target(mesh.tris, h)];
+    const Vec3 middle = lerp(a, b, 0.5);
+    const double r = norm(b - a);
+    bool faces[2] = {false, false};
+    reference_tree.overlapping({middle - Vec3{r, r, r}, middle + Vec3{r, r, r}}, [&](int t) {
+      const Vec3 m = area_vector(reference, t);
+      const double length = norm(m);
+      faces[0] |= dot(m, normal[h / 3]) > 0.3 * length;
+      faces[1] |= dot(m, normal[g / 3]) > 0.3 * length;
+    });
+    if (!(faces[0] && faces[1])) folds.push_back(h);
+  }
+  return folds;
+}
+
+std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
+                                                                       const Bvh& tree,
+                                                                       const Quality& quality,
+                                                                       const Lines& lines,
+                                                                       const Mesh& surface) {
+  const Mesh& mesh = result.mesh;
+  std::vector<char> close(mesh.tris.size(), 0);
+  auto at = [&](int i) {
+    const LinePoint& p = lines.points[i];
+    return lerp(surface.points[p.a], surface.points[p.b], p.t);
+  };
+  auto mark = [&](Vec3 a, Vec3 b) {
+    Box box{lower(a, b), upper(a, b)};
+    const double r = 2 * norm(b - a);  // edges are not much longer than the line's segments
+    box.lo = box.lo - Vec3{r, r, r};
+    box.hi = box.hi + Vec3{r, r, r};
+    tree.overlapping(box, [&](int t) {
+      if (close[t]) return;
+      const Tri& v = mesh.tris[t];
+      const Vec3 &x = mesh.points[v[0]], &y = mesh.points[v[1]], &z = mesh.points[v[2]];
+      const double edge = (norm(x - y) + norm(y - z) + norm(z - x)) / 3;
+      close[t] = close_to_segment(1.0 / 3 * (x + y + z), a, b, edge);
+    });
+  };
+  for (const Line& l : lines.lines) {
+    if (l.kind != interface_line) continue;
+    for (int i = 1; i < l.count; ++i) mark(at(l.first + i - 1), at(l.first + i));
+    if (l.closed && l.count) mark(at(l.first + l.count - 1), at(l.first));
+  }
+  std::vector<char> held(mesh.points.size(), 0);
+  for (int h = 0; h < result.n_half_edges(); ++h)
+    if (result.is_border(h) || result.is_model(h)) held[result.from(h)] = held[result.to(h)] = 1;
+  double sum[2] = {0, 0};
+  int count[2] = {0, 0};
+  for (std::size_t t = 0; t < close.size(); ++t) {
+    const Tri& v = mesh.tris[t];
+    if (held[v[0]] || held[v[1]] || held[v[2]]) continue;
+    sum[(int)close[t]] += quality.kappas[t];
+    ++count[(int)close[t]];
+  }
+  auto mean = [&](int i) { return count[i] ? std::optional(sum[i] / count[i]) : std::nullopt; };
+  return {mean(1), mean(0)};
+}
+
+Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples) {
+  Findings f;
+  Mesh reference;
+  parallel_for(2, [&](int side) {
+    if (side == 0) {
+      f.mesh = soundness_of(result);
+      return;
+    }
+    reference = before_cuts(given);
+    f.reference = soundness_of(reference);
+    if (f.reference.sound()) return;
+    reference = given;
+    f.reference = soundness_of(reference);
+  });
+  const std::vector<std::uint8_t> no_bits;
+  const bool marked = result.face.has("model"), reference_marked = given.face.has("model");
+  const auto& model = marked ? result.face.get<std::uint8_t>("model") : no_bits;
+  const Connectivity mesh{result, f.mesh.opposite, model};
+  const std::vector<double> size =
+      result.vertex.has("size") ? result.vertex.get<double>("size") : std::vector<double>();
+  f.quality = quality_of(mesh, size);
+  f.reference_quality = quality_of({reference, f.reference.opposite}, {});
+
+  add_progress(0.2);
+  const Bvh mesh_tree(result), reference_tree(reference);
+  f.intersections = self_intersections(result, mesh_tree);
+  if (!f.intersections.empty()) {
+    const auto before = self_intersections(reference, reference_tree);
+    f.reference_intersections = (int)before.size();
+    f.new_intersections = new_intersections(result, f.intersections, contacts(reference, before));
+  }
+  add_progress(0.3);
+  f.folds = find_folds(mesh, reference, reference_tree);
+  f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);
+  f.off = vertex_distances(result, mesh_tree, reference_tree);
+  if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
+  add_progress(0.4);
+  over_edges(result, f.off);
+  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
+                                      [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
+                     f.off.begin());
+
+  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  Mesh curves, reference_curves;
+  add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
+  add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
+  f.boundary = curve_distance(reference_curves, curves) / unit;
+  find_needles(f, result, given);
+  f.kappa_off_corners = f.quality.kappa_min;
+  f.worst_off_corners = f.quality.worst;
+  if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);
+  if (marked && reference_marked) {
+    const auto& marks = given.face.get<std::uint8_t>("model");
+    add_segments(curves, result, [&](int h) { return mesh.is_model(h); });
+    add_segments(reference_curves, given, [&](int h) { return marks[h / 3] >> h % 3 & 1; });
+    f.features = curve_distance(reference_curves, curves) / unit;
+  }
+  if (lines)
+    std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(mesh, mesh_tree, f.quality, *lines, given);
+  return f;
+}
+
+}  // namespace meshpipe

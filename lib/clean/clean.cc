@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/clean/clean.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "lib/clean/repair.h"
+#include "lib/core/error.h"
+#include "lib/core/topology.h"
+#include "lib/core/weld.h"
+
+namespace meshpipe {
+namespace {
+
+/// Rearranges the rows of a table; rows may be left out or repeated.
+void take_rows(Table& table, const std::vector<int>& rows) {
+  for (Column& c : table.columns)
+    std::visit(
+        [&](auto& old) {
+          std::remove_reference_t<decltype(old)> values(rows.size());
+          for (std::size_t i = 0; i < rows.size(); ++i) values[i] = old[rows[i]];
+          old = std::move(values);
+        },
+        c.data);
+  table.rows = rows.size();
+}
+
+void sort_offending(CleanReport& report) {
+  std::sort(report.offending.begin(), report.offending.end(),
+            [](const OffendingFace& a, const OffendingFace& b) {
+              return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
+            });
+}
+
+/// Drops all components except the `keep` largest by area; returns whether there were more.
+bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
+  std::vector<int> component;
+  const int n = components(r.opposite, component);
+  if (n <= keep) return false;
+  std::vector<double> area(n, 0);
+  for (std::size_t t = 0; t < r.tris.size(); ++t) {
+    auto p = [&](int i) { return points[r.vertex[r.tris[t][i]]]; };
+    area[component[t]] += norm(area_vector(p(0), p(1), p(2)));
+  }
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area[a] > area[b]; });
+  std::vector<char> small(n, 0), gone(r.tris.size(), 0);
+  for (int i = keep; i < n; ++i) small[order[i]] = 1;
+  for (std::size_t t = 0; t < r.tris.size(); ++t)
+    if (small[component[t]]) {
+      gone[t] = 1;
+      ++report.dropped_triangles;
+      record(report, r.face[t], Fault::small);
+    }
+  report.dropped_components += n - keep;
+  r.opposite.clear();
+  drop(r, gone);
+  return true;
+}
+
+/// Drops vertices that no triangle uses, and numbers the others by first use.
+void number_by_first_use(Repair& r) {
+  std::vector<int> number(r.vertex.size(), -1), vertex;
+  for (Tri& t : r.tris)
+    for (int& v : t) {
+      if (number[v] < 0) {
+        number[v] = (int)vertex.size();
+        vertex.push_back(r.vertex[v]);
+      }
+      v = number[v];
+    }
+  r.vertex = std::move(vertex);
+}
+
+/// Whether the repairs undid each other: copies of vertices were welded and split again, and the triangles
+/// are as they were.
+bool as_it_was(const Repair& r, const Surface& surface) {
+  if (r.tris.size() != surface.tris.size()) return false;
+  std::vector<int> now(surface.points.size(), -1), before(r.vertex.size(), -1);
+  for (std::size_t t = 0; t < r.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const int v = surface.tris[t][i], w = r.tris[t][i];
+      if (now[v] < 0) now[v] = w;
+      if (before[w] < 0) before[w] = v;
+      if (now[v] != w || before[w] != v) return false;
+    }
+  return std::find(now.begin(), now.end(), -1) == now.end();
+}
+
+/// Connects, orients and splits the surface, and drops components as the options say.
+void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options,
+                    CleanReport& report) {
+  std::vector<char> gone;
+  for (;;) {  // where a triangle goes, two others may become neighbors and disagree: then once again
+    join(r, points, options, report);
+    const std::size_t before = report.nonorientable.size();
+    orient(r, points, gone, report);
+    if (report.nonorientable.size() > before) {
+      if (!options.drop_nonorientable) {
+        sort_offending(report);
+        const std::size_t more = report.nonorientable.size() - 1;
+        throw NotAdmissible(describe(report.nonorientable[0]) +
+                            (more ? ", and " + std::to_string(more) + " more components" : ""));
+      }
+      r.opposite.clear();
+      drop(r, gone);
+      continue;
+    }
+    if (options.sheets == CleanOptions::pair) {
+      report.paired_edges = pair_edges(r, points);
+      report.opened_edges -= report.paired_edges;
+    }
+    split_fans(r, report);
+    if (!options.keep_components || !keep_largest(r, points, options.keep_components, report)) return;
+    unite(r);
+  }
+}
+
+/// Does all repairs that change neighbors once. Returns false if there may be more to repair: where triangles
+/// are dropped or added, an edge may have got two triangles, or more than two.
+bool make_manifold(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options,
+                   CleanReport& report) {
+  join_and_split(r, points, options, report);
+  FlatCounts flat = remove_flat(r, points);
+  bool changed = !flat.removed.empty();
+  for (int t : flat.removed) {
+    report.degenerate += t >= 0;
+    record(report, t, Fault::degenerate);
+  }
+  if (options.fill_holes) {
+    const HoleCounts holes = fill_holes(r, points, options.fill_holes);
+    report.holes.filled += holes.filled;
+    report.holes.triangles += holes.triangles;
+    report.holes.left = holes.left;
+    changed = changed || holes.filled;
+    if (holes.filled) flat = remove_flat(r, points);  // where a hole's corners are in line
+  }
+  report.flat = flat.left;
+  return !changed || (r.copied.empty() && !options.fill_holes);
+}
+
+/// Returns for each vertex the first one that it is welded with.
+std::vector<int> weld_vertices(const Surface& surface, const CleanOptions& options, CleanReport& report) {
+  const int n = report.input_vertices;
+  std::vector<char> used(n, 0);
+  for (const Tri& t : surface.tris)
+    for (int v : t) used[v] = 1;
+  std::vector<int> same = first_equal(surface.points, used);
+  for (int v = 0; v < n; ++v) report.welded += same[v] != v;
+  report.tolerance = options.weld < 0 ? coordinate_noise(surface, used) : options.weld;
+  if (options.weld < 0)
+    report.welded_near =
+        merge_noise(surface, ends_of_short_edges(surface, same, report.tolerance), report.tolerance, same);
+  else if (options.weld > 0)
+    report.welded_near = merge_near(surface.points, used, options.weld, same);
+  return same;
+}
+
+/// Starts the repair on welded vertices, without the triangles that have lost a corner.
+Repair start(const Surface& surface, std::vector<int> number, CleanReport& report) {
+  Repair r;  // on the vertices that are left, in their order
+  for (int v = 0; v < report.input_vertices; ++v)
+    if (number[v] == v) {
+      number[v] = (int)r.vertex.size();
+      r.vertex.push_back(v);
+    } else {
+      number[v] = number[number[v]];  // which came before
+    }
+  r.tris.reserve(surface.tris.size());
+  r.face.reserve(surface.tris.size());
+  std::vector<char> used(r.vertex.size(), 0);
+  for (int t = 0; t < report.input_triangles; ++t) {
+    const Tri s = surface.tris[t], w{number[s[0]], number[s[1]], number[s[2]]};
+    if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) {
+      ++report.degenerate;
+      record(report, t, Fault::degenerate);
+      continue;
+    }
+    r.tris.push_back(w);
+    r.face.push_back(t);
+    for (int v : w) used[v] = 1;
+  }
+  report.unreferenced = (int)std::count(used.begin(), used.end(), 0);
+  r.flipped.assign(r.tris.size(), 0);
+  return r;
+}
+
+/// Repairs neighbors and orientation until nothing changes.
+void repair(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options, CleanReport& report) {
+  // three rounds suffice in practice; that filling holes and splitting sheets always end is not proved
+  constexpr int most_rounds = 50, most_passes = 3;
+  std::vector<int> component;
+  for (int pass = 1;; ++pass) {
+    for (int round = 1; !make_manifold(r, points, options, report) && round < most_rounds; ++round) unite(r);
+    report.components = components(r.opposite, component);
+    const std::vector<char> before = r.flipped;
+    face_outward(r, points, component, report.components);  // last, when holes are filled
+    // solids are on the other side now of triangles that were paired
+    if (pass == most_passes || report.paired_edges == 0 || r.flipped == before) return;
+    unite(r);
+  }
+}
+
+/// Flags the vertices of the input on the border of the result.
+std::vector<char> border_vertices(const Repair& r, std::size_t n) {
+  std::vector<char> border;
+  for (int h = 0; h < (int)r.opposite.size(); ++h) {
+    if (r.opposite[h] >= 0) continue;
+    border.resize(n, 0);
+    border[r.vertex[origin(r.tris, h)]] = border[r.vertex[target(r.tris, h)]] = 1;
+  }
+  return border;
+}
+
+/// Replaces the surface by the repaired one, unless that is the same.
+void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanReport& report) {
+  const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
+                        report.dropped_triangles || !report.nonorientable.empty();
+  report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
+                     report.nonmanifold_vertices || report.holes.filled);
+  if (report.nothing) return;
+  if (as_it_was(r, surface)) {
+    report.nothing = options.sheets != CleanOptions::keep || !mark_sheets(surface, r, report);
+    report.welded = report.welded_near = 0;
+    return;
+  }
+  if (renumber) number_by_first_use(r);
+  std::vector<Vec3> points(r.vertex.size());
+  for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points[r.vertex[v]];
+  surface.points = std::move(points);
+  surface.tris = std::move(r.tris);
+  surface.face.erase("model");
+  take_rows(surface.vertex, r.vertex);
+  take_rows(surface.face, r.face);
+  if (options.sheets == CleanOptions::keep) mark_sheets(surface, r, report);
+}
+
+}  // namespace
+
+void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
+  expect_measurable(surface);
+  report = {};
+  report.input_vertices = (int)surface.points.size();
+  report.input_triangles = (int)surface.tris.size();
+  std::vector<int> same = weld_vertices(surface, options, report);
+  const CleanReport welded = report;
+  Repair r = start(surface, same, report);
+  repair(r, surface.points, options, report);
+  if (options.weld < 0)  // seams
+    if (const int n = merge_noise(surface, border_vertices(r, same.size()), report.tolerance, same); n > 0) {
+      report = welded;
+      report.welded_near += n;
+      r = start(surface, same, report);
+      repair(r, surface.points, options, report);
+    }
+  for (std::size_t t = 0; t < r.tris.size(); ++t) {
+    if (!r.flipped[t] || r.face[t] < 0) continue;  // triangles that fill a hole had no orientation before
+    ++report.flipped;
+    record(report, r.face[t], Fault::misoriented);
+  }
+  for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
+  sort_offending(report);
+  if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));
+  if (options.sheets == CleanOptions::keep) {
+    unite(r);
+    report.copies = report.opened_edges = 0;
+  }
+  take_over(r, surface, options, report);
+}
+
+CleanReport clean(Surface& surface, const CleanOptions& options) {
+  CleanReport report;
+  clean(surface, options, report);
+  return report;
+}
+
+Mesh sheets_apart(const Mesh& mesh) {
+  Surface s = surface_of(mesh);
+  const CleanReport r = clean(s, {.weld = 0, .sheets = CleanOptions::split});
+  if (s.tris.size() != mesh.tris.size() || r.flipped || r.degenerate || r.duplicate)
+    throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
+                        std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
+                        " duplicate triangles; run mclean first");
+  return s;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Repair of any triangle soup into an oriented manifold, with a report of every repair.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+struct CleanOptions {
+  /// Merges vertices this close after the equal ones; 0: only equal ones; negative: those that the precision
+  /// of the coordinates does not separate, where all other edges are much longer.
+  double weld = -1;
+  bool drop_nonorientable = false;  ///< leave such components out instead of refusing the surface
+  int keep_components = 0;          ///< the largest by area; 0: all
+  int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
+  /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
+  /// split elsewhere, all split, or left to share their vertices.
+  enum Sheets { pair, split, keep } sheets = pair;
+};
+
+/// What may be wrong with a triangle of the input.
+enum class Fault { degenerate, duplicate, nonmanifold, pinched, misoriented, nonorientable, small };
+constexpr const char* fault_names[] = {
+    "degenerate",     "duplicate",      "non-manifold edge", "pinched vertex", "inconsistently oriented",
+    "non-orientable", "small component"};
+struct OffendingFace {
+  int triangle;
+  Fault fault;
+};
+
+/// A component that is not orientable.
+struct Nonorientable {
+  int triangle = 0, triangles = 0;  ///< its first triangle, and their number
+  int a = 0, b = 0;                 ///< two neighbors that cannot be oriented consistently
+  Vec3 place;                       ///< middle of the edge between them
+};
+
+struct HoleCounts {
+  int filled = 0, triangles = 0;  ///< loops, and the triangles they took
+  int left = 0;                   ///< loops on non-manifold edges, or whose every filling doubles an edge
+};
+
+/// Counts of repairs. Triangles are numbered as in the input.
+struct CleanReport {
+  int input_vertices = 0, input_triangles = 0;
+  int welded = 0;        ///< vertices merged with an equal one
+  int welded_near = 0;   ///< vertices merged with one within the tolerance
+  double tolerance = 0;  ///< of welding
+  int unreferenced = 0;  ///< vertices no triangle uses
+  int degenerate = 0;    ///< triangles with a repeated vertex, or of zero area: dropped, flipped or collapsed
+  int duplicate = 0;     ///< triangles with the same three vertices as an earlier one
+  int flipped = 0;       ///< triangles whose orientation was reversed
+  int contacts = 0;      ///< triangles where two solids touch, one for each of them
+  int nonmanifold_edges = 0;     ///< edges of more than two triangles
+  int paired_edges = 0;          ///< those whose triangles are connected in pairs
+  int opened_edges = 0;          ///< those that have become borders of sheets
+  int nonmanifold_vertices = 0;  ///< vertices of more than one fan (those on such edges included)
+  int copies = 0;                ///< vertices added, one for each further fan
+  int flat = 0;                  ///< triangles of zero area left in, where dropping them would open a crack
+  int components = 0;            ///< of the result
+  int dropped_components = 0, dropped_triangles = 0;  ///< by keep_components
+  HoleCounts holes;
+  std::vector<std::array<int, 2>> sheet_patches;  ///< by sheets = keep: the new patch, and the one it was
+  std::vector<Nonorientable> nonorientable;       ///< components dropped
+  std::vector<OffendingFace> offending;           ///< by fault, then by triangle
+  bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
+};
+
+/// Repairs a surface: welds vertices, drops degenerate and duplicate triangles, orients every component,
+/// splits non-manifold edges and vertices, removes triangles of zero area, drops small components and fills
+/// holes. A sound surface stays bit for bit as it is, copies of vertices that keep fans apart included; a
+/// repaired one loses face column `model` and numbers its vertices by first use if some had to go.
+/// Sheets that are kept stay non-manifold, with model edges between them and a patch each.
+/// Throws: NotAdmissible if a component is not orientable or no triangle is left; the report then holds the
+/// offending faces, and the surface is as it was.
+void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
+CleanReport clean(Surface& surface, const CleanOptions& options = {});
+
+/// Returns the same triangles with copies of vertices that keep sheets and fans apart: an oriented manifold.
+/// Throws: NotAdmissible if the mesh needs any other repair.
+Mesh sheets_apart(const Mesh& mesh);
+
+/// Returns one line: which component, how large, which triangles, where.
+std::string describe(const Nonorientable& component);
+
+/// A row of the table of repairs: its key in reports, the number of cases, and a phrase.
+struct RepairRow {
+  const char* key;
+  int count;
+  std::string what;
+};
+std::vector<RepairRow> table_of(const CleanReport& report, const CleanOptions& options);
+
+/// Returns what the topology of the result does not show, for its verification: "clean opened EDGES split
+/// VERTICES dropped TRIANGLES"; empty if all are 0.
+std::string remark_of(const CleanReport& report);
+/// What a remark says; all 0 of other texts.
+struct Remark {
+  int opened = 0, split = 0, dropped = 0;
+};
+Remark parse_remark(const std::string& text);
+
+/// Returns a triangle for each fault that one has, on the input's points. Face column `patch` is the fault,
+/// counted from 1 as in fault_names; `origin` is the triangle's number in the input.
+Surface offending_faces(const CleanReport& report, const Mesh& input);
+
+}  // namespace meshpipe

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A surface while it is repaired, passed between the steps of clean().
+#pragma once
+#include <vector>
+
+#include "lib/clean/clean.h"
+#include "lib/core/fan.h"
+
+namespace meshpipe {
+
+/// Origin of each triangle and vertex, and neighbors across edges of two triangles.
+struct Repair {
+  std::vector<Tri> tris;
+  std::vector<int> face;      ///< triangle of the input; of one that fills a hole ~ the one it is a copy of
+  std::vector<int> vertex;    ///< vertex of the input; copies made by splitting come last
+  std::vector<int> copied;    ///< the vertex that each of them is a copy of
+  std::vector<int> opposite;  ///< half-edges; may run in the same direction until the surface is oriented
+  std::vector<char> split;    ///< flags vertices of non-manifold edges
+  std::vector<char> flipped;  ///< flags triangles whose orientation was reversed
+};
+
+/// Returns the vertex that v is, or is a copy of.
+inline int base(const Repair& r, int v) {
+  const int n = (int)(r.vertex.size() - r.copied.size());
+  return v < n ? v : r.copied[v - n];
+}
+
+/// Returns the triangle of the input whose columns triangle t has.
+inline int source(const Repair& r, int t) { return r.face[t] < 0 ? ~r.face[t] : r.face[t]; }
+
+/// Records a fault of a triangle of the input; triangles that fill holes (negative) have none.
+inline void record(CleanReport& report, int triangle, Fault fault) {
+  if (triangle >= 0) report.offending.push_back({triangle, fault});
+}
+
+/// Returns the distance that rounding may leave between copies of a point, from the largest coordinate and
+/// whether all have single precision.
+double coordinate_noise(const Mesh& mesh, const std::vector<char>& used);
+
+/// Flags the ends of edges no longer than `tolerance`; empty if there is none. `same` as in first_equal.
+std::vector<char> ends_of_short_edges(const Mesh& mesh, const std::vector<int>& same, double tolerance);
+
+/// Merges candidates no farther apart than `tolerance`, as merge_near, where all edges that leave the merged
+/// vertex are at least 100 times as long. Returns the number of vertices merged.
+int merge_noise(const Mesh& mesh, const std::vector<char>& candidates, double tolerance,
+                std::vector<int>& same);
+
+/// Drops the triangles with gone != 0; the others keep their order, and edges next to a gap become border.
+void drop(Repair& r, const std::vector<char>& gone);
+
+/// Reverses a triangle: its half-edges 0 1 2 become 2 1 0.
+void flip(Repair& r, int t);
+
+/// Finds neighbors, and drops triangles that lie on others (drop_doubles). The report keeps the number of
+/// non-manifold edges of the first call.
+void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options, CleanReport& report);
+
+/// Flags in `gone` the second copies of triangles (`same`: the first and a later one). If `solids`, also
+/// pairs that divide a flat quadrangle along its other diagonal; and both copies stay where two solids touch,
+/// as each is closed by its own. Returns the number of triangles with such a double.
+int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
+                 const std::vector<std::array<int, 2>>& same, bool solids, std::vector<char>& gone);
+
+/// Connects the triangles of edges with four or more in pairs, where they and all that is connected with them
+/// form closed solids: in angular order those that bound the same solid, so that solids that touch along an
+/// edge are closed one by one; where copies of vertices would not separate these pairs, those that bound the
+/// same gap. Other edges stay open. Returns the number of edges connected. Requires: consistent orientation.
+int pair_edges(Repair& r, const std::vector<Vec3>& points);
+
+/// Orients neighbors consistently, by the majority of each component. Components that are not orientable are
+/// reported, their triangles flagged in `gone`.
+void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report);
+
+/// Gives every fan of triangles at a vertex its own copy of the vertex, the first fan keeps it: the result is
+/// an oriented manifold, since triangles of an edge that was left open lie in one fan at either end, in
+/// opposite directions. The report keeps the counts of the first call.
+void split_fans(Repair& r, CleanReport& report);
+
+/// Undoes split_fans.
+void unite(Repair& r);
+
+/// Orients closed components away from what they enclose: outward, or inward within an odd number of others.
+/// Leaves nested components alone if all are outward (each may be a solid), and those whose volume or place
+/// is unclear (one touches another). Requires: 0 <= component[t] < n.
+void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n);
+
+struct FlatCounts {
+  std::vector<int> removed;  ///< their `face`
+  int left = 0;              ///< flat triangles that could not go without opening a crack
+};
+
+/// Removes triangles without height from an oriented manifold; the surface stays the same set of points. A
+/// cap (the third vertex lies on the longest edge) has that edge flipped, or is dropped on the border. A
+/// needle (two vertices almost coincide) collapses.
+FlatCounts remove_flat(Repair& r, const std::vector<Vec3>& points);
+
+/// Fills border loops of at most `most` edges by the triangulation of least area (cubic in the number of
+/// edges). The new triangles come last and copy the columns of the first neighbor of their loop.
+HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most);
+
+/// Marks edges between sheets in face column `model`, and gives each sheet that meets others a patch of its
+/// own (reported). `apart` has the connectivity of the sheets. Returns whether anything was changed.
+bool mark_sheets(Surface& surface, const Repair& apart, CleanReport& report);
+
+/// Returns one line: how many triangles there were, and why none is left.
+std::string describe_nothing_left(const CleanReport& report);
+
+}  // namespace meshpipe

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+
+#include "lib/clean/repair.h"
+
+namespace meshpipe {
+
+std::string describe(const Nonorientable& c) {
+  char place[96];
+  std::snprintf(place, sizeof place, " (%.6g %.6g %.6g)", c.place.x, c.place.y, c.place.z);
+  return "the component of triangle " + std::to_string(c.triangle) + " (" + std::to_string(c.triangles) +
+         " triangles) is not orientable: triangles " + std::to_string(c.a) + " and " + std::to_string(c.b) +
+         " cannot be oriented consistently at" + place;
+}
+
+std::string describe_nothing_left(const CleanReport& r) {
+  if (r.input_triangles == 0) return "the input has no triangle";
+  int dropped = 0;
+  for (const Nonorientable& c : r.nonorientable) dropped += c.triangles;
+  std::string what = "no triangle is left of " + std::to_string(r.input_triangles) + ":";
+  const char* between = " ";
+  for (const auto& [count, why] :
+       {std::pair{r.degenerate, " degenerate"}, {r.duplicate, " duplicate"}, {dropped, " not orientable"}}) {
+    if (count) what += between + std::to_string(count) + why;
+    if (count) between = ", ";
+  }
+  return what;
+}
+
+std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
+  char within[64];
+  std::snprintf(within, sizeof within, "vertices merged with one within %g", r.tolerance);
+  const bool keep = options.sheets == CleanOptions::keep;
+  return {
+      {"welded", r.welded, "vertices welded with an equal one"},
+      {"welded_near", r.welded_near, within},
+      {"unreferenced", r.unreferenced, "unreferenced vertices dropped"},
+      {"degenerate", r.degenerate, "degenerate triangles removed"},
+      {"duplicate", r.duplicate, "duplicate triangles dropped"},
+      {"flipped", r.flipped, "triangles reversed"},
+      {"nonorientable", (int)r.nonorientable.size(), "non-orientable components dropped"},
+      {"contacts", r.contacts, "triangles where solids touch, one for each of them"},
+      {"nonmanifold_edges", r.nonmanifold_edges,
+       keep ? "non-manifold edges kept as model edges" : "non-manifold edges"},
+      {"paired_edges", r.paired_edges, "of them closed, by pairs of triangles that bound the same solid"},
+      {"opened_edges", r.opened_edges, "of them opened into borders of sheets"},
+      {"nonmanifold_vertices", r.nonmanifold_vertices,
+       keep ? "vertices of several fans kept" : "vertices of several fans split into a copy for each fan"},
+      {"copies", r.copies, "copies of vertices that keep sheets and fans apart"},
+      {"sheet_patches", (int)r.sheet_patches.size(), "patches added, one for each further sheet"},
+      {"flat", r.flat, "triangles of zero area left in"},
+      {"dropped_components", r.dropped_components, "smaller components dropped"},
+      {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
+      {"holes_filled", r.holes.filled, "holes filled"},
+      {"hole_triangles", r.holes.triangles, "triangles added in holes"},
+      {"holes_left", r.holes.left,
+       "holes left open, along non-manifold edges or where filling would double an edge"},
+  };
+}
+
+std::string remark_of(const CleanReport& r) {
+  int dropped = r.duplicate + r.dropped_triangles;
+  for (const Nonorientable& c : r.nonorientable) dropped += c.triangles;
+  if (r.opened_edges + r.nonmanifold_vertices + dropped == 0) return "";
+  return "clean opened " + std::to_string(r.opened_edges) + " split " +
+         std::to_string(r.nonmanifold_vertices) + " dropped " + std::to_string(dropped);
+}
+
+Remark parse_remark(const std::string& text) {
+  Remark r;
+  const char* pattern = "clean opened %d split %d dropped %d";
+  return std::sscanf(text.c_str(), pattern, &r.opened, &r.split, &r.dropped) == 3 ? r : Remark{};
+}
+
+Surface offending_faces(const CleanReport& report, const Mesh& input) {
+  Surface s;
+  std::vector<int> number(input.points.size(), -1), patch, origin;
+  for (const OffendingFace& c : report.offending) {
+    Tri t = input.tris[c.triangle];
+    for (int& v : t) {
+      if (number[v] < 0) {
+        number[v] = (int)s.points.size();
+        s.points.push_back(input.points[v]);
+      }
+      v = number[v];
+    }
+    s.tris.push_back(t);
+    patch.push_back((int)c.fault + 1);
+    origin.push_back(c.triangle);
+  }
+  s.vertex.rows = s.points.size();
+  s.face.set("patch", std::move(patch));
+  s.face.set("origin", std::move(origin));
+  return s;
+}
+
+}  // namespace meshpipe

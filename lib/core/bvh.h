@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A bounding-volume hierarchy over the triangles of a mesh: nearest point, and the triangles in a box.
+#pragma once
+#include <algorithm>
+#include <bit>
+
+#include "lib/core/chart.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Closest point of triangle abc to p, as barycentric coordinates (the regions of Ericson, Real-Time
+/// Collision Detection, 5.1.5). A triangle without area counts as its three edges.
+std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
+
+/// A box with sides along the axes.
+struct Box {
+  Vec3 lo, hi;
+};
+inline Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+inline Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+inline Box join(const Box& a, const Box& b) { return {lower(a.lo, b.lo), upper(a.hi, b.hi)}; }
+inline Box box_of(const Mesh& mesh, int t) {
+  const Vec3 &a = mesh.points[mesh.tris[t][0]], &b = mesh.points[mesh.tris[t][1]],
+             &c = mesh.points[mesh.tris[t][2]];
+  return {lower(lower(a, b), c), upper(upper(a, b), c)};
+}
+/// Without branches, as they could not be predicted.
+inline bool overlap(const Box& a, const Box& b) {
+  return (a.lo.x <= b.hi.x) & (a.hi.x >= b.lo.x) & (a.lo.y <= b.hi.y) & (a.hi.y >= b.lo.y) &
+         (a.lo.z <= b.hi.z) & (a.hi.z >= b.lo.z);
+}
+
+/// A tree of nodes with four children each, whose boxes are tested together. Built by median splits in
+/// O(n log n), in parallel, the same tree at any number of threads. Queries do not allocate.
+class Bvh {
+ public:
+  /// Keeps a reference to the mesh. Requires: it has a triangle.
+  explicit Bvh(const Mesh& mesh);
+  struct Hit {
+    double distance = 0;
+    Place place;
+  };
+  /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
+  /// that is already known.
+  Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
+  /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
+  template <class Visit>
+  void overlapping(const Box& box, Visit&& visit) const;
+  /// The triangles, neighbors in space close together.
+  const std::vector<int>& order() const { return order_; }
+
+ private:
+  using Four = float __attribute__((vector_size(16)));
+  using Mask = int __attribute__((vector_size(16)));
+  /// Boxes in units of the mesh's half extent from its center, rounded outwards by `slack`; a child that is
+  /// missing has an empty box.
+  struct Node {
+    Four lo[3], hi[3];
+    int child[4];  ///< a node, or -1 - t for triangle t
+  };
+  struct Item;
+  Box build(Item* items, int first, int count, int node);
+  void set_child(int node, int k, int child, const Box& box);
+  std::array<float, 3> own_units(Vec3 p) const;
+  static constexpr float slack = 1e-6f;
+
+  const Mesh& mesh_;
+  Vec3 centre_;
+  double scale_ = 1;  ///< own units of a length
+  std::vector<Node> nodes_;
+  std::vector<int> order_;
+};
+
+template <class Visit>
+void Bvh::overlapping(const Box& box, Visit&& visit) const {
+  const auto lo = own_units(box.lo), hi = own_units(box.hi);
+  int stack[64], n = 0;
+  stack[n++] = 0;
+  while (n) {
+    const Node& b = nodes_[stack[--n]];
+    Mask meets = (b.lo[0] <= hi[0]) & (b.hi[0] >= lo[0]);
+    for (int k = 1; k < 3; ++k) meets &= (b.lo[k] <= hi[k]) & (b.hi[k] >= lo[k]);
+    meets &= Mask{1, 2, 4, 8};
+    // only as many turns as there are, since whether a child is met could not be predicted
+    for (unsigned set = meets[0] | meets[1] | meets[2] | meets[3]; set; set &= set - 1) {
+      const int k = std::countr_zero(set);
+      if (b.child[k] < 0)
+        visit(-1 - b.child[k]);
+      else
+        stack[n++] = b.child[k];
+    }
+  }
+}
+
+}  // namespace meshpipe

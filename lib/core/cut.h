@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts a surface: splits triangles along the zero level of a field on the vertices.
+#pragma once
+#include <vector>
+
+#include "lib/core/level_line.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+// Both cuts append vertices on existing edges; earlier vertices neither move nor change number. Vertex
+// columns are interpolated, face columns copied to the pieces, `model` bits split with their edges; `origin`
+// (added as the identity where missing) keeps the triangle of the cleaned input. The remaining quadrilaterals
+// are split by the diagonal with the better smallest angle in space.
+
+/// Splits the active triangles (active[t] != 0; empty: all) along the zero level of `field` (per vertex,
+/// linear on triangles); inactive neighbors are split conformingly. side[t] becomes 0 (field < 0) or 1 for
+/// the pieces of active triangles, -1 for others. A crossing within `snap` (a fraction of the edge) of a
+/// vertex moves to the vertex. Returns the number of new vertices. Throws std::logic_error on wrong lengths.
+int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
+                        std::vector<int>& side, double snap = 0.1);
+
+/// Splits along a line as it is; side[t] follows the line's signs as that of the field.
+int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
+                   std::vector<int>& side);
+/// The same where the opposite half-edges are known, and updated.
+int cut_along_line(const CutSurface& s, const LevelLine& line, const std::vector<char>& active,
+                   std::vector<int>& side);
+
+}  // namespace meshpipe

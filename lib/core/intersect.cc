@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/intersect.h"
+
+#include <algorithm>
+#include <span>
+
+#include "lib/core/bvh.h"
+#include "lib/core/predicates.h"
+
+namespace meshpipe {
+namespace {
+
+struct Corners {
+  Vec3 a, b, c;
+};
+
+Corners corners(const Mesh& mesh, int t) {
+  const Tri& v = mesh.tris[t];
+  return {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]};
+}
+
+/// The plane's view along coordinate axis `axis`: exact, since it only leaves a coordinate out.
+Vec2 drop(Vec3 p, int axis) {
+  return axis == 0 ? Vec2{p.y, p.z} : axis == 1 ? Vec2{p.z, p.x} : Vec2{p.x, p.y};
+}
+
+/// A coordinate that can be left out such that the triangle keeps its area; -1 if it has none.
+int view_axis(const Corners& t) {
+  const Vec3 n = area_vector(t.a, t.b, t.c);
+  const double size[3] = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  int axis[3] = {0, 1, 2};
+  std::stable_sort(axis, axis + 3, [&](int i, int j) { return size[i] > size[j]; });
+  // the largest by rounded arithmetic may be flat by exact arithmetic
+  for (int k : axis)
+    if (orient2d(drop(t.a, k), drop(t.b, k), drop(t.c, k)) != 0) return k;
+  return -1;
+}
+
+/// Is all of q strictly right of an edge of the convex polygon p (counterclockwise; a segment is a polygon of
+/// two edges)?
+bool edge_separates(std::span<const Vec2> p, std::span<const Vec2> q) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec2 a = p[i], b = p[(i + 1) % p.size()];
+    if (std::all_of(q.begin(), q.end(), [&](Vec2 x) { return orient2d(a, b, x) < 0; })) return true;
+  }
+  return false;
+}
+
+/// Two convex sets in the plane, one of them with area, are apart only if an edge of either tells them apart:
+/// the edges of their Minkowski difference are parallel to theirs.
+bool polygons_meet(std::span<const Vec2> p, std::span<const Vec2> q) {
+  return !edge_separates(p, q) && !edge_separates(q, p);
+}
+
+std::array<Vec2, 3> flat(const Corners& t, int axis) {
+  std::array<Vec2, 3> r{drop(t.a, axis), drop(t.b, axis), drop(t.c, axis)};
+  if (orient2d(r[0], r[1], r[2]) < 0) std::swap(r[1], r[2]);
+  return r;
+}
+
+/// Segment pq against a triangle with area, when the sides of p and q of its plane are known.
+bool segment_meets(Vec3 p, Vec3 q, int side_p, int side_q, const Corners& t) {
+  if (side_p * side_q > 0) return false;
+  if (side_p == 0 && side_q == 0) {
+    const int axis = view_axis(t);
+    const Vec2 pq[2] = {drop(p, axis), drop(q, axis)};
+    return polygons_meet(flat(t, axis), pq);
+  }
+  const int x = orient3d(p, q, t.a, t.b), y = orient3d(p, q, t.b, t.c);
+  if (x * y < 0) return false;
+  const int z = orient3d(p, q, t.c, t.a);
+  return x * z >= 0 && y * z >= 0;
+}
+
+bool boxes_apart(Vec3 p, Vec3 q, const Corners& t) {
+  auto apart = [](double p, double q, double a, double b, double c) {
+    return std::max(p, q) < std::min({a, b, c}) || std::min(p, q) > std::max({a, b, c});
+  };
+  return apart(p.x, q.x, t.a.x, t.b.x, t.c.x) || apart(p.y, q.y, t.a.y, t.b.y, t.c.y) ||
+         apart(p.z, q.z, t.a.z, t.b.z, t.c.z);
+}
+
+bool segment_meets(Vec3 p, Vec3 q, const Corners& t) {
+  if (boxes_apart(p, q, t)) return false;
+  const int side_p = orient3d(t.a, t.b, t.c, p), side_q = orient3d(t.a, t.b, t.c, q);
+  return segment_meets(p, q, side_p, side_q, t);
+}
+
+bool disjoint_triangles_meet(const Corners& s, const Corners& t) {
+  const int s0 = orient3d(t.a, t.b, t.c, s.a), s1 = orient3d(t.a, t.b, t.c, s.b),
+            s2 = orient3d(t.a, t.b, t.c, s.c);
+  if ((s0 > 0 && s1 > 0 && s2 > 0) || (s0 < 0 && s1 < 0 && s2 < 0)) return false;
+  if (s0 == 0 && s1 == 0 && s2 == 0) {
+    const int axis = view_axis(t);
+    return polygons_meet(flat(s, axis), flat(t, axis));
+  }
+  const int t0 = orient3d(s.a, s.b, s.c, t.a), t1 = orient3d(s.a, s.b, s.c, t.b),
+            t2 = orient3d(s.a, s.b, s.c, t.c);
+  if ((t0 > 0 && t1 > 0 && t2 > 0) || (t0 < 0 && t1 < 0 && t2 < 0)) return false;
+  // triangles that are not coplanar meet in a segment (or a point), each end of which is on an edge of one of
+  // them
+  return segment_meets(s.a, s.b, s0, s1, t) || segment_meets(s.b, s.c, s1, s2, t) ||
+         segment_meets(s.c, s.a, s2, s0, t) || segment_meets(t.a, t.b, t0, t1, s) ||
+         segment_meets(t.b, t.c, t1, t2, s) || segment_meets(t.c, t.a, t2, t0, s);
+}
+
+/// The end points of the segment that two triangles share, or any points near it.
+std::pair<Vec3, Vec3> contact(const Mesh& mesh, int s, int t) {
+  std::vector<Vec3> found;
+  for (auto [f, g] : {std::pair{corners(mesh, s), corners(mesh, t)}, {corners(mesh, t), corners(mesh, s)}}) {
+    const Vec3 n = normalized(area_vector(g.a, g.b, g.c)), p[4] = {f.a, f.b, f.c, f.a};
+    for (int i = 0; i < 3; ++i) {
+      const double d0 = dot(p[i] - g.a, n), d1 = dot(p[i + 1] - g.a, n), longest = norm(p[i + 1] - p[i]);
+      if (d0 * d1 > 0 || d0 == d1) continue;
+      const Vec3 x = lerp(p[i], p[i + 1], d0 / (d0 - d1));
+      const auto b = closest_on_triangle(x, g.a, g.b, g.c);
+      if (norm(b[0] * g.a + b[1] * g.b + b[2] * g.c - x) <= 1e-6 * longest) found.push_back(x);
+    }
+  }
+  if (found.empty()) {
+    const Box a = box_of(mesh, s), b = box_of(mesh, t);
+    found.push_back(lerp(upper(a.lo, b.lo), lower(a.hi, b.hi), 0.5));
+  }
+  std::pair<Vec3, Vec3> ends{found[0], found[0]};
+  for (Vec3 x : found)
+    for (Vec3 y : found)
+      if (norm(y - x) > norm(ends.second - ends.first)) ends = {x, y};
+  return ends;
+}
+
+}  // namespace
+
+bool triangles_intersect(const Mesh& mesh, int s, int t) {
+  const Tri &a = mesh.tris[s], &b = mesh.tris[t];
+  int in_a[3], in_b[3], shared = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (a[i] == b[j] && shared < 3) {
+        in_a[shared] = i;
+        in_b[shared++] = j;
+      }
+  if (shared == 3) return true;
+  if (shared == 0) return disjoint_triangles_meet(corners(mesh, s), corners(mesh, t));
+  const auto& p = mesh.points;
+  if (shared == 1) {
+    const int i = in_a[0], j = in_b[0];
+    return segment_meets(p[a[(i + 1) % 3]], p[a[(i + 2) % 3]], corners(mesh, t)) ||
+           segment_meets(p[b[(j + 1) % 3]], p[b[(j + 2) % 3]], corners(mesh, s));
+  }
+  const Vec3 &u = p[a[in_a[0]]], &v = p[a[in_a[1]]];
+  const Vec3 &w = p[a[3 - in_a[0] - in_a[1]]], &x = p[b[3 - in_b[0] - in_b[1]]];
+  if (orient3d(u, v, w, x) != 0) return false;
+  const int axis = view_axis({u, v, w});
+  if (axis < 0) return false;
+  const Vec2 from = drop(u, axis), to = drop(v, axis);
+  return orient2d(from, to, drop(w, axis)) == orient2d(from, to, drop(x, axis));
+}
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
+  if (mesh.tris.empty()) return {};
+  return self_intersections(mesh, Bvh(mesh));
+}
+
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh) {
+  const int n = (int)mesh.tris.size();
+  // a few triangles that are neighbors in the tree look for partners together
+  constexpr int group = 4, chunk = 512;
+  const int chunks = (n + group * chunk - 1) / (group * chunk);
+  std::vector<std::vector<std::pair<int, int>>> found(chunks);
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+  for (int c = 0; c < chunks; ++c)
+    for (int first = c * group * chunk; first < std::min(n, (c + 1) * group * chunk); first += group) {
+      const int size = std::min(group, n - first);
+      const int* members = &bvh.order()[first];
+      Box boxes[group], all = box_of(mesh, members[0]);
+      for (int i = 0; i < size; ++i) all = join(all, boxes[i] = box_of(mesh, members[i]));
+      bvh.overlapping(all, [&](int t) {
+        const Box box = box_of(mesh, t);
+        for (int i = 0; i < size; ++i)
+          if (members[i] < t && overlap(boxes[i], box) && triangles_intersect(mesh, members[i], t))
+            found[c].push_back({members[i], t});
+      });
+    }
+  std::vector<std::pair<int, int>> all;
+  for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
+  // a triangle without area has no plane: it is counted as such elsewhere
+  std::erase_if(all, [&](const auto& p) {
+    return view_axis(corners(mesh, p.first)) < 0 || view_axis(corners(mesh, p.second)) < 0;
+  });
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
+  Mesh segments;
+  for (auto [s, t] : pairs) {
+    const auto [a, b] = contact(mesh, s, t);
+    const int n = (int)segments.points.size();
+    segments.points.insert(segments.points.end(), {a, b});
+    segments.tris.push_back({n, n + 1, n + 1});
+  }
+  return segments;
+}
+
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Mesh& known) {
+  if (known.tris.empty()) return pairs;
+  const Bvh tree(known);
+  std::vector<std::pair<int, int>> found;
+  for (auto [s, t] : pairs) {
+    double longest = 0;
+    for (int u : {s, t})
+      for (int i = 0; i < 3; ++i)
+        longest =
+            std::max(longest, norm(mesh.points[mesh.tris[u][(i + 1) % 3]] - mesh.points[mesh.tris[u][i]]));
+    const auto [a, b] = contact(mesh, s, t);
+    const double near = 2 * longest;
+    const auto is_known = [&](Vec3 p) { return tree.nearest(p, 1e300, near).distance <= near; };
+    if (!is_known(lerp(a, b, 0.5)) && !is_known(a) && !is_known(b)) found.push_back({s, t});
+  }
+  return found;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Self-intersections of a mesh, exactly.
+#pragma once
+#include <utility>
+
+#include "lib/core/bvh.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Do two triangles of one mesh meet other than in the vertices or the edge that they share? Exact
+/// predicates; sharing an edge they meet only if coplanar and on the same side, sharing a vertex if an
+/// opposite edge meets the other.
+bool triangles_intersect(const Mesh& mesh, int s, int t);
+
+/// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
+/// plane.
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
+/// The same with the mesh's tree at hand.
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
+
+/// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
+/// plane, the middle of what their boxes share.
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
+
+/// Those of the intersecting pairs that meet farther than two of their edges from `known`, the contacts of
+/// another mesh of the same surface: that one does not intersect there.
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Mesh& known);
+
+}  // namespace meshpipe

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/error.h"
+
+namespace meshpipe {
+
+std::size_t Column::size() const {
+  return std::visit([](const auto& v) { return v.size(); }, data);
+}
+
+const Column* Table::find(std::string_view column) const {
+  for (const Column& c : columns)
+    if (c.name == column) return &c;
+  return nullptr;
+}
+
+template <class T>
+std::vector<T>& Table::get(std::string_view column) {
+  return const_cast<std::vector<T>&>(static_cast<const Table*>(this)->get<T>(column));
+}
+
+template <class T>
+const std::vector<T>& Table::get(std::string_view column) const {
+  const Column* c = find(column);
+  if (!c) throw NotAdmissible("no column '" + std::string(column) + "' in table '" + name + "'");
+  const auto* v = std::get_if<std::vector<T>>(&c->data);
+  if (!v)
+    throw NotAdmissible("column '" + std::string(column) + "' of table '" + name + "' has another type");
+  return *v;
+}
+
+template <class T>
+std::vector<T>& Table::set(std::string_view column, std::vector<T> values) {
+  if (columns.empty()) rows = values.size();
+  if (values.size() != rows)
+    throw std::logic_error("column '" + std::string(column) + "' has " + std::to_string(values.size()) +
+                           " values, table '" + name + "' has " + std::to_string(rows) + " rows");
+  for (Column& c : columns)
+    if (c.name == column) return c.data = std::move(values), std::get<std::vector<T>>(c.data);
+  columns.push_back({std::string(column), std::move(values)});
+  return std::get<std::vector<T>>(columns.back().data);
+}
+
+void Table::erase(std::string_view column) {
+  std::erase_if(columns, [&](const Column& c) { return c.name == column; });
+}
+
+#define MESHPIPE_INSTANTIATE(T)                                         \
+  template std::vector<T>& Table::get<T>(std::string_view);             \
+  template const std::vector<T>& Table::get<T>(std::string_view) const; \
+  template std::vector<T>& Table::set<T>(std::string_view, std::vector<T>);
+MESHPIPE_INSTANTIATE(std::uint8_t)
+MESHPIPE_INSTANTIATE(int)
+MESHPIPE_INSTANTIATE(double)
+#undef MESHPIPE_INSTANTIATE
+
+Surface surface_of(Mesh mesh) {
+  Surface s;
+  static_cast<Mesh&>(s) = std::move(mesh);
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  return s;
+}
+
+std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n) {
+  std::vector<SubMesh> parts(n);
+  std::vector<int> count(n, 0);
+  for (int l : label)
+    if (0 <= l && l < n) ++count[l];
+  for (int l = 0; l < n; ++l) parts[l].face.reserve(count[l]);
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    if (0 <= label[t] && label[t] < n) parts[label[t]].face.push_back(t);
+  std::vector<int> local(mesh.points.size(), -1);
+  for (SubMesh& p : parts) {
+    p.tris.reserve(p.face.size());
+    for (int t : p.face) {
+      Tri r;
+      for (int i = 0; i < 3; ++i) {
+        int v = mesh.tris[t][i];
+        if (local[v] < 0) {
+          local[v] = (int)p.vertex.size();
+          p.vertex.push_back(v);
+        }
+        r[i] = local[v];
+      }
+      p.tris.push_back(r);
+    }
+    p.points.reserve(p.vertex.size());
+    for (int v : p.vertex) {
+      p.points.push_back(mesh.points[v]);
+      local[v] = -1;
+    }
+  }
+  return parts;
+}
+
+namespace {
+
+struct Extent {
+  double far = 0, lo[3], hi[3];
+  Extent() {
+    std::fill_n(lo, 3, std::numeric_limits<double>::infinity());
+    std::fill_n(hi, 3, -std::numeric_limits<double>::infinity());
+  }
+  void add(const Vec3& p) {
+    const double x[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; ++k) {
+      far = std::max(far, std::abs(x[k]));
+      lo[k] = std::min(lo[k], x[k]);
+      hi[k] = std::max(hi[k], x[k]);
+    }
+  }
+  double size() const { return std::max({0.0, hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
+};
+
+}  // namespace
+
+void expect_measurable(const Mesh& mesh) {
+  constexpr double least = 1e-50, most = 1e50;
+  Extent of_points;
+  for (const Vec3& p : mesh.points) of_points.add(p);
+  if (of_points.far <= most && of_points.size() >= least) return;
+  Extent e;  // only the points that are used count
+  for (const Tri& t : mesh.tris)
+    for (int v : t) e.add(mesh.points[v]);
+  char text[128];
+  if (e.far > most)
+    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g",
+                  e.far, most);
+  else if (e.size() > 0 && e.size() < least)
+    std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g",
+                  e.size(), least);
+  else
+    return;
+  throw NotAdmissible(text);
+}
+
+double diagonal(const Mesh& mesh) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Vec3 lo{inf, inf, inf}, hi{-inf, -inf, -inf};
+  for (const Tri& t : mesh.tris)
+    for (int v : t) {
+      const Vec3& p = mesh.points[v];
+      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    }
+  return mesh.tris.empty() ? 0 : norm(hi - lo);
+}
+
+double total_area(const Mesh& mesh) {
+  double a = 0;
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t) a += triangle_area(mesh, (int)t);
+  return a;
+}
+
+double kappa(Vec3 a, Vec3 b, Vec3 c) {
+  // 2 r_in / R_circ = 16 A^2 / (abc (a+b+c)), the same number without trigonometry
+  double la = norm(b - c), lb = norm(c - a), lc = norm(a - b), n = norm(area_vector(a, b, c));
+  double d = la * lb * lc * (la + lb + lc);
+  return d > 0 ? 4 * n * n / d : 0;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/original_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+namespace {
+
+/// The corners of the largest triangle of some points, if it covers all the pieces.
+bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners) {
+  std::vector<int> v;
+  Vec3 whole{};
+  for (int t : pieces) {
+    v.insert(v.end(), mesh.tris[t].begin(), mesh.tris[t].end());
+    whole = whole + area_vector(mesh, t);
+  }
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+  if (v.size() > 64) {
+    // the farthest point of a triangle from any other is a corner, and so is the farthest from a side
+    auto farthest = [&](auto distance) {
+      return *std::max_element(v.begin(), v.end(), [&](int i, int j) { return distance(i) < distance(j); });
+    };
+    auto from = [&](int a) { return farthest([&](int i) { return norm(mesh.points[i] - mesh.points[a]); }); };
+    auto area = [&](int a, int b, int c) {
+      return dot(area_vector(mesh.points[a], mesh.points[b], mesh.points[c]), whole);
+    };
+    const int a = from(v[0]), b = from(a), c = farthest([&](int i) { return std::abs(area(a, b, i)); });
+    v = {a, b, c};
+  }
+  double best = 0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    for (std::size_t j = i + 1; j < v.size(); ++j)
+      for (std::size_t k = j + 1; k < v.size(); ++k) {
+        const double a = dot(area_vector(mesh.points[v[i]], mesh.points[v[j]], mesh.points[v[k]]), whole);
+        if (std::abs(a) <= best) continue;
+        best = std::abs(a);
+        corners = a > 0 ? Tri{v[i], v[j], v[k]} : Tri{v[i], v[k], v[j]};
+      }
+  return std::abs(best - dot(whole, whole)) <= 1e-6 * dot(whole, whole);
+}
+
+}  // namespace
+
+Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin, std::vector<int>* whole_of) {
+  const int n = (int)mesh.tris.size();
+  Mesh whole;
+  whole.points = mesh.points;
+  whole.tris.reserve(n);
+  // the triangles in the order of their origins, by counting
+  std::vector<int> start(n == 0 ? 1 : *std::max_element(origin.begin(), origin.end()) + 2, 0), order(n);
+  for (int o : origin) ++start[o + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (int t = 0; t < n; ++t) order[start[origin[t]]++] = t;
+  if (whole_of) whole_of->resize(n);
+  for (int first = 0, last; first < n; first = last) {
+    for (last = first + 1; last < n && origin[order[last]] == origin[order[first]];) ++last;
+    Tri corners;
+    const bool one =
+        last - first > 1 && hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners);
+    if (one) whole.tris.push_back(corners);
+    for (int i = first; i < last; ++i) {
+      if (!one) whole.tris.push_back(mesh.tris[order[i]]);
+      if (whole_of) (*whole_of)[order[i]] = static_cast<int>(whole.tris.size()) - 1;
+    }
+  }
+  return whole;
+}
+
+}  // namespace meshpipe

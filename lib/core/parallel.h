@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loops over independent pieces of work on all threads.
+#pragma once
+#include <exception>
+#include <vector>
+
+namespace meshpipe {
+
+/// Calls f(i) for 0 <= i < n in any order, on all threads, or on one if it is not `worth` them.
+/// Throws what the smallest i threw, after all calls, so that failures do not depend on the threads.
+template <class F>
+void parallel_for(int n, F f, bool worth = true) {
+  std::vector<std::exception_ptr> failed(n);
+#pragma omp parallel for schedule(dynamic) if (worth && n > 1)
+  for (int i = 0; i < n; ++i) {
+    // nothing may leave a parallel region by an exception
+    try {
+      f(i);
+    } catch (...) {
+      failed[i] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& e : failed)
+    if (e) std::rethrow_exception(e);
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/segments.h"
+
+#include <algorithm>
+
+#include "lib/core/predicates.h"
+
+namespace meshpipe {
+
+int ray_crossing(Vec2 p, Vec2 from, Vec2 to) {
+  if (from.y <= p.y && p.y < to.y) return orient2d(from, to, p) > 0 ? 1 : 0;
+  if (to.y <= p.y && p.y < from.y) return orient2d(from, to, p) < 0 ? -1 : 0;
+  return 0;
+}
+
+bool meet(const Segment& s, const Segment& t) {
+  // two segments that leave a common end overlap if they leave it in the same direction
+  auto overlap = [](Vec2 common, Vec2 a, Vec2 b) {
+    return orient2d(common, a, b) == 0 && dot(a - common, b - common) >= 0;
+  };
+  const int same = (s.from == t.from) + (s.from == t.to) + (s.to == t.from) + (s.to == t.to);
+  if (same > 1) return true;
+  if (s.from == t.from) return overlap(s.p, s.q, t.q);
+  if (s.from == t.to) return overlap(s.p, s.q, t.p);
+  if (s.to == t.from) return overlap(s.q, s.p, t.q);
+  if (s.to == t.to) return overlap(s.q, s.p, t.p);
+  const int a = orient2d(s.p, s.q, t.p), b = orient2d(s.p, s.q, t.q);
+  if (a * b > 0) return false;
+  const int c = orient2d(t.p, t.q, s.p), d = orient2d(t.p, t.q, s.q);
+  if (c * d > 0) return false;
+  if (a != 0 || b != 0 || c != 0 || d != 0) return true;
+  // all on one line
+  auto apart = [](double a0, double a1, double b0, double b1) {
+    return std::max(a0, a1) < std::min(b0, b1) || std::max(b0, b1) < std::min(a0, a1);
+  };
+  return !apart(s.p.x, s.q.x, t.p.x, t.q.x) && !apart(s.p.y, s.q.y, t.p.y, t.q.y);
+}
+
+SegmentTree::SegmentTree(const std::vector<Segment>& segments) : segments_(segments) {
+  const int n = static_cast<int>(segments.size());
+  box_.resize(2 * n);
+  for (int i = 0; i < n; ++i) {
+    const Segment& s = segments[i];
+    box_[n + i] = {{std::min(s.p.x, s.q.x), std::min(s.p.y, s.q.y)},
+                   {std::max(s.p.x, s.q.x), std::max(s.p.y, s.q.y)}};
+  }
+  for (int k = n - 1; k > 0; --k) {
+    const Box &a = box_[2 * k], &b = box_[2 * k + 1];
+    box_[k] = {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
+               {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
+  }
+}
+
+template <class Overlaps, class Visit>
+void SegmentTree::visit(const Overlaps& overlaps, const Visit& leaf) const {
+  const int n = static_cast<int>(segments_.size());
+  if (n == 0) return;
+  int stack[64], top = 0;
+  stack[top++] = 1;  // the root, or the only leaf
+  while (top > 0) {
+    int k = stack[--top];
+    if (!overlaps(box_[k])) continue;
+    if (k >= n) {
+      leaf(k - n);
+    } else {
+      stack[top++] = 2 * k + 1;
+      stack[top++] = 2 * k;
+    }
+  }
+}
+
+std::vector<std::array<int, 2>> SegmentTree::crossings() const {
+  const int n = static_cast<int>(segments_.size());
+  std::vector<std::array<int, 2>> pairs;
+  for (int i = 0; i < n; ++i) {
+    const Box& mine = box_[n + i];
+    visit(
+        [&](const Box& b) {
+          return b.low.x <= mine.high.x && mine.low.x <= b.high.x && b.low.y <= mine.high.y &&
+                 mine.low.y <= b.high.y;
+        },
+        [&](int j) {
+          if (j > i && meet(segments_[i], segments_[j])) pairs.push_back({i, j});
+        });
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+int SegmentTree::winding(Vec2 p, const std::vector<int>& weight) const {
+  int turns = 0;
+  visit([&](const Box& b) { return b.low.y <= p.y && p.y <= b.high.y && p.x <= b.high.x; },
+        [&](int i) {
+          if (weight[i] != 0) turns += weight[i] * ray_crossing(p, segments_[i].p, segments_[i].q);
+        });
+  return turns;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/topology.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "lib/core/edges.h"
+#include "lib/core/error.h"
+#include "lib/core/parallel.h"
+
+namespace meshpipe {
+
+static std::string edge_name(const std::vector<Tri>& tris, int h) {
+  return "edge " + std::to_string(origin(tris, h)) + "-" + std::to_string(target(tris, h));
+}
+
+std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices) {
+  for (std::size_t t = 0; t < tris.size(); ++t)
+    if (const auto& [a, b, c] = tris[t]; a == b || b == c || c == a)
+      throw NotAdmissible("triangle " + std::to_string(t) + " has vertex " + std::to_string(b == c ? b : a) +
+                          " twice; run mclean first");
+  std::vector<int> opposite(3 * tris.size(), -1);
+  for_each_edge(tris, n_vertices, [&](std::span<const EdgeUse> uses) {
+    int h = half_edge(uses[0]);
+    if (uses.size() > 2)
+      throw NotAdmissible(edge_name(tris, h) + " of triangle " + std::to_string(h / 3) + " has " +
+                          std::to_string(uses.size()) + " triangles, not 2; run mclean first");
+    if (uses.size() < 2) return;
+    int g = half_edge(uses[1]);
+    if (origin(tris, h) == origin(tris, g))
+      throw NotAdmissible(edge_name(tris, h) + " runs the same way in triangles " + std::to_string(h / 3) +
+                          " and " + std::to_string(g / 3) + "; run mclean first");
+    opposite[h] = g;
+    opposite[g] = h;
+  });
+  return opposite;
+}
+
+std::vector<std::vector<int>> opposite_of_parts(const std::vector<SubMesh>& parts, const Connectivity& whole,
+                                                const std::vector<int>& label) {
+  std::vector<int> number(label.size());
+  for (const SubMesh& p : parts)
+    for (std::size_t i = 0; i < p.face.size(); ++i) number[p.face[i]] = (int)i;
+  std::vector<std::vector<int>> within(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    within[p].reserve(3 * parts[p].face.size());
+    for (int t : parts[p].face)
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        const int o = whole.opposite[h];
+        within[p].push_back(o < 0 || label[o / 3] != label[t] ? -1 : 3 * number[o / 3] + o % 3);
+      }
+  }
+  return within;
+}
+
+int components(const std::vector<int>& opposite, std::vector<int>& component) {
+  int n_tris = (int)opposite.size() / 3, n = 0;
+  component.assign(n_tris, -1);
+  std::vector<int> stack;
+  for (int seed = 0; seed < n_tris; ++seed) {
+    if (component[seed] >= 0) continue;
+    component[seed] = n;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      int t = stack.back();
+      stack.pop_back();
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        int o = opposite[h];
+        if (o < 0 || component[o / 3] >= 0) continue;
+        component[o / 3] = n;
+        stack.push_back(o / 3);
+      }
+    }
+    ++n;
+  }
+  return n;
+}
+
+std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite) {
+  std::vector<std::vector<int>> loops;
+  std::vector<char> seen(opposite.size(), 0);
+  for (int seed = 0; seed < (int)opposite.size(); ++seed) {
+    if (opposite[seed] >= 0 || seen[seed]) continue;
+    std::vector<int>& loop = loops.emplace_back();
+    for (int h = seed; !seen[h];) {
+      seen[h] = 1;
+      loop.push_back(h);
+      h = next_on_border(opposite, h);
+    }
+  }
+  return loops;
+}
+
+int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices) {
+  std::vector<char> seen(opposite.size(), 0), has_fan(n_vertices, 0);
+  int pinched = n_vertices;
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    if (seen[h]) continue;
+    const int v = origin(tris, h);
+    if (has_fan[v]) pinched = std::min(pinched, v);
+    has_fan[v] = 1;
+    for_each_spoke(opposite, h, [&](int g) { seen[g] = 1; });
+  }
+  return pinched < n_vertices ? pinched : -1;
+}
+
+namespace {
+
+/// Computes the unit eigenvectors of a symmetric matrix by Jacobi rotations, which converge quadratically.
+std::array<Vec3, 3> eigenvectors(std::array<std::array<double, 3>, 3> m) {
+  constexpr int sweeps = 12;  // of which about six change anything
+  double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int turn = 0; turn < 3 * sweeps; ++turn) {
+    const int p = turn % 3, q = (p + 1) % 3;
+    if (m[p][q] == 0) continue;
+    const double angle = 0.5 * std::atan2(2 * m[p][q], m[p][p] - m[q][q]);
+    const double c = std::cos(angle), s = std::sin(angle);
+    auto rotate = [&](double& x, double& y) {
+      const double before = x;
+      x = c * before + s * y;
+      y = c * y - s * before;
+    };
+    for (int k = 0; k < 3; ++k) rotate(m[k][p], m[k][q]);
+    for (int k = 0; k < 3; ++k) rotate(m[p][k], m[q][k]);
+    for (int k = 0; k < 3; ++k) rotate(axes[p][k], axes[q][k]);
+  }
+  std::array<Vec3, 3> vectors;
+  for (int k = 0; k < 3; ++k) vectors[k] = {axes[k][0], axes[k][1], axes[k][2]};
+  return vectors;
+}
+
+/// Longest side of the box along the principal axes of the points, which turns with them.
+double box_size(const std::vector<Vec3>& points) {
+  Vec3 mean;
+  for (Vec3 p : points) mean = mean + p;
+  mean = (1.0 / (double)points.size()) * mean;
+  std::array<std::array<double, 3>, 3> inertia{};
+  for (Vec3 p : points) {
+    const double d[3] = {p.x - mean.x, p.y - mean.y, p.z - mean.z};
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) inertia[i][k] += d[i] * d[k];
+  }
+  double size = 0;
+  for (const Vec3& axis : eigenvectors(inertia)) {
+    const Vec3 origin = points[0];
+    double lo = 0, hi = 0;
+    for (Vec3 p : points) {
+      lo = std::min(lo, dot(p - origin, axis));
+      hi = std::max(hi, dot(p - origin, axis));
+    }
+    size = std::max(size, hi - lo);
+  }
+  return size;
+}
+
+/// Largest of the distances along edges from the origins of `loop`, over the vertices they lead to. Vertices
+/// wait in buckets as wide as a mean edge and may be reached again within one: in the end no distance can be
+/// shortened, which is what Dijkstra's order would give to the bit, for linear work.
+double edge_path_depth(const Connectivity& c, const std::vector<int>& loop) {
+  const Mesh& mesh = c.mesh;
+  const std::vector<int>& opposite = c.opposite;
+  constexpr double far = std::numeric_limits<double>::infinity();
+  // a half-edge that leaves the vertex; the border's, if there is one
+  std::vector<int> star(mesh.points.size(), -1);
+  double width = 0;
+  std::size_t edges = 0;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const int v = origin(mesh.tris, h);
+      if (star[v] < 0 || opposite[h] < 0) star[v] = h;
+      if (opposite[h] > h) continue;  // every edge once
+      width += norm(mesh.points[target(mesh.tris, h)] - mesh.points[v]);
+      ++edges;
+    }
+  width /= (double)edges;
+  std::vector<double> distance(mesh.points.size(), far);
+  std::vector<std::vector<int>> buckets(1);
+  auto bucket_of = [&](double d) { return (std::size_t)(d / width); };
+  for (int h : loop) {
+    distance[origin(mesh.tris, h)] = 0;
+    buckets[0].push_back(origin(mesh.tris, h));
+  }
+  std::vector<int> waiting;
+  for (std::size_t b = 0; b < buckets.size(); ++b) {
+    while (!buckets[b].empty()) {
+      waiting.swap(buckets[b]);
+      buckets[b].clear();
+      for (int v : waiting) {
+        const double d = distance[v];
+        if (bucket_of(d) != b) continue;  // it went on with a shorter way
+        auto reach = [&](int w) {
+          if (distance[w] <= d) return;  // half of them: neither the point nor a root is needed
+          const double along = d + norm(mesh.points[w] - mesh.points[v]);
+          if (!(along < distance[w])) return;
+          distance[w] = along;
+          const std::size_t to = bucket_of(along);
+          if (to >= buckets.size()) buckets.resize(to + 1);
+          buckets[to].push_back(w);
+        };
+        for (int h = star[v];;) {
+          reach(target(mesh.tris, h));
+          const int in = prev(h);
+          h = opposite[in];
+          if (h < 0) reach(origin(mesh.tris, in));
+          if (h < 0 || h == star[v]) break;
+        }
+      }
+    }
+    std::vector<int>().swap(buckets[b]);
+  }
+  double depth = 0;
+  for (double d : distance)
+    if (d < far) depth = std::max(depth, d);
+  return depth;
+}
+
+/// `pieces` is the number of components; `number` translates the vertices for the message of a failure;
+/// empty: they are what they are.
+Topology measure(const Connectivity& c, int pieces, const std::vector<int>& number) {
+  Topology t;
+  const Mesh& mesh = c.mesh;
+  const int n = (int)mesh.points.size();
+  int pinched = find_pinched_vertex(c);
+  if (pinched >= 0)
+    throw NotAdmissible("vertex " + std::to_string(number.empty() ? pinched : number[pinched]) +
+                        " joins triangles that share no edge; run mclean first");
+  std::vector<std::vector<int>> loops = boundary_loops(c.opposite);
+  std::vector<char> used(n, 0);
+  for (const Tri& tri : mesh.tris)
+    for (int v : tri) used[v] = 1;
+  std::size_t longest = 0, border = 0;
+  for (const std::vector<int>& loop : loops) {
+    double length = 0;
+    for (int h : loop) length += c.length(h);
+    t.loop_length.push_back(length);
+    if (length > t.loop_length[longest]) longest = t.loop_length.size() - 1;
+    border += loop.size();
+  }
+  t.components = pieces;
+  t.vertices = (int)std::count(used.begin(), used.end(), 1);
+  t.faces = (int)mesh.tris.size();
+  t.edges = (int)((3 * mesh.tris.size() + border) / 2);
+  t.loops = (int)loops.size();
+  t.genus = (2 * t.components - (t.vertices - t.edges + t.faces) - t.loops) / 2;  // eq. (2)
+  t.area = total_area(mesh);
+  if (loops.empty() || t.loop_length[longest] == 0) return t;
+
+  t.longest_loop = t.loop_length[longest];
+  t.eta_cyl = std::numbers::pi * t.area / (t.longest_loop * t.longest_loop);
+  t.eta_geo = edge_path_depth(c, loops[longest]) * std::numbers::pi / t.longest_loop;
+  std::vector<Vec3> whole, rim;
+  for (int v = 0; v < n; ++v)
+    if (used[v]) whole.push_back(mesh.points[v]);
+  for (int h : loops[longest]) rim.push_back(mesh.points[origin(mesh.tris, h)]);
+  if (double size = box_size(rim); size > 0) t.eta_box = box_size(whole) / size;
+  return t;
+}
+
+/// As measure, of part p, whose neighbors `opposite_of` gives; nothing if it has no triangles.
+template <class OppositeOf>
+Topology of_part(const SubMesh& mesh, int p, OppositeOf opposite_of) {
+  if (mesh.tris.empty()) return {};
+  try {
+    const std::vector<int> opposite = opposite_of();
+    std::vector<int> component;
+    const int pieces = components(opposite, component);
+    return measure({mesh, opposite}, pieces, mesh.vertex);
+  } catch (const NotAdmissible& e) {
+    throw NotAdmissible("part " + std::to_string(p) + ": " + e.what());
+  }
+}
+
+/// Calls of(p) for every part in parallel.
+template <class Of>
+std::vector<Topology> for_parts(int n, const Of& of) {
+  std::vector<Topology> parts(n);
+  parallel_for(n, [&](int p) { parts[p] = of(p); });
+  return parts;
+}
+
+}  // namespace
+
+Topology topology_of(const Mesh& mesh) {
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  std::vector<int> component;
+  return measure({mesh, opposite}, components(opposite, component), {});
+}
+
+std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
+  const std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
+  return for_parts(n, [&](int p) {
+    return of_part(meshes[p], p,
+                   [&] { return opposite_halfedges(meshes[p].tris, (int)meshes[p].points.size()); });
+  });
+}
+
+std::vector<Topology> topology_of_parts(const Connectivity& c, const std::vector<int>& part, int n) {
+  const std::vector<SubMesh> meshes = split_by_label(c.mesh, part, n);
+  std::vector<std::vector<int>> within = opposite_of_parts(meshes, c, part);
+  return for_parts(n, [&](int p) { return of_part(meshes[p], p, [&] { return std::move(within[p]); }); });
+}
+
+std::vector<Topology> topology_of_components(const Connectivity& c, const std::vector<int>& component,
+                                             int n) {
+  if (n == 1) return {measure(c, 1, {})};
+  const std::vector<SubMesh> meshes = split_by_label(c.mesh, component, n);
+  const std::vector<std::vector<int>> within = opposite_of_parts(meshes, c, component);
+  return for_parts(n, [&](int p) { return measure({meshes[p], within[p]}, 1, meshes[p].vertex); });
+}
+
+Table part_table(const std::vector<Topology>& parts) {
+  Table table{"part", parts.size(), {}};
+  auto add = [&]<class T, class M>(const char* name, M member) {
+    std::vector<T> column;
+    for (const Topology& t : parts) column.push_back(t.*member);
+    table.set<T>(name, std::move(column));
+  };
+  add.template operator()<int>("genus", &Topology::genus);
+  add.template operator()<int>("loops", &Topology::loops);
+  add.template operator()<int>("faces", &Topology::faces);
+  add.template operator()<double>("area", &Topology::area);
+  add.template operator()<double>("eta_cyl", &Topology::eta_cyl);
+  add.template operator()<double>("eta_box", &Topology::eta_box);
+  add.template operator()<double>("eta_geo", &Topology::eta_geo);
+  return table;
+}
+
+Table part_table(const Surface& surface, int n) {
+  return part_table(topology_of_parts(surface, surface.face.get<int>("part"), n));
+}
+
+bool admissible(const Topology& t, double max_aspect) {
+  return t.components == 1 && t.genus == 0 && t.loops >= 1 && t.eta_geo < max_aspect;
+}
+
+std::string verdict(const Topology& t) {
+  std::string why;
+  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
+  if (t.components != 1) add(std::to_string(t.components) + " pieces");
+  if (t.genus != 0) add("genus " + std::to_string(t.genus));
+  if (t.loops == 0) add("closed");
+  if (why.empty() && !admissible(t)) add("too long");
+  return why.empty() ? "ok" : why;
+}
+
+int count_parts(const Surface& surface) {
+  const std::vector<int>& part = surface.face.get<int>("part");
+  const int n_tris = (int)surface.tris.size();
+  const int n = n_tris ? *std::max_element(part.begin(), part.end()) + 1 : 0;
+  std::vector<int> faces(std::min(n, n_tris), 0);
+  for (int t = 0; t < n_tris; ++t) {
+    if (part[t] < 0 || part[t] >= n_tris)
+      throw NotAdmissible("face " + std::to_string(t) + " has part " + std::to_string(part[t]) + " of " +
+                          std::to_string(n_tris) + " triangles");
+    ++faces[part[t]];
+  }
+  for (int p = 0; p < n; ++p)
+    if (!faces[p])
+      throw NotAdmissible("part " + std::to_string(p) + " of " + std::to_string(n) + " has no triangle");
+  return n;
+}
+
+}  // namespace meshpipe

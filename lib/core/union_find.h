@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Disjoint sets.
+#pragma once
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace meshpipe {
+
+/// Disjoint sets of the numbers 0..n-1, each set named by one of its members.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  /// Returns the member that names the set of i.
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// Joins the sets of a and b under the lower of their names; false if they were one already.
+  bool join(int a, int b) {
+    a = find(a), b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+  /// Makes the set named `gone` part of the set of `kept`, which keeps its name.
+  void merge_into(int gone, int kept) { parent_[gone] = kept; }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace meshpipe

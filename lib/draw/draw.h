@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A picture of a mesh, without a display: orthographic view, z-buffer, shading and mesh lines, smoothed by
+// supersampling.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+using Color = std::array<std::uint8_t, 3>;
+
+/// Rows from the top, three bytes a pixel.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+struct View {
+  double azimuth = 30, elevation = 20;  ///< degrees; z is up
+  double zoom = 1;                      ///< about the center of the picture
+  double shift_x = 0, shift_y = 0;      ///< of the center, in units of the fitted picture's width
+  bool edges = true;                    ///< draw the mesh lines
+};
+
+/// The mesh fitted into width x height pixels. `color` is per triangle; `strong` (empty, or per triangle: bit
+/// i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and grey, so that
+/// flipped triangles show.
+Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
+                const View& view, int width, int height);
+
+/// Pictures of equal height side by side.
+Image side_by_side(const std::vector<Image>& images);
+
+/// A distinct, light color for a label.
+Color label_color(int label);
+/// Red (0) over yellow to blue (1): for kappa.
+Color scale_color(double value);
+
+}  // namespace meshpipe

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/feature/feature.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numbers>
+
+#include "lib/core/error.h"
+#include "lib/core/number.h"
+#include "lib/core/topology.h"
+#include "lib/core/triangle_count.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
+constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
+constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
+constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
+constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
+constexpr double gap = 0.05;       ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double spacing = 1.5;    ///< target lengths between creases, on average
+constexpr double sliver = 0.02;    ///< target lengths: thinner triangles do not show which way they face
+constexpr double long_chain = 5;   ///< mean edges of the input
+constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
+constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
+
+/// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
+struct Network {
+  const Surface& s;
+  std::vector<int> opposite{};
+  std::vector<double> angle{};       ///< between the normals on either side
+  std::vector<char> on{}, strong{};  ///< creases; those chosen by their angle alone
+  std::vector<char> patch{};         ///< between two patches, or given
+  std::vector<char> given{};         ///< by the caller
+  std::vector<char> merged{};        ///< between two patches that have become one
+  std::vector<int> spoke{};          ///< a half-edge that leaves the vertex, on the border the border's
+  std::vector<int> valence{};        ///< of the network of creases
+  std::vector<char> anchor{};  ///< on a border of the surface or of a (former) patch: chains may end there
+  double size = 0;             ///< target edge length
+  double shortest = 0;         ///< pieces below this length are dropped
+  double telling = 0;          ///< chains above this length show whether the surface is designed
+
+  int from(int h) const { return origin(s.tris, h); }
+  int to(int h) const { return target(s.tris, h); }
+  Vec3 along(int h) const { return s.points[to(h)] - s.points[from(h)]; }
+  double length(int h) const { return norm(along(h)); }
+  double turn(int in, int out) const { return meshpipe::angle(along(in), along(out)); }
+  bool free_end(int v) const { return valence[v] == 1 && !anchor[v]; }
+
+  void set(int h, char value) {
+    on[h] = on[opposite[h]] = value;
+    valence[from(h)] += value ? 1 : -1;
+    valence[to(h)] += value ? 1 : -1;
+  }
+
+  /// Calls visit(h) for the half-edges that leave v, except those on the border.
+  template <class Visit>
+  void around(int v, Visit visit) const {
+    int h = spoke[v];
+    do {
+      const int after = opposite[prev(h)];
+      if (opposite[h] >= 0) visit(h);
+      h = after;
+    } while (h >= 0 && h != spoke[v]);
+  }
+
+  /// The first crease half-edge that leaves v, other than `except`; -1 if none.
+  int leaving(int v, int except) const {
+    int found = -1;
+    around(v, [&](int h) {
+      if (found < 0 && on[h] && h != except) found = h;
+    });
+    return found;
+  }
+};
+
+using Chain = std::vector<int>;  ///< half-edges, end to end
+
+double length(const Network& net, const Chain& chain) {
+  double sum = 0;
+  for (int h : chain) sum += net.length(h);
+  return sum;
+}
+
+Network find_edges(const Surface& s, const FeatureOptions& options, const std::vector<int>* before,
+                   const std::vector<char>* given, int& slivers) {
+  Network net{.s = s, .opposite = opposite_halfedges(s.tris, (int)s.points.size())};
+  const int n = (int)net.opposite.size();
+  net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
+  const std::vector<Vec3> normal = sound_normals({s, net.opposite}, sliver * net.size);
+  for (std::size_t t = 0; t < s.tris.size(); ++t) {
+    const Tri& v = s.tris[t];
+    const Vec3 own = area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]);
+    slivers += angle(own, normal[t]) > continue_turn;
+  }
+  net.angle.assign(n, 0);
+  for (auto* flags : {&net.on, &net.patch, &net.given, &net.merged}) flags->assign(n, 0);
+  net.spoke.assign(s.points.size(), -1);
+  net.valence.assign(s.points.size(), 0);
+  net.anchor.assign(s.points.size(), 0);
+  const std::vector<int>* patch = s.face.has("patch") ? &s.face.get<int>("patch") : nullptr;
+  double sum = 0;
+  for (int h = 0; h < n; ++h) {
+    const int o = net.opposite[h], v = net.from(h);
+    if (net.spoke[v] < 0 || o < 0) net.spoke[v] = h;
+    sum += net.length(h);
+    if (o >= 0) net.angle[h] = angle(normal[h / 3], normal[o / 3]);
+    const bool border = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
+    const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
+    net.given[h] = o >= 0 && !merged && given && (*given)[h];
+    net.patch[h] = border || net.given[h];
+    net.merged[h] = merged && options.mode == FeatureOptions::automatic && net.angle[h] <= step;
+    if (o < 0 || net.patch[h] || net.merged[h]) net.anchor[v] = net.anchor[net.to(h)] = 1;
+  }
+  // the input's own edges show whether it is designed, the target's which creases are worth keeping
+  const double mean = n ? sum / n : 0, most = longest_chain * diagonal(s);
+  net.telling = std::min(long_chain * mean, most);
+  net.shortest = std::min(short_chain * (options.size > 0 ? options.size : mean), most);
+  return net;
+}
+
+/// Continues from the free end v along weak edges, as straight as they allow, until it meets the network.
+void follow(Network& net, int v, double weak) {
+  if (!net.free_end(v)) return;
+  for (int in = net.opposite[net.leaving(v, -1)];;) {
+    int best = -1;
+    double least = continue_turn;
+    net.around(v, [&](int h) {
+      if (net.on[h] || net.patch[h] || net.merged[h] || net.angle[h] <= weak) return;
+      if (double a = net.turn(in, h); a < least) {
+        least = a;
+        best = h;
+      }
+    });
+    if (best < 0) return;
+    v = net.to(best);
+    const bool met = net.valence[v] > 0 || net.anchor[v];
+    net.set(best, 1);
+    if (met) return;
+    in = best;
+  }
+}
+
+std::vector<int> free_ends(const Network& net) {
+  std::vector<int> ends;
+  for (int v = 0; v < (int)net.valence.size(); ++v)
+    if (net.free_end(v)) ends.push_back(v);
+  return ends;
+}
+
+/// Chooses the edges above the strong angle, and those above the weak one that continue them.
+void choose(Network& net, double strong, double weak) {
+  for (int h = 0; h < (int)net.opposite.size(); ++h)
+    if (net.opposite[h] > h && !net.patch[h] && !net.merged[h] && net.angle[h] > strong) net.set(h, 1);
+  net.strong = net.on;
+  for (int v : free_ends(net)) follow(net, v, weak);
+}
+
+/// Drops chains with a free end that are shorter than `least`.
+void prune(Network& net, double least) {
+  std::vector<int> ends = free_ends(net);
+  Chain chain;
+  while (!ends.empty()) {
+    const int v = ends.back();
+    ends.pop_back();
+    if (!net.free_end(v)) continue;
+    chain.clear();
+    int h = net.leaving(v, -1);
+    for (;;) {
+      chain.push_back(h);
+      const int end = net.to(h);
+      if (net.valence[end] != 2 || net.anchor[end]) break;
+      h = net.leaving(end, net.opposite[h]);
+    }
+    if (length(net, chain) >= least) continue;
+    for (int g : chain) net.set(g, 0);
+    if (net.free_end(net.to(h))) ends.push_back(net.to(h));
+  }
+}
+
+/// Returns the chains between corners and junctions, then the closed ones without any.
+std::vector<Chain> chains_of(const Network& net) {
+  std::vector<Chain> all;
+  std::vector<char> seen(net.on.size(), 0);
+  auto after = [&](int in) {  // -1 at the end of the chain
+    const int v = net.to(in);
+    if (net.valence[v] != 2 || net.anchor[v]) return -1;
+    const int out = net.leaving(v, net.opposite[in]);
+    return net.turn(in, out) > corner_turn ? -1 : out;
+  };
+  for (bool closed : {false, true})
+    for (int h = 0; h < (int)net.on.size(); ++h) {
+      if (!net.on[h] || seen[h] || (!closed && after(net.opposite[h]) >= 0)) continue;
+      Chain& chain = all.emplace_back();
+      for (int g = h; g >= 0 && !seen[g]; g = after(g)) {
+        seen[g] = seen[net.opposite[g]] = 1;
+        chain.push_back(g);
+      }
+    }
+  return all;
+}
+
+/// Returns the mean change of the turning vector (the angle times the axis) from vertex to vertex: 0 on
+/// straight lines and circles however coarse, twice the angle on a zigzag.
+double roughness(const Network& net, const Chain& chain) {
+  double sum = 0;
+  Vec3 last;
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const Vec3 axis =
+        net.turn(chain[i - 1], chain[i]) * normalized(cross(net.along(chain[i - 1]), net.along(chain[i])));
+    if (i > 1) sum += norm(axis - last);
+    last = axis;
+  }
+  return chain.size() > 2 ? sum / (double)(chain.size() - 2) : 0;
+}
+
+/// Drops the creases of components that do not look designed. A component looks designed if half of its
+/// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
+/// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not).
+void keep_designed(Network& net, double strong, double weak) {
+  std::vector<int> component;
+  const int n = components(net.opposite, component), m = (int)net.opposite.size();
+  std::vector<double> sharp(n, 0), smooth(n, 0), between(n, 0), area(n, 0);
+  for (int t = 0; t < m / 3; ++t) {
+    const Tri& v = net.s.tris[t];
+    area[component[t]] += 0.5 * norm(area_vector(net.s.points[v[0]], net.s.points[v[1]], net.s.points[v[2]]));
+  }
+  for (int h = 0; h < m; ++h) {
+    if (net.opposite[h] < h) continue;
+    const int c = component[h / 3];
+    if (net.angle[h] > weak && net.angle[h] <= strong) between[c] += net.length(h);
+    if (!net.strong[h] && !(net.patch[h] && net.angle[h] > strong)) continue;
+    sharp[c] += net.length(h);
+    if (net.patch[h]) smooth[c] += net.length(h);
+  }
+  for (const Chain& chain : chains_of(net)) {
+    if (!(length(net, chain) > net.telling && roughness(net, chain) < smooth_turn)) continue;
+    double counted = 0;
+    for (int h : chain)
+      if (net.strong[h]) counted += net.length(h);
+    smooth[component[chain[0] / 3]] += counted;
+  }
+  for (int h = 0; h < m; ++h) {
+    if (!net.on[h]) continue;
+    const int c = component[h / 3];
+    const bool designed = smooth[c] >= design_share * sharp[c] ||
+                          (between[c] < gap * sharp[c] && area[c] > spacing * net.size * sharp[c]);
+    if (!designed) net.set(h, 0);
+  }
+}
+
+/// Drops connected pieces of the network that are short in all and touch no border.
+void drop_small_pieces(Network& net) {
+  const int n = (int)net.s.points.size();
+  std::vector<char> seen(n, 0);
+  std::vector<int> piece;
+  for (int seed = 0; seed < n; ++seed) {
+    if (seen[seed] || !net.valence[seed]) continue;
+    piece.assign(1, seed);
+    seen[seed] = 1;
+    double twice = 0;
+    bool held = false;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      held = held || net.anchor[piece[i]];
+      net.around(piece[i], [&](int h) {
+        if (!net.on[h]) return;
+        twice += net.length(h);
+        if (!seen[net.to(h)]) piece.push_back(net.to(h));
+        seen[net.to(h)] = 1;
+      });
+    }
+    if (held || twice >= 2 * net.shortest) continue;
+    for (int v : piece)
+      net.around(v, [&](int h) {
+        if (net.on[h]) net.set(h, 0);
+      });
+  }
+}
+
+/// Writes the model bits and counts edges and corners.
+void mark(const Network& net, std::vector<std::uint8_t>& model, FeatureReport& r) {
+  std::vector<int> lines(net.s.points.size(), 0);
+  for (int h = 0; h < (int)net.opposite.size(); ++h) {
+    if (!net.on[h] && !net.patch[h]) continue;
+    model[h / 3] |= 1 << h % 3;
+    if (net.opposite[h] < h) continue;
+    (net.given[h] ? r.given_edges : net.patch[h] ? r.patch_edges : r.crease_edges) += 1;
+    ++lines[net.from(h)];
+    ++lines[net.to(h)];
+  }
+  r.model_edges = r.patch_edges + r.given_edges + r.crease_edges;
+  for (int v = 0; v < (int)lines.size(); ++v) {
+    if (!lines[v]) continue;
+    bool corner = lines[v] != 2;
+    if (!corner) {
+      int two[2], k = 0;
+      net.around(v, [&](int h) {
+        if (net.on[h] || net.patch[h]) two[k++] = h;
+      });
+      corner = net.turn(net.opposite[two[0]], two[1]) > corner_turn;
+    }
+    r.corners += corner;
+  }
+}
+
+}  // namespace
+
+void parse_angles(const std::string& text, FeatureOptions& options) {
+  options.mode = text == "auto"   ? FeatureOptions::automatic
+                 : text == "none" ? FeatureOptions::none
+                                  : FeatureOptions::angles;
+  if (options.mode != FeatureOptions::angles) return;
+  const char *at = text.data(), *end = at + text.size();
+  auto [after, error] = from_chars(at, end, options.strong);
+  options.weak = options.strong / 2;
+  if (error == std::errc() && after < end && *after == ',') {
+    auto second = from_chars(after + 1, end, options.weak);
+    after = second.ptr;
+    error = second.ec;
+  }
+  if (error != std::errc() || after != end ||
+      !(0 < options.weak && options.weak <= options.strong && options.strong < 180))
+    throw BadUsage("--feature-angle " + text + " is not auto, none, A or A,B with 0 < B <= A < 180 degrees");
+}
+
+std::vector<Vec3> sound_normals(const Connectivity& surface, double thin) {
+  constexpr double slender = 0.05;   // height over length: other triangles have normals of their own
+  constexpr double rounding = 3e-6;  // of the diagonal: single-precision coordinates, with a margin
+  constexpr int most_steps = 16;     // through thin neighbors
+  const double least_height = rounding * diagonal(surface.mesh);
+  const int n = surface.n_tris();
+  const std::vector<int>& opposite = surface.opposite;
+  std::vector<Vec3> normal(n);
+  std::vector<int> heir(n, -1), second(n, -1);  // the triangle whose normal is taken, or might be
+  for (int t = 0; t < n; ++t) {
+    const Vec3 a = surface.area_vector(t);
+    int longest = 3 * t, other = 3 * t + 1;
+    double length = 0, shorter = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double l = surface.length(h);
+      if (l > length) {
+        other = longest, longest = h;
+        shorter = length, length = l;
+      } else if (l > shorter) {
+        other = h, shorter = l;
+      }
+    }
+    normal[t] = normalized(a);
+    const double least = std::max(least_height, std::min(thin, slender * length));
+    if (norm(a) >= least * length) continue;
+    heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
+    second[t] = opposite[other] >= 0 ? opposite[other] / 3 : -1;
+  }
+  if (thin > 0) {  // the two halves of a thin strip go with its two sides
+    const std::vector<int> first = heir;
+    for (int t = 0; t < n; ++t)
+      if (first[t] >= 0 && first[first[t]] == t) heir[t] = second[t];
+  }
+  for (int t = 0; t < n; ++t) {
+    int u = t;
+    for (int steps = 0; heir[u] >= 0 && steps < most_steps; ++steps) u = heir[u];
+    normal[t] = normal[u];
+  }
+  return normal;
+}
+
+FeatureReport mark_features(Surface& surface, const FeatureOptions& options, const std::vector<int>* before,
+                            const std::vector<char>* given) {
+  FeatureReport report;
+  Network net = find_edges(surface, options, before, given, report.slivers);
+  if (options.mode != FeatureOptions::none) {
+    const double strong = options.strong * degree, weak = options.weak * degree;
+    choose(net, strong, weak);
+    if (options.mode == FeatureOptions::automatic) {
+      prune(net, std::numeric_limits<double>::infinity());
+      keep_designed(net, strong, weak);
+      drop_small_pieces(net);
+    } else {
+      prune(net, net.shortest);
+    }
+  }
+  std::vector<std::uint8_t> model(surface.tris.size(), 0);
+  mark(net, model, report);
+  surface.face.set("model", std::move(model));
+  return report;
+}
+
+}  // namespace meshpipe

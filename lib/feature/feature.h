@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Model edges: patch borders, given lines, and the creases that are design, not noise.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "lib/core/mesh.h"
+#include "lib/feature/curvature.h"
+#include "lib/feature/merge.h"
+#include "lib/feature/model_edges.h"
+
+namespace meshpipe {
+
+struct FeatureOptions {
+  enum { automatic, angles, none } mode = automatic;
+  double strong = 40, weak = 20;  ///< degrees; a crease starts above the one and continues above the other
+  double size = 0;                ///< target edge length; 0: the mean edge length
+};
+
+/// Sets mode and angles from "auto", "none", "A" or "A,B" (degrees; B is A / 2 by default). Throws: BadUsage.
+void parse_angles(const std::string& text, FeatureOptions& options);
+
+struct FeatureReport {
+  int model_edges = 0, patch_edges = 0, given_edges = 0, crease_edges = 0, corners = 0;
+  int slivers = 0;  ///< triangles too thin for the target edge length to make a crease of their own
+};
+
+/// Sets face column `model`: bit i of triangle t marks the edge from corner i to i+1 as a model edge, on both
+/// sides. Model edges are borders between patches (column `patch`) and creases; automatic mode keeps the
+/// creases of components that look designed (keep_designed) and drops open or short chains.
+/// `before`: null, or the patches before some were merged; no crease follows a border that vanished unless it
+/// bends sharply. `given`: null, or flags of half-edges that are model edges in any mode.
+/// Throws: like opposite_halfedges.
+FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
+                            const std::vector<int>* before = nullptr,
+                            const std::vector<char>* given = nullptr);
+
+/// Returns unit normals of the triangles. One too thin for single-precision coordinates, or thinner than
+/// `thin` and a twentieth of its length, takes the normal of the neighbor across its longest edge; the two
+/// halves of a strip (`thin` > 0) take those of the neighbors across their second longest edges.
+std::vector<Vec3> sound_normals(const Connectivity& surface, double thin = 0);
+
+}  // namespace meshpipe

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Model edges that are given as segments in space: they stay valid however the surface is renumbered or cut.
+#pragma once
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Segment i joins tris[i][0] and tris[i][1] (the third corner repeats the second), with a label (0: none)
+/// and the two flags of INRIA's formats (0 or 1).
+struct ModelSegments : Mesh {
+  std::vector<int> tag, ridge, required;
+};
+
+/// Returns per half-edge the number of a segment on which it lies, or -1: its ends and its midpoint are
+/// within a millionth of the diagonal of segments.
+std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments);
+
+}  // namespace meshpipe

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/lines/lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/error.h"
+#include "lib/core/number.h"
+#include "lib/core/topology.h"
+#include "lib/lines/noncrossing.h"
+
+namespace meshpipe {
+namespace {
+
+// What decides about corners and segments, in units of the size h unless said otherwise.
+constexpr double border_reach = 2;     // borders of scans are rougher than creases, which mfeature has chosen
+constexpr double corner_apart = 0.5;   // on a rough border only the sharpest corner within this counts,
+constexpr double sharper = 1.1;        // unless another one turns almost as much (ratio),
+constexpr double too_close = 0.15;     // and is farther away than this
+constexpr double most_sag = 1.0 / 16;  // of a segment from its model edge, before segments become shorter
+constexpr double least_share = 0.8;    // of h, down to which they do
+constexpr double cut_off = 0.1;        // of h: a segment that is farther off its chain cuts a bend off
+constexpr double in_line = 1e-6;       // radians: border edges that turn by less are pieces of one
+constexpr double most_segments = 1e8;  // of all lines: 2.4 GB
+
+/// An edge that lines run along; right = -1 on the mesh border.
+struct SpecialEdge {
+  int a, b, kind;
+  int left, right;  ///< parts on the left and the right of a -> b
+  int tag;          ///< label, 0: none
+};
+
+std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>& part,
+                                       const std::vector<int>* tag = nullptr) {
+  const std::vector<int> opposite = opposite_halfedges(s.tris, static_cast<int>(s.points.size()));
+  const Connectivity mesh{s, opposite, model_of(s)};
+  std::vector<SpecialEdge> edges;
+  for (int h = 0; h < mesh.n_half_edges(); ++h) {
+    const int o = opposite[h];
+    if (o >= 0 && o < h) continue;
+    const int left = part[h / 3], right = o < 0 ? -1 : part[o / 3];
+    const bool model = o >= 0 && (mesh.is_model(h) || mesh.is_model(o));
+    if (o >= 0 && left == right && !model) continue;
+    const int kind = o < 0 ? border_line : model ? model_line : interface_line;
+    edges.push_back(
+        {mesh.from(h), mesh.to(h), kind, left, right, tag && kind != interface_line ? (*tag)[h] : 0});
+  }
+  return edges;
+}
+
+/// Chains the edges between joints (vertices where their number is not two, and `corner` ones), then the
+/// loops that are left, each from its smallest vertex. A change of label is a joint. Adds their labels to
+/// `tag`.
+Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner,
+                   std::vector<int>* tag = nullptr) {
+  const int n_vertices = static_cast<int>(corner.size());
+  std::vector<int> start(n_vertices + 1, 0), star(2 * edges.size());
+  for (const SpecialEdge& e : edges) ++start[e.a + 1], ++start[e.b + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
+    star[at[edges[i].a]++] = i;
+    star[at[edges[i].b]++] = i;
+  }
+  auto is_joint = [&](int v) {
+    return corner[v] || start[v + 1] - start[v] != 2 ||
+           edges[star[start[v]]].tag != edges[star[start[v] + 1]].tag;
+  };
+
+  Chains chains;
+  std::vector<char> used(edges.size(), 0);
+  auto walk = [&](int v, int e, bool closed) {
+    const SpecialEdge& first = edges[e];
+    const bool along = first.a == v;
+    Chain c{first.kind, static_cast<int>(chains.vertex.size()), 1,
+            closed,     along ? first.left : first.right,       along ? first.right : first.left};
+    const int origin = v;
+    chains.vertex.push_back(v);
+    for (;;) {
+      used[e] = 1;
+      v = edges[e].a == v ? edges[e].b : edges[e].a;
+      chains.vertex.push_back(v);
+      ++c.count;
+      if (closed ? v == origin : is_joint(v)) break;
+      const int s = start[v];
+      e = star[s] == e ? star[s + 1] : star[s];
+    }
+    chains.chain.push_back(c);
+    if (tag) tag->push_back(first.tag);
+  };
+  for (bool closed : {false, true})
+    for (int v = 0; v < n_vertices; ++v) {
+      if (start[v] == start[v + 1] || (!closed && !is_joint(v))) continue;
+      for (int i = start[v]; i < start[v + 1]; ++i)
+        if (!used[star[i]]) walk(v, star[i], closed);
+    }
+  return chains;
+}
+
+/// A chain by its arc length.
+class Course {
+ public:
+  Course(const Surface& s, const Chains& chains, const Chain& c)
+      : points_(s.points), vertex_(&chains.vertex[c.first]), closed_(c.closed), length_(c.count, 0) {
+    for (int i = 1; i < c.count; ++i)
+      length_[i] = length_[i - 1] + norm(points_[vertex(i)] - points_[vertex(i - 1)]);
+  }
+  int vertex(int i) const { return vertex_[i]; }
+  double length(int i) const { return length_[i]; }
+  /// Returns the angle by which the line turns at its vertex i between its points `reach` before and after,
+  /// or its ends; on a closed line at most a twelfth of its length, where a circle turns by 30 degrees.
+  double turn(int i, double reach) const {
+    const auto [back, ahead] = within(i, reach);
+    const Vec3 x = points_[vertex(i)];
+    return angle(x - at(length_[i] - back), at(length_[i] + ahead) - x);
+  }
+  /// Returns one over the radius of the circle that turns as much there.
+  double curvature(int i, double reach) const {
+    const auto [back, ahead] = within(i, reach);
+    return back > 0 && ahead > 0 ? 2 * turn(i, reach) / (back + ahead) : 0;
+  }
+
+ private:
+  std::array<double, 2> within(int i, double reach) const {
+    const double total = length_.back(), most = closed_ ? total / 12 : total;
+    return {std::min({reach, most, closed_ ? most : length_[i]}),
+            std::min({reach, most, closed_ ? most : total - length_[i]})};
+  }
+  Vec3 at(double l) const {
+    const double total = length_.back();
+    if (closed_) l = l < 0 ? l + total : l > total ? l - total : l;
+    int i = static_cast<int>(std::upper_bound(length_.begin(), length_.end(), l) - length_.begin());
+    i = std::clamp(i, 1, static_cast<int>(length_.size()) - 1);
+    const double d = length_[i] - length_[i - 1];
+    const double t = d > 0 ? std::clamp((l - length_[i - 1]) / d, 0.0, 1.0) : 0;
+    return lerp(points_[vertex(i - 1)], points_[vertex(i)], t);
+  }
+
+  const std::vector<Vec3>& points_;
+  const int* vertex_;
+  bool closed_;
+  std::vector<double> length_;
+};
+
+/// Marks the inner vertices of a chain that turn by more than `limit` at every scale from its edges up to the
+/// size. The zig-zag of a scan's border fades with scale; a circle is straight at the small ones.
+void mark_corners(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
+                  double limit, std::vector<char>& corner) {
+  const Course course(s, chains, c);
+  struct Candidate {
+    int index;
+    double turn;
+  };
+  std::vector<Candidate> found;
+  for (int i = c.closed ? 0 : 1; i < c.count - 1; ++i) {
+    const int v = course.vertex(i);
+    const Vec3 x = s.points[v];
+    double turn =
+        angle(x - s.points[course.vertex(i > 0 ? i - 1 : c.count - 2)], s.points[course.vertex(i + 1)] - x);
+    const double reach = (c.kind == border_line ? border_reach : 1) * size[v];
+    for (double scale : {0.25, 0.5, 1.0})
+      if (turn > limit) turn = std::min(turn, course.turn(i, scale * reach));
+    if (turn > limit) found.push_back({i, turn});
+  }
+  // on a rough border the neighbors of a corner turn as well, but less
+  const int n = static_cast<int>(found.size());
+  for (int k = 0; k < n; ++k) {
+    const double h = size[course.vertex(found[k].index)];
+    bool sharpest = true;
+    for (int step : {-1, 1}) {
+      if (c.kind != border_line) break;
+      for (int far = 1; far < n && sharpest; ++far) {
+        int j = k + step * far;
+        if (!c.closed && (j < 0 || j >= n)) break;
+        j = (j + n) % n;
+        double apart = std::abs(course.length(found[j].index) - course.length(found[k].index));
+        if (c.closed) apart = std::min(apart, course.length(c.count - 1) - apart);
+        if (apart > corner_apart * h) break;
+        // much closer than h even corners that are equally sharp cannot both be kept
+        sharpest = apart > too_close * h
+                       ? found[j].turn < sharper * found[k].turn
+                       : found[j].turn < found[k].turn || (found[j].turn == found[k].turn && j > k);
+      }
+    }
+    if (sharpest) corner[course.vertex(found[k].index)] = 1;
+  }
+}
+
+/// Marks ends, junctions and turns of the border and model edges, whatever the parts.
+std::vector<char> mark_corners(const Surface& s, const std::vector<double>& size,
+                               const std::vector<SpecialEdge>& edges, double limit) {
+  std::vector<char> corner(s.points.size(), 0);
+  std::vector<SpecialEdge> kept;
+  for (const SpecialEdge& e : edges)
+    if (e.kind != interface_line) kept.push_back(e);
+  std::vector<int> degree(s.points.size(), 0), kinds(s.points.size(), 0);
+  for (const SpecialEdge& e : kept)
+    for (int v : {e.a, e.b}) {
+      ++degree[v];
+      kinds[v] |= 1 << e.kind;
+    }
+  for (std::size_t v = 0; v < s.points.size(); ++v)
+    corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
+  const Chains chains = chain_edges(kept, corner);
+  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, corner);
+  return corner;
+}
+
+/// log(1 + x) / x
+double log_over(double x) { return std::abs(x) < 1e-8 ? 1 - 0.5 * x : std::log1p(x) / x; }
+
+/// Returns the sizes along a chain, reduced where a model edge bends so much that its segments would sag, as
+/// around a hole of about that size.
+std::vector<double> sizes_along(const Surface& s, const std::vector<double>& size, const Chains& chains,
+                                const Chain& c) {
+  std::vector<double> along(c.count);
+  for (int i = 0; i < c.count; ++i) along[i] = size[chains.vertex[c.first + i]];
+  if (c.kind != model_line) return along;
+  const Course course(s, chains, c);
+  for (int i = 0; i < c.count; ++i) {
+    const double h = along[i];
+    // the sag of a segment of length l is l^2 / 8R
+    if (const double bend = h * course.curvature(i, 0.5 * h); bend > 0)
+      along[i] = h * std::clamp(std::sqrt(8 * most_sag / bend), least_share, 1.0);
+  }
+  return along;
+}
+
+/// Computes the integral of 1/h along each chain up to each of its vertices, exact for h linear on edges.
+void measure_chains(const Surface& s, const std::vector<double>& size, Chains& chains) {
+  chains.measure.assign(chains.vertex.size(), 0);
+  chains.ratio.assign(chains.vertex.size(), 0);
+  for (const Chain& c : chains.chain) {
+    const std::vector<double> h = sizes_along(s, size, chains, c);
+    for (int i = 1; i < c.count; ++i) {
+      const int at = c.first + i;
+      const double x = (h[i] - h[i - 1]) / h[i - 1];
+      chains.ratio[at - 1] = x;
+      chains.measure[at] =
+          chains.measure[at - 1] +
+          norm(s.points[chains.vertex[at]] - s.points[chains.vertex[at - 1]]) / h[i - 1] * log_over(x);
+    }
+  }
+}
+
+/// Does a segment of the divided line cut a bend off, since the number of segments was rounded down? Only
+/// where its sag, which grows with the square of its length, is a tenth larger than that of length h.
+bool cuts_off_a_bend(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
+                     const std::vector<Cut>& cuts) {
+  const int n = static_cast<int>(cuts.size()) - 1;
+  const double segment = (cuts[n].measure - cuts[0].measure) / n;
+  if (c.kind == interface_line || segment * segment <= 1.1) return false;
+  const int* v = &chains.vertex[c.first];
+  auto point = [&](const Cut& cut) {
+    return cut.t > 0 ? lerp(s.points[v[cut.piece]], s.points[v[cut.piece + 1]], cut.t)
+                     : s.points[v[cut.piece]];
+  };
+  for (int k = 0; k < n; ++k) {
+    const Vec3 p = point(cuts[k]), chord = point(cuts[k + 1]) - p;
+    for (int i = cuts[k].piece + 1; i <= cuts[k + 1].piece; ++i)
+      if (norm(cross(chord, s.points[v[i]] - p)) > cut_off * size[v[i]] * norm(chord)) return true;
+  }
+  return false;
+}
+
+/// Returns the number of segments that each line is divided into at first: the rounded integral of 1/h, at
+/// least 1, or 3 for a loop.
+std::vector<int> segment_counts(const Chains& chains) {
+  std::vector<int> count;
+  std::vector<std::array<int, 3>> single;  // ends and line of those with one segment
+  double all = 0;
+  auto total = [&](int line) {
+    const Chain& c = chains.chain[line];
+    return chains.measure[c.first + c.count - 1];
+  };
+  for (int l = 0; l < static_cast<int>(chains.chain.size()); ++l) {
+    const Chain& c = chains.chain[l];
+    const int a = chains.vertex[c.first], b = chains.vertex[c.first + c.count - 1];
+    all += total(l);
+    if (!(all <= most_segments))
+      throw GoalMissed("the sizes ask for more than " + shown(most_segments) +
+                       " segments of lines; ask for larger sizes");
+    const int n = static_cast<int>(std::round(total(l)));
+    count.push_back(std::max(a == b ? 3 : 1, n));
+    if (count.back() == 1) single.push_back({std::min(a, b), std::max(a, b), l});
+  }
+  // of several lines between the same two vertices only the shortest may be a single segment
+  std::sort(single.begin(), single.end(), [&](const auto& x, const auto& y) {
+    const double mx = total(x[2]), my = total(y[2]);
+    return std::tie(x[0], x[1], mx, x[2]) < std::tie(y[0], y[1], my, y[2]);
+  });
+  for (std::size_t i = 1; i < single.size(); ++i)
+    if (single[i][0] == single[i - 1][0] && single[i][1] == single[i - 1][1]) count[single[i][2]] = 2;
+  return count;
+}
+
+}  // namespace
+
+std::vector<char> input_border(const Surface& surface) {
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const Connectivity mesh{surface, opposite};
+  const std::vector<int>* source = surface.face.has("origin") ? &surface.face.get<int>("origin") : nullptr;
+  std::vector<char> found(mesh.n_vertices(), 0);
+  std::vector<int> in(mesh.n_vertices(), -1);  // the border half-edge that ends at a vertex
+  for (int h = 0; h < mesh.n_half_edges(); ++h)
+    if (mesh.is_border(h)) in[mesh.to(h)] = h;
+  for (int h = 0; h < mesh.n_half_edges(); ++h) {
+    if (!mesh.is_border(h)) continue;
+    const int v = mesh.from(h), before = in[v];
+    const Vec3 p = mesh.point(v), a = mesh.point(mesh.from(before)), b = mesh.point(mesh.to(h));
+    found[v] = !source || (*source)[h / 3] != (*source)[before / 3] || angle(p - a, b - p) > in_line;
+  }
+  return found;
+}
+
+void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) {
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Vec3 p = mesh.points[v];
+    const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const double spacing = std::nextafter(far, HUGE_VAL) - far;
+    if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
+    throw GoalMissed("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                     ", but coordinates there are " + shown(spacing) + " apart, and sizes of at least " +
+                     shown(least_spacings * spacing) +
+                     " are expected; move the surface to the origin, weld it, or ask for larger sizes");
+  }
+}
+
+std::vector<char> model_corners(const Surface& surface, double corner) {
+  return mark_corners(surface, surface.vertex.get<double>("size"),
+                      special_edges(surface, surface.face.get<int>("part")), corner);
+}
+
+std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
+  std::vector<char> corner = model_corners(surface);
+  std::vector<int> tag(surface.points.size(), -1);  // of a line that ends at the vertex
+  for (const Line& l : lines.lines)
+    for (int i : {l.first, l.first + l.count - 1}) {
+      const LinePoint& p = lines.points[i];
+      if (l.closed || l.kind == interface_line || p.a != p.b) continue;
+      if (tag[p.a] >= 0 && tag[p.a] != l.tag) corner[p.a] = 1;
+      tag[p.a] = l.tag;
+    }
+  if (std::none_of(lines.lines.begin(), lines.lines.end(), [](const Line& l) { return l.kept != 0; }))
+    return corner;
+  const std::vector<char> kept = input_border(surface);
+  for (std::size_t v = 0; v < corner.size(); ++v) corner[v] |= kept[v];
+  return corner;
+}
+
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner,
+                 const std::vector<int>* tag, bool keep_border) {
+  const int n_vertices = static_cast<int>(surface.points.size());
+  if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
+  const auto& size = surface.vertex.get<double>("size");
+  const auto& part = surface.face.get<int>("part");
+  for (int v = 0; v < n_vertices; ++v)
+    if (!(size[v] > 0))
+      throw BadInput("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                     ", but sizes are positive");
+  refuse_unresolved_sizes(surface, size);
+  for (int t = 0; t < static_cast<int>(part.size()); ++t)
+    if (part[t] < 0 || part[t] >= static_cast<int>(charts.size()))
+      throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
+                     ", but there are " + std::to_string(charts.size()) + " charts");
+
+  const std::vector<SpecialEdge> edges = special_edges(surface, part, tag);
+  std::vector<int> chain_tag;
+  Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner), &chain_tag);
+  measure_chains(surface, size, chains);
+  Division division(chains.chain.size());
+  const std::vector<int> count = segment_counts(chains);
+  for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+    division[l] = divide(chains, l, count[l]);
+    if (cuts_off_a_bend(surface, size, chains, chains.chain[l], division[l]))
+      division[l] = divide(chains, l, count[l] + 1);
+  }
+  if (keep_border) {
+    const std::vector<char> kept = input_border(surface);
+    for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+      const Chain& c = chains.chain[l];
+      if (c.kind != border_line) continue;
+      division[l].clear();
+      for (int i = 0; i < c.count; ++i)
+        if (i == 0 || i == c.count - 1 || kept[chains.vertex[c.first + i]])
+          division[l].push_back({i, 0, chains.measure[c.first + i]});
+    }
+  }
+  refine_until_noncrossing(chains, charts, n_vertices, division);
+
+  Lines lines;
+  for (int l = 0; l < static_cast<int>(division.size()); ++l) {
+    const Chain& c = chains.chain[l];
+    const int n = static_cast<int>(division[l].size()) - (c.closed ? 1 : 0);
+    lines.lines.push_back({c.kind, chain_tag[l], static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0,
+                           keep_border && c.kind == border_line});
+    for (int i = 0; i < n; ++i) {
+      const Cut& cut = division[l][i];
+      const int a = chains.vertex[c.first + cut.piece];
+      lines.points.push_back({a, cut.t > 0 ? chains.vertex[c.first + cut.piece + 1] : a, cut.t});
+    }
+    const int low = std::min(c.left, c.right), high = std::max(c.left, c.right);
+    if (low >= 0 && low != high) lines.uses.push_back({l, low});
+    lines.uses.push_back({l, high});
+  }
+  return lines;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lines of the result: borders, model edges and interfaces between parts, divided by the size field (the
+// paper's step 4).
+#pragma once
+#include "lib/core/chart.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+enum LineKind { border_line = 0, model_line = 1, interface_line = 2 };
+
+/// A point on edge (a, b) of the surface at a + t (b - a); a == b: on the vertex. Both charts of the edge
+/// know its (u,v).
+struct LinePoint {
+  int a, b;
+  double t;
+};
+
+/// Points first .. first+count-1 of Lines::points; an open line has both ends (vertices), a closed one
+/// repeats nothing. Segments join consecutive points, and the last to the first when closed.
+struct Line {
+  int kind, tag, first, count, closed;
+  int kept = 0;  ///< a border whose points are those of the input
+};
+
+struct LineUse {
+  int line, part;
+};
+
+struct Lines {
+  std::vector<Line> lines;
+  std::vector<LineUse> uses;
+  std::vector<LinePoint> points;
+};
+
+constexpr double corner_turn = 0.7;  ///< radians; a regular octagon has 8 corners, a circle none
+
+/// Marks the vertices that a remeshed surface keeps: ends and junctions of the mesh border and model edges,
+/// and vertices where these turn by more than `corner` radians at every scale from their edges up to the size
+/// (so that the zig-zag of scans has none).
+std::vector<char> model_corners(const Surface& surface, double corner = corner_turn);
+
+/// Marks the border vertices of the input, leaving out those where a cut divided a border edge: there both
+/// border edges belong to one triangle of face column `origin`, and are in line.
+std::vector<char> input_border(const Surface& surface);
+
+/// A size below this number of spacings of the coordinates is refused: lengths are rounded by a tenth there,
+/// and meshing need not end. A sphere of 1,500 triangles passes with 70 spacings, and hangs with 12.
+constexpr double least_spacings = 16;
+
+/// Throws GoalMissed naming a vertex whose size is too small for its coordinates. `size` is per vertex;
+/// values that are not positive are skipped.
+void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
+
+/// Chains border edges, edges between parts, and model edges into lines, which end at junctions, at
+/// model_corners and where `tag` (per half-edge, or null) changes. Divides each evenly in the integral of 1/h
+/// (lines.cc says how), then refines until lines meet in no chart except at common ends. With keep_border,
+/// borders have exactly the input's points and their ends of other lines.
+/// Requires: vertex column `size` (h), face column `part`; charts in part order, positively oriented.
+/// Throws: NotAdmissible without sizes; BadInput naming a vertex whose size is not positive or a face whose
+/// part has no chart; GoalMissed for sizes too small, or naming two lines that meet in a chart.
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = corner_turn,
+                 const std::vector<int>* tag = nullptr, bool keep_border = false);
+
+/// Marks what a mesh with these lines keeps of a surface: model_corners, vertices where the label of lines
+/// changes, and those of borders that are kept.
+std::vector<char> line_corners(const Surface& surface, const Lines& lines);
+
+}  // namespace meshpipe

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Noncrossing refinement: chains of edges are divided so that their segments are drawn in every chart as the
+// chains are, without crossings, every loop with the same orientation and the same lines inside.
+#pragma once
+#include <vector>
+
+#include "lib/core/chart.h"
+
+namespace meshpipe {
+
+/// A chain of edges: `count` vertices from Chains::vertex[first] on; a closed one repeats its first vertex at
+/// its end. `left` and `right` are the parts on its sides (equal: it lies inside one), -1 beyond
+/// the mesh border.
+struct Chain {
+  int kind, first, count;
+  bool closed;
+  int left, right;
+};
+
+struct Chains {
+  std::vector<Chain> chain;
+  std::vector<int> vertex;
+  std::vector<double> measure;  ///< integral of 1/h from the chain's start, per entry of `vertex`
+  std::vector<double> ratio;    ///< per entry: relative change of h along the edge to the next one
+};
+
+/// A point of a divided chain: at t along the edge after its vertex `piece`, 0 <= t < 1; t = 0: on the
+/// vertex.
+struct Cut {
+  int piece;
+  double t;
+  double measure;
+};
+
+/// Per chain its cuts in order, both ends included.
+using Division = std::vector<std::vector<Cut>>;
+
+/// Divides a chain into n segments of equal measure.
+std::vector<Cut> divide(const Chains& chains, int line, int n);
+
+/// Adds cuts until the segments of all chains form the same plane drawing in each chart as the chains do: no
+/// two meet except at common ends, and loops keep their orientation, most of their area, and the lines inside
+/// them. Neighboring segments of a refined line differ by at most three times in measure. Ends, since a chain
+/// that is cut at all its vertices is drawn as it is.
+/// Throws: GoalMissed naming part and lines if the chart itself is not one-to-one.
+void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts, int n_vertices,
+                              Division& division);
+
+}  // namespace meshpipe

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/mesh2d/mesh2d.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "lib/core/error.h"
+#include "lib/core/number.h"
+#include "lib/mesh2d/adapt.h"
+#include "lib/mesh2d/plane_metric.h"
+#include "lib/mesh2d/refine.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int smoothing_sweeps = 4;
+
+/// Returns a bound on the points of a chart's mesh, from which on it is taken for endless: many times the
+/// number that its triangles ask for at the smallest of their corners' sizes.
+std::size_t most_points(const Chart& chart, const std::vector<double>& size, int n_line_points) {
+  constexpr double many = 16;  // distorted charts take up to twice the number
+  double asked = n_line_points + static_cast<double>(chart.uv.size());
+  for (const Tri& t : chart.mesh.tris) {
+    const auto& p = chart.mesh.points;
+    const double h = std::min({size[t[0]], size[t[1]], size[t[2]]});
+    asked += norm(area_vector(p[t[0]], p[t[1]], p[t[2]])) / (std::sqrt(3) * h * h);
+  }
+  return static_cast<std::size_t>(std::min(many * asked + 1000, 357913941.0));  // half-edges are int
+}
+
+/// Refuses a size at a chart vertex that the numbers (u, v) cannot resolve; lib/lines/lines.h says why.
+void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
+  std::vector<char> seen(chart.uv.size(), 0);
+  for (int h = 0; h < 3 * static_cast<int>(chart.mesh.tris.size()); ++h) {
+    const int v = origin(chart.mesh.tris, h);
+    if (std::exchange(seen[v], 1)) continue;
+    const double far = std::max(std::abs(chart.uv[v].x), std::abs(chart.uv[v].y));
+    const Site site = field.at(Place{h / 3, 1.0 * (h % 3 == 0), 1.0 * (h % 3 == 1), 1.0 * (h % 3 == 2)});
+    const LogMetric m = site.metric;
+    const double stretch = std::exp(0.25 * (m.a + m.c) + 0.5 * std::hypot(0.5 * (m.a - m.c), m.b));
+    const double spacing = (std::nextafter(far, HUGE_VAL) - far) * stretch * site.size;
+    if (!(site.size < least_spacings * spacing)) continue;
+    throw GoalMissed("vertex " + std::to_string(chart.mesh.vertex[v]) + " has size " + shown(site.size) +
+                     ", but points of the map are " + shown(spacing) +
+                     " apart there, and sizes of at least " + shown(least_spacings * spacing) +
+                     " are expected; ask for larger sizes");
+  }
+}
+
+/// The points and segments that the lines of a part make in its chart.
+struct Drawing {
+  std::vector<int> row;  // of Lines::points, ascending
+  std::vector<FixedEdge> segments;
+};
+
+Drawing draw(const PartLines& parts, int part) {
+  Drawing d;
+  for (int i = parts.start[part]; i < parts.start[part + 1]; ++i) {
+    const int line = parts.line[i];
+    if (i > parts.start[part] && line == parts.line[i - 1]) continue;
+    const Line& l = parts.lines.lines[line];
+    // a model line may lie inside the part: it does if no other part uses it
+    const bool border = l.kind != model_line || parts.shared[line];
+    for (int k = 0; k < l.count; ++k) {
+      const int a = parts.point[l.first + k];
+      d.row.push_back(a);
+      if (k + 1 < l.count || l.closed)
+        d.segments.push_back({a, parts.point[l.first + (k + 1) % l.count], border});
+    }
+  }
+  std::sort(d.row.begin(), d.row.end());
+  d.row.erase(std::unique(d.row.begin(), d.row.end()), d.row.end());
+  auto number = [&](int row) {
+    return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin());
+  };
+  for (FixedEdge& s : d.segments) s = {number(s.a), number(s.b), s.border};
+  return d;
+}
+
+/// Finds the places of line points: chart vertices by the number of their surface vertex, for the few that
+/// are asked for, and edges between them.
+class Numbers {
+ public:
+  Numbers(const Chart& chart, std::vector<int> wanted) : chart_(chart), global_(std::move(wanted)) {
+    std::sort(global_.begin(), global_.end());
+    global_.erase(std::unique(global_.begin(), global_.end()), global_.end());
+    half_edge_.assign(global_.size(), -1);
+    std::vector<int> slot(chart.mesh.vertex.size());
+    for (std::size_t v = 0; v < slot.size(); ++v) slot[v] = find(chart.mesh.vertex[v]);
+    for (int h = 0; h < 3 * (int)chart.mesh.tris.size(); ++h) {
+      int k = slot[origin(chart.mesh.tris, h)];
+      // on the border the first half-edge of the fan, so that turning left meets them all
+      if (k >= 0 && (half_edge_[k] < 0 || chart.opposite[h] < 0)) half_edge_[k] = h;
+    }
+  }
+
+  /// Returns the place of a line point; its face is -1 if the chart does not have that edge or vertex.
+  Place place(const LinePoint& p) const {
+    int k = find(p.a), first = k < 0 ? -1 : half_edge_[k], h = first;
+    if (h < 0) return {};
+    if (p.a == p.b) return on_edge(h, 1, 0);
+    do {
+      if (vertex(target(chart_.mesh.tris, h)) == p.b) return on_edge(h, 1 - p.t, p.t);
+      int in = prev(h);  // runs towards a
+      if (vertex(origin(chart_.mesh.tris, in)) == p.b) return on_edge(in, p.t, 1 - p.t);
+      h = chart_.opposite[in];
+    } while (h >= 0 && h != first);
+    return {};
+  }
+
+ private:
+  int vertex(int local) const { return chart_.mesh.vertex[local]; }
+  static Place on_edge(int h, double origin_weight, double target_weight) {
+    double b[3] = {0, 0, 0};
+    b[h % 3] = origin_weight;
+    b[(h + 1) % 3] = target_weight;
+    return {h / 3, b[0], b[1], b[2]};
+  }
+  int find(int vertex) const {
+    auto i = std::lower_bound(global_.begin(), global_.end(), vertex);
+    return i != global_.end() && *i == vertex ? (int)(i - global_.begin()) : -1;
+  }
+  const Chart& chart_;
+  std::vector<int> global_, half_edge_;
+};
+
+PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLines& parts, int part,
+               Mesher mesher) {
+  const Lines& lines = parts.lines;
+  Drawing drawing = draw(parts, part);
+  int n = (int)drawing.row.size();
+  std::vector<int> wanted;
+  for (int row : drawing.row) wanted.push_back(lines.points[row].a);
+  Numbers numbers(chart, std::move(wanted));
+
+  SizeMetric field(chart, size);
+  refuse_unresolved_sizes(chart, field);
+  std::vector<Vec2> uv(n);
+  std::vector<Site> site(n);
+  for (int i = 0; i < n; ++i) {
+    const LinePoint& p = lines.points[drawing.row[i]];
+    Place place = numbers.place(p);
+    if (place.face < 0)
+      throw NotAdmissible("line point " + std::to_string(drawing.row[i]) + " lies on edge " +
+                          std::to_string(p.a) + " " + std::to_string(p.b) + ", which is not in the chart");
+    site[i] = field.at(place);
+    const Tri& t = chart.mesh.tris[place.face];
+    // as the third weight is zero, the same bits as linear interpolation along the edge
+    uv[i] = place.b0 * chart.uv[t[0]] + place.b1 * chart.uv[t[1]] + place.b2 * chart.uv[t[2]];
+  }
+
+  SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n, most_points(chart, size, n), {}};
+  switch (mesher) {
+    case Mesher::frontal:
+      refine_frontal(m, field);
+      break;
+    case Mesher::delaunay:
+      refine_delaunay(m, field);
+      break;
+    case Mesher::meshadapt:
+      adapt_edges(m, field);
+      break;
+  }
+  smooth_in_plane(m, field, smoothing_sweeps);
+
+  PlaneMesh result;
+  result.tris = std::move(m.cdt.tris);
+  result.opposite = std::move(m.cdt.opposite);
+  for (std::uint8_t kind : m.cdt.fixed) result.on_line.push_back(kind != Cdt::free_edge);
+  result.points.resize(m.cdt.points.size());
+  for (int v = 0; v < (int)result.points.size(); ++v)
+    result.points[v] = {m.cdt.points[v], v < n ? drawing.row[v] : -1, m.site[v].place};
+  return result;
+}
+
+}  // namespace
+
+PartLines::PartLines(const Lines& given, int n_parts)
+    : lines(given),
+      start(n_parts + 1, 0),
+      line(given.uses.size()),
+      shared(given.lines.size()),
+      point(given.points.size()) {
+  std::vector<int> part(lines.lines.size(), -1);
+  for (const LineUse& u : lines.uses) {
+    ++start[u.part + 1];
+    if (part[u.line] >= 0 && part[u.line] != u.part) shared[u.line] = 1;
+    part[u.line] = u.part;
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (const LineUse& u : lines.uses) line[at[u.part]++] = u.line;
+  for (int p = 0; p < n_parts; ++p) std::sort(line.begin() + start[p], line.begin() + start[p + 1]);
+
+  std::iota(point.begin(), point.end(), 0);
+  std::vector<std::pair<int, int>> ends;  // vertex, row
+  for (const Line& l : lines.lines)
+    for (int row : {l.first, l.first + l.count - 1})
+      if (lines.points[row].a == lines.points[row].b) ends.push_back({lines.points[row].a, row});
+  std::sort(ends.begin(), ends.end());
+  for (int row = 0; row < (int)point.size(); ++row) {
+    const LinePoint& p = lines.points[row];
+    if (p.a != p.b) continue;
+    const auto first = std::lower_bound(ends.begin(), ends.end(), std::pair{p.a, -1});
+    if (first != ends.end() && first->first == p.a) point[row] = first->second;
+  }
+}
+
+PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
+                     Mesher mesher) {
+  try {
+    return mesh(chart, size, lines, part, mesher);
+  } catch (const GoalMissed& e) {
+    throw GoalMissed("part " + std::to_string(part) + ": " + e.what());
+  } catch (const NotAdmissible& e) {
+    throw NotAdmissible("part " + std::to_string(part) + ": " + e.what());
+  }
+}
+
+}  // namespace meshpipe

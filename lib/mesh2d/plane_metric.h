@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The metric of a chart's map, in which plane lengths are lengths on the surface over the size asked for.
+#pragma once
+#include <vector>
+
+#include "lib/core/chart.h"
+
+namespace meshpipe {
+
+/// Logarithm of a symmetric positive tensor [a b; b c]; means and interpolation of metrics are linear in it
+/// (Arsigny and others 2006), so that they never degenerate.
+struct LogMetric {
+  double a = 0, b = 0, c = 0;
+};
+inline LogMetric operator+(LogMetric x, LogMetric y) { return {x.a + y.a, x.b + y.b, x.c + y.c}; }
+inline LogMetric operator*(double s, LogMetric x) { return {s * x.a, s * x.b, s * x.c}; }
+
+/// Upper triangular factor of a metric M = F^T F: the affine map to where lengths are plain, orientation
+/// kept.
+struct Frame {
+  double xx = 1, xy = 0, yy = 1;
+  Vec2 to(Vec2 d) const { return {xx * d.x + xy * d.y, yy * d.y}; }
+  Vec2 back(Vec2 d) const { return {(d.x - xy / yy * d.y) / xx, d.y / yy}; }
+};
+Frame frame_of(LogMetric log_metric);
+
+/// J^T J of the chart's map (J = dx/du), averaged over the triangles at a vertex, weighted by area, in log
+/// space.
+std::vector<LogMetric> map_metric(const Chart& chart);
+
+/// What a vertex of a plane mesh knows of the surface.
+struct Site {
+  Place place;
+  Vec3 space;        ///< its point on the surface
+  double size = 1;   ///< h there
+  LogMetric metric;  ///< unit-edge metric M / h^2
+};
+
+/// The chart as a mesher sees it: everything linear on its triangles, M in log space.
+class SizeMetric {
+ public:
+  SizeMetric(const Chart& chart, const std::vector<double>& size);  ///< keeps references
+  const Chart& chart() const { return chart_; }
+  Site at(const Place& place) const;
+  Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
+  /// The plane's vector of a vector in space, as far as it is tangent to the chart's triangle.
+  Vec2 to_plane(int face, Vec3 d) const;
+
+ private:
+  const Chart& chart_;
+  const std::vector<double>& size_;
+  std::vector<LogMetric> map_;
+};
+
+}  // namespace meshpipe

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two meshers that insert points into a constrained Delaunay triangulation in the metric of a chart:
+// frontal-Delaunay (Rebay 1993) and Delaunay refinement at circumcenters (Bowyer, Watson 1981).
+#pragma once
+#include "lib/mesh2d/site_mesh.h"
+
+namespace meshpipe {
+
+/// Inserts points until every triangle has its size, in rows from the lines inwards, so that triangles become
+/// nearly equilateral. Ends always: a triangle that takes no point is left as it is.
+void refine_frontal(SiteMesh& mesh, const SizeMetric& field);
+
+/// Inserts the circumcenter of the largest triangle until every one has its size. Ends always.
+void refine_delaunay(SiteMesh& mesh, const SizeMetric& field);
+
+}  // namespace meshpipe

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A part of genus 0 as a topological disk with the weights of its Laplacian.
+#pragma once
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// A part of genus 0 made a topological disk: all its loops but the longest are filled by fans around virtual
+/// centres. The part's own vertices and triangles come first, then the centres and the fans.
+struct FilledDisk : Mesh {
+  std::vector<int> opposite;
+  std::vector<double> weights;  ///< of the Laplacian, per half-edge; positive
+  std::vector<int> rim;         ///< vertices of the longest loop, counter-clockwise
+  int part_vertices = 0, part_tris = 0;
+  std::vector<int> fan_begin;  ///< first triangle of each hole's fan, and the end
+};
+
+/// Is the point inside the polygon (even-odd)?
+bool encloses(const std::vector<Vec2>& polygon, Vec2 p);
+
+/// Precondition: one component, genus 0, N_B >= 1, no pinched vertex.
+FilledDisk fill_holes(const Mesh& part);
+
+}  // namespace meshpipe

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/multiscale/multiscale.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "lib/core/coarsen.h"
+#include "lib/core/fan.h"
+#include "lib/core/parallel.h"
+#include "lib/core/progress.h"
+#include "lib/core/shortest_paths.h"
+#include "lib/core/topology.h"
+#include "lib/core/union_find.h"
+#include "lib/multiscale/balance.h"
+#include "lib/multiscale/cut_line.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int directions = 4;         // of the line in the root's disk
+constexpr double least_share = 0.02;  // of the area: a smaller half is no progress
+
+/// Gives the pieces of each side, except its largest, to the other side; then both are in one piece. Pieces
+/// are those of the vertices of one sign under the edges between them: no value is zero, so the sides that
+/// the cut makes have the same connectivity.
+void drop_fragments(const Part& part, std::vector<double>& field) {
+  const int n = (int)field.size();
+  for (bool positive : {true, false}) {
+    UnionFind pieces(n);
+    for (const Tri& t : part.mesh.tris)
+      for (int k = 0; k < 3; ++k)
+        if ((field[t[k]] > 0) == (field[t[(k + 1) % 3]] > 0)) pieces.join(t[k], t[(k + 1) % 3]);
+    std::vector<int> size(n, 0);
+    int largest = -1;
+    for (int v = 0; v < n; ++v) {
+      if ((field[v] > 0) != positive) continue;
+      const int r = pieces.find(v);
+      if (++size[r]; largest < 0 || size[r] > size[largest]) largest = r;
+    }
+    std::vector<int> fragments;
+    for (int v = 0; v < n; ++v)
+      if ((field[v] > 0) == positive && pieces.find(v) != largest) fragments.push_back(v);
+    for (int v : fragments) field[v] = -field[v];
+  }
+}
+
+/// Fewest holes left, then a short cut between halves of like size.
+bool better(const Assessment& a, const Assessment& b) {
+  if (a.valid != b.valid) return a.valid;
+  if (a.loops != b.loops) return a.loops < b.loops;
+  auto cost = [](const Assessment& x) { return x.length * (1 + 4 * std::max(0., 0.3 - x.smaller_share)); };
+  return cost(a) < cost(b);
+}
+
+/// The last resort: cuts across the part, half way from its rim to its farthest vertex, which always shortens
+/// it.
+std::vector<double> across(const Part& part, const std::vector<int>& rim) {
+  const std::vector<Tri>& tris = part.mesh.tris;
+  std::vector<double> distance(part.mesh.points.size(), 1e300);
+  std::vector<int> leaving(distance.size(), -1);
+  for (int h = 0; h < (int)part.opposite.size(); ++h) leaving[origin(tris, h)] = h;
+  for (int v : rim) distance[v] = 0;
+  double farthest = 0;
+  shortest_paths(rim, distance, [&](int v, auto reach) {
+    farthest = distance[v];
+    for_each_neighbor(tris, part.opposite, leaving[v], [&](int w) {
+      reach(w, distance[v] + norm(part.mesh.points[w] - part.mesh.points[v]));
+    });
+  });
+  for (double& d : distance) {
+    d -= farthest / 2;
+    if (d == 0) d = std::numeric_limits<double>::min();
+  }
+  return distance;
+}
+
+/// A line, and what it does before it is balanced.
+struct Candidate {
+  Assessment is;
+  std::vector<double> field;
+  std::vector<std::vector<Vec2>> lines;
+};
+
+/// The lines in all directions, the best first; only the one across the part if none is any good.
+std::vector<Candidate> candidates_of(const Part& part, const CutMaps& cut) {
+  std::vector<Candidate> candidates(directions);
+  auto try_direction = [&](int i) {
+    Candidate& c = candidates[i];
+    c.lines = cut_lines(cut.disk, cut.levels, std::numbers::pi * i / directions);
+    c.field = cut_line_field(cut.disk, cut.levels, c.lines);
+    drop_fragments(part, c.field);
+    c.is = assess(part, c.field);
+  };
+  constexpr std::size_t worth_threads = 4000;  // triangles
+  if (part.mesh.tris.size() > worth_threads)
+    parallel_for(directions, try_direction);
+  else
+    for (int i = 0; i < directions; ++i) try_direction(i);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return better(a.is, b.is); });
+  if (const Assessment& best = candidates[0].is; !best.valid || best.smaller_share < least_share) {
+    candidates.resize(1);
+    candidates[0].field = across(part, cut.disk.rim);
+    candidates[0].lines.assign(cut.levels.size(), {});
+    drop_fragments(part, candidates[0].field);
+  }
+  return candidates;
+}
+
+/// The best line of a part itself.
+CutMaps best_cut_of(const Part& part, double share) {
+  CutMaps cut;
+  cut.disk = fill_holes(part.mesh);
+  cut.levels = laplace_levels(cut.disk);
+  add_progress(0.4 * share);
+  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains: then
+  // another direction may do better
+  constexpr int rounds = 8;
+  constexpr double much_longer = 1.5;
+  std::vector<Candidate> candidates = candidates_of(part, cut);
+  const Branches branches = find_branches(cut.disk, cut.levels);
+  for (Candidate& c : candidates) {
+    if (!cut.field.empty() && !c.is.valid) break;
+    reach_holes(cut.disk, {part.mesh, part.opposite}, c.field);
+    if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
+    const Assessment before = assess(part, c.field);
+    balance_sides(cut.disk, {part.mesh, part.opposite}, branches, part.crease, c.field, rounds);
+    drop_fragments(part, c.field);
+    const Assessment after = assess(part, c.field);
+    if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
+    cut.field = std::move(c.field);
+    cut.lines = std::move(c.lines);
+    break;
+  }
+  add_progress(0.3 * share);
+  return cut;
+}
+
+}  // namespace
+
+Part make_part(ConnectedPart from) {
+  Part part{{}, std::move(from.vertex), std::move(from.opposite), std::move(from.model), {}};
+  part.mesh = std::move(from);
+  for (std::size_t h = 0; h < 3 * part.model.size(); ++h) {
+    if (part.opposite[h] < 0 || !(part.model[h / 3] >> h % 3 & 1)) continue;
+    part.crease.resize(part.opposite.size(), 0);
+    part.crease[h] = 1;
+  }
+  return part;
+}
+
+Assessment assess(const Part& part, const std::vector<double>& field) {
+  const std::vector<Vec3>& p = part.mesh.points;
+  Assessment a;
+  int chi[2] = {0, 0};
+  double area[2] = {0, 0};
+  UnionFind sides(field.size());
+  int pieces = (int)field.size();
+  for (double f : field) ++chi[f > 0];
+  if (chi[0] == 0 || chi[1] == 0) return a;
+  for (std::size_t t = 0; t < part.mesh.tris.size(); ++t) {
+    const Tri& c = part.mesh.tris[t];
+    const double third = norm(area_vector(p[c[0]], p[c[1]], p[c[2]])) / 6;
+    Vec3 crossing[2];
+    int crossings = 0, positive = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int u = c[k], v = c[(k + 1) % 3], h = 3 * (int)t + k;
+      positive += field[u] > 0;
+      area[field[u] > 0] += third;
+      if ((field[u] > 0) != (field[v] > 0)) {
+        crossing[crossings++ & 1] = lerp(p[u], p[v], field[u] / (field[u] - field[v]));
+      } else if (part.opposite[h] <= h) {  // every edge once
+        --chi[field[u] > 0];
+        pieces -= sides.join(u, v);
+      }
+    }
+    if (crossings == 2) a.length += norm(crossing[1] - crossing[0]);
+    if (positive % 3 == 0) ++chi[positive == 3];
+  }
+  a.valid = pieces == 2;
+  a.loops = 4 - chi[0] - chi[1];
+  a.smaller_share = std::min(area[0], area[1]) / (area[0] + area[1]);
+  return a;
+}
+
+CutMaps best_cut(const Part& part, double share, std::vector<double>& field) {
+  constexpr int enough = 12000, at_most = 6;  // triangles; of them for one
+  constexpr double most_turn = 25 * std::numbers::pi / 180;
+  constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
+  const double n = (double)part.mesh.tris.size();
+  Coarse coarse;
+  if (n > worth * enough)
+    coarse = coarsen({part.mesh, part.opposite, part.model}, std::max(enough, (int)(n / at_most)), most_turn);
+  if (coarse.tris.empty() || n < worth * (double)coarse.tris.size()) {
+    CutMaps cut = best_cut_of(part, share);
+    field = cut.field;
+    return cut;
+  }
+  // the sides that coarse vertices give to those that have become them have as many pieces
+  ConnectedPart model;
+  static_cast<Mesh&>(model) = coarse;
+  model.opposite = opposite_halfedges(coarse.tris, (int)coarse.points.size());
+  model.model = coarse.model;
+  CutMaps cut = best_cut_of(make_part(std::move(model)), share);
+  field.clear();
+  for (int v : coarse.of) field.push_back(cut.field[v]);
+  return cut;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The line along which a long part of genus 0 falls into two (the paper's section 3).
+#pragma once
+#include "lib/core/connectivity.h"
+#include "lib/multiscale/levels.h"
+#include "lib/multiscale/maxcut.h"
+
+namespace meshpipe {
+
+/// A part of genus 0.
+struct Part {
+  Mesh mesh;
+  std::vector<int> vertex;  ///< its vertices in the whole
+  std::vector<int> opposite;
+  std::vector<std::uint8_t> model;  ///< face column; empty if there are no model edges
+  std::vector<char> crease;         ///< of half-edges: model edges inside the part; empty if there are none
+};
+Part make_part(ConnectedPart part);
+
+/// What the zero level of a field does to a part.
+struct Assessment {
+  bool valid = false;        ///< both sides are there, each in one piece
+  int loops = 0;             ///< of both halves together; 2 for two disks
+  double length = 0;         ///< of the cut
+  double smaller_share = 0;  ///< of the area
+};
+Assessment assess(const Part& part, const std::vector<double>& field);
+
+/// How a cut was found, for pictures: on the part, or on a coarse model of a large one (lib/core/coarsen.h).
+struct CutMaps {
+  FilledDisk disk;
+  std::vector<Level> levels;
+  std::vector<std::vector<Vec2>> lines;  ///< of each level, in its frame
+  std::vector<double> field;             ///< of their vertices: its zero level is the cut, except for detail
+};
+
+/// Finds the best line that cuts a part in two: drawn through all levels of its Laplace maps in several
+/// directions, then balanced so that it follows the part's branches along opposite sides.
+/// `field` receives a value per vertex of the part, never zero, whose zero level is the line; `share` is that
+/// of the work (lib/core/progress.h).
+CutMaps best_cut(const Part& part, double share, std::vector<double>& field);
+
+}  // namespace meshpipe

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laplacians of weighted graphs and triangle meshes.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "lib/core/vec.h"
+#include "lib/numeric/sparse.h"
+
+namespace meshpipe {
+
+/// Weights w of the triangle's edges for the operator sum_j w_ij (u_i - u_j): half the cotangent of the angle
+/// opposite to edge i -> i+1 (i.e. at corner i+2). `floor`, relative: cotangents below it are raised to it,
+/// which keeps the operator an M-matrix (floor > 0 gives a one-to-one map on a convex border, Floater 1997).
+/// Degenerate triangles get finite weights (lengths are mollified).
+std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor = -1e30);
+
+/// The matrix of x -> sum over edges of w (x_i - x_j)^2 with further weights on the diagonal, as it is
+/// assembled: the one place where that is done.
+class Laplacian {
+ public:
+  /// Rows 0..n-1; `diagonal` is what the diagonal starts from.
+  explicit Laplacian(std::vector<double> diagonal) : diagonal_(std::move(diagonal)) {}
+  explicit Laplacian(int n) : diagonal_(n, 0) {}
+  void reserve(std::size_t edges) { entries_.reserve(edges + diagonal_.size()); }
+  /// Adds an edge of weight w; -1 for an end whose value is held. An edge from a row to itself adds nothing.
+  void add_edge(int i, int j, double w) {
+    if (i == j) return;
+    add_diagonal(i, w);
+    add_diagonal(j, w);
+    couple(i, j, w);
+  }
+  /// The two halves of add_edge.
+  void add_diagonal(int i, double w) {
+    if (i >= 0) diagonal_[i] += w;
+  }
+  void couple(int i, int j, double w) {
+    if (i >= 0 && j >= 0) entries_.push_back({std::max(i, j), std::min(i, j), -w});
+  }
+  int rows() const { return (int)diagonal_.size(); }
+  /// Returns the entries of the lower triangle, and leaves none.
+  std::vector<Entry<double>> lower_triangle();
+  /// Factorises the matrix, and leaves none.
+  Factorisation<double> factorise(MatrixKind kind = MatrixKind::any, SolveTime* time = nullptr) {
+    const int n = rows();
+    return Factorisation<double>(n, lower_triangle(), time, kind);
+  }
+
+ private:
+  std::vector<double> diagonal_;
+  std::vector<Entry<double>> entries_;
+};
+
+/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the
+/// values at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on
+/// return. weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an
+/// edge); one factorization, both coordinates solved with it. Vertices of no triangle stay. Throws GoalMissed
+/// if the matrix is singular (a component without a fixed vertex).
+void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
+                     const std::vector<char>& fixed, std::vector<Vec2>& uv, SolveTime* time = nullptr);
+
+}  // namespace meshpipe

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/numeric/sparse.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "lib/core/error.h"
+#include "lib/core/number.h"
+#include "lib/numeric/multigrid.h"
+
+namespace meshpipe {
+namespace {
+
+/// Entries to compressed columns: two stable counting passes (by row, then by column), then equal places
+/// added up.
+template <class Scalar>
+Eigen::SparseMatrix<Scalar> compress(int n, std::vector<Entry<Scalar>> entries) {
+  auto sort_by = [n](const std::vector<Entry<Scalar>>& from, int Entry<Scalar>::*key,
+                     std::vector<int>& start) {
+    start.assign(n + 1, 0);
+    for (const Entry<Scalar>& e : from) ++start[e.*key + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Entry<Scalar>> to(from.size());
+    std::vector<int> place(start.begin(), start.end() - 1);
+    for (const Entry<Scalar>& e : from) to[place[e.*key]++] = e;
+    return to;
+  };
+  std::vector<int> start;
+  entries = sort_by(entries, &Entry<Scalar>::row, start);
+  entries = sort_by(entries, &Entry<Scalar>::col, start);
+
+  Eigen::SparseMatrix<Scalar> m(n, n);
+  m.resizeNonZeros((Eigen::Index)entries.size());
+  int* column = m.outerIndexPtr();
+  int* row = m.innerIndexPtr();
+  Scalar* value = m.valuePtr();
+  int k = 0;
+  for (int c = 0; c < n; ++c) {
+    column[c] = k;
+    for (int e = start[c]; e < start[c + 1]; ++e) {
+      if (k > column[c] && row[k - 1] == entries[e].row) {
+        value[k - 1] += entries[e].value;
+      } else {
+        row[k] = entries[e].row;
+        value[k++] = entries[e].value;
+      }
+    }
+  }
+  column[n] = k;
+  m.resizeNonZeros(k);
+  return m;
+}
+
+template <class Matrix>
+void require_finite(const Matrix& x) {
+  if (!x.allFinite())
+    throw GoalMissed("the solution for " + std::to_string(x.rows()) + " unknowns is not finite");
+}
+
+/// Adds the time of its life to *seconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double* seconds) : seconds_(seconds), start_(Clock::now()) {}
+  ~Stopwatch() {
+    if (seconds_) *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double* seconds_;
+  Clock::time_point start_;
+};
+
+template <class Scalar>
+struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> {
+  /// Multiplications of the numeric factorization, known after the symbolic one.
+  double cost() const { return this->m_nonZerosPerCol.template cast<double>().squaredNorm(); }
+};
+
+/// Multiplications an unknown above which multigrid is faster: measured from 10^4 to 10^6 triangles.
+constexpr double cost_of_multigrid = 3000;
+
+}  // namespace
+
+template <class Scalar>
+struct Factorisation<Scalar>::Impl {
+  Ldlt<Scalar> ldlt;
+  int n;
+  SolveTime* time;
+  std::unique_ptr<Multigrid> multigrid;  ///< takes the place of the numeric factorization
+
+  void factorise(const Eigen::SparseMatrix<Scalar>& m) {
+    {
+      Stopwatch watch(time ? &time->factorisation : nullptr);
+      ldlt.factorize(m);
+    }
+    // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
+    // lost all its digits against the diagonal it started from is as singular, and a negative one as little
+    // definite
+    const auto& pivot = ldlt.vectorD();
+    const auto& order = ldlt.permutationP().indices();
+    constexpr double lost = 4 * std::numeric_limits<double>::epsilon();
+    for (int i = 0; i < n; ++i) {
+      double d = std::real(pivot[order[i]]), a = std::real(m.coeff(i, i));
+      if (ldlt.info() != Eigen::Success || !(d > lost * a) || !std::isfinite(d))
+        throw GoalMissed("singular matrix of " + std::to_string(n) + " rows: row " + std::to_string(i) +
+                         " has diagonal " + shown(a) + " and pivot " + shown(d));
+    }
+  }
+};
+
+template <class Scalar>
+Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time,
+                                     MatrixKind kind)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->n = n;
+  impl_->time = time;
+  Eigen::SparseMatrix<Scalar> m = compress(n, std::move(lower_triangle));
+  {
+    Stopwatch watch(time ? &time->ordering : nullptr);
+    impl_->ldlt.analyzePattern(m);
+  }
+  if constexpr (std::is_same_v<Scalar, double>) {
+    if (kind == MatrixKind::laplacian && impl_->ldlt.cost() > cost_of_multigrid * n) {
+      Stopwatch watch(time ? &time->factorisation : nullptr);
+      try {
+        impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
+        return;
+      } catch (const GoalMissed&) {  // its coarsest level is singular to rounding
+      }
+    }
+  }
+  impl_->factorise(m);
+}
+
+template <class Scalar>
+Factorisation<Scalar>::~Factorisation() = default;
+template <class Scalar>
+Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
+
+template <class Scalar>
+void Factorisation<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
+  impl_->factorise(compress(impl_->n, lower_triangle));
+}
+
+template <class Scalar>
+void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
+  if (right_hand_side.empty()) return;
+  if constexpr (std::is_same_v<Scalar, double>) {
+    if (impl_->multigrid) {
+      Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
+      if (impl_->multigrid->solve(right_hand_side)) return;
+    }
+    if (impl_->multigrid) impl_->factorise(std::exchange(impl_->multigrid, nullptr)->matrix());
+  }
+  Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
+      right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
+  x = impl_->ldlt.solve(x).eval();
+  require_finite(x);
+}
+
+template class Factorisation<double>;
+template class Factorisation<std::complex<double>>;
+
+void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::vector<double>& right_hand_side,
+                       SolveTime* time) {
+  if (n == 0) return;
+  Eigen::SparseMatrix<double> m = compress(n, entries);
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> lu;
+  {
+    Stopwatch watch(time ? &time->ordering : nullptr);
+    lu.analyzePattern(m);
+  }
+  {
+    Stopwatch watch(time ? &time->factorisation : nullptr);
+    lu.factorize(m);
+  }
+  if (lu.info() != Eigen::Success) throw GoalMissed("singular matrix of " + std::to_string(n) + " rows");
+  Stopwatch watch(time ? &time->solve : nullptr);
+  Eigen::Map<Eigen::MatrixXd> x(right_hand_side.data(), n, (Eigen::Index)right_hand_side.size() / n);
+  x = lu.solve(x).eval();
+  require_finite(x);
+}
+
+struct ConjugateGradients::Impl {
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  Matrix matrix;
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> steps;
+};
+
+ConjugateGradients::ConjugateGradients(int n, std::vector<Entry<double>> lower_triangle, double tolerance,
+                                       int most_steps)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->matrix = compress(n, std::move(lower_triangle)).template selfadjointView<Eigen::Lower>();
+  impl_->steps.setTolerance(tolerance).setMaxIterations(most_steps).compute(impl_->matrix);
+}
+ConjugateGradients::~ConjugateGradients() = default;
+
+void ConjugateGradients::solve(const std::vector<double>& right_hand_side, std::vector<double>& x) const {
+  const auto n = (Eigen::Index)x.size();
+  const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(right_hand_side.data(), n);
+  const Eigen::VectorXd guess = Eigen::Map<Eigen::VectorXd>(x.data(), n);
+  Eigen::Map<Eigen::VectorXd>(x.data(), n) = impl_->steps.solveWithGuess(b, guess);
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conformal maps with a free border: boundary first flattening, least squares, and the spectral form.
+#pragma once
+#include "lib/param/disk.h"
+
+namespace meshpipe {
+
+/// Boundary first flattening (Sawhney and Crane 2017): the border keeps its length, so that the area scale
+/// varies as little as a conformal map allows, and limbs do not shrink exponentially as with held vertices.
+/// Two real factorizations at most: bent borders need one of their own.
+class BoundaryFirst {
+ public:
+  /// Keeps references to the part and the disk. `filled`: flat_holes of the part. Throws GoalMissed if the
+  /// matrix is singular.
+  BoundaryFirst(const SubMesh& part, const Disk& disk, Filled filled, SolveTime* time);
+
+  /// Returns the largest over the smallest area scale of the map at bend 0 at the part's vertices, without
+  /// the extreme 1 % at either end.
+  double area_distortion() const { return area_distortion_; }
+
+  /// Returns the polygon of the longest loop: with the turns of the conformal map that keeps its lengths
+  /// (bend 0), or with turns interpolated by `bend` to those of a circle (bend 1), and the lengths that a
+  /// conformal map then has. Empty if it does not close.
+  std::vector<Vec2> polygon(double bend);
+
+  /// The map of all vertices inside such a polygon, harmonic in it; scaled to the part's area.
+  std::vector<Vec2> map(const std::vector<Vec2>& polygon) const;
+
+ private:
+  std::vector<double> extend(const std::vector<double>& charge, const std::vector<double>& held,
+                             int columns) const;
+
+  const SubMesh& part_;
+  const Disk& disk_;
+  Filled filled_;  ///< without its shapes: the weights stand for them
+  SolveTime* time_;
+  int n_ = 0;
+  std::vector<double> weights_, angle_sum_;
+  std::vector<int> unknown_;
+  Factorisation<double> factorization_;
+  double area_distortion_;
+  std::vector<double> turn_;   ///< at bend 0
+  std::vector<double> scale_;  ///< of the lengths, log, at bend 1; empty until asked for
+};
+
+/// Least squares conformal map (Levy and others 2002, Desbrun and others 2002): Dirichlet energy less the
+/// area, as one Hermitian matrix for u + i v; of the border two vertices far apart are held. The natural
+/// condition holds on the longest loop, and on holes that are not filled. Scaled to the part's area.
+std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const Filled& filled,
+                                    SolveTime* time);
+
+/// Minimizes the same energy among maps whose border has unit moment around its center, by inverse iteration:
+/// no vertex is held (Mullen and others 2008). Throws: GoalMissed if that does not converge.
+std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Filled& filled, SolveTime* time);
+
+}  // namespace meshpipe

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts of a surface and the interfaces between them: what they have to be, how they are found, joined,
+// straightened and rid of slivers.
+#pragma once
+#include <numbers>
+#include <string>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/mesh.h"
+#include "lib/partition/labelling.h"
+#include "lib/partition/merge.h"
+
+namespace meshpipe {
+
+/// Checks the rule of formats/mply.md on parts; returns an empty string, or what is wrong and where.
+std::string part_fault(const Surface& surface);
+std::string part_fault(const Connectivity& mesh, const std::vector<int>& part);
+
+/// Marks the parts 0..n_parts-1 (part[t] = -1: none) that are in several pieces, do not map to
+/// the plane, or have more than max_faces triangles (0: any number).
+std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
+                               int max_faces);
+
+/// An edge that bends by more is a crease, marked or not.
+constexpr double sharp_edge = 40 * std::numbers::pi / 180;
+bool is_crease(const Connectivity& mesh, int h);
+
+/// How long and how straight the interfaces between the parts are.
+struct Interfaces {
+  double length = 0;  ///< over the diagonal of the surface's bounding box
+  /// The 90 % quantile and the largest of the angles by which successive edges turn on the surface (geodesic
+  /// curvature: pi |left - right| / (left + right) by the angles of the triangles on both sides), in degrees;
+  /// without junctions and the vertices of interface edges along creases.
+  double turning_angle = 0, largest_angle = 0;
+  int junctions = 0;  ///< vertices with three or more interface edges
+};
+Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& part);
+Interfaces measure_interfaces(const Surface& surface);
+
+/// Moves the interface of each pair of parts (face column `part`, 0..n_parts-1) to the zero level of a
+/// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h); where
+/// that fails, as on triangles much longer than wide, it is only pulled straight. All other parts only get
+/// split along. Model edges stay interfaces. An interface stays as it was where the result would be longer,
+/// or a part broken (broken_parts). With `chosen`, only the interfaces of the parts that it marks are moved.
+/// Requires: parts without fault.
+void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0,
+                           const std::vector<char>& chosen = {});
+
+/// Hands regions (bounded by model edges, the border and other parts) that are thinner than 0.4 of the
+/// input's triangles there to the part on the other side of the cut that made them, so that the cut follows
+/// the model edges instead. Only face column `part` (0..n-1; triangles of -1 are left alone) changes; the
+/// surface has face columns `origin` and, if it has model edges, `model`. Parts that map to the plane stay
+/// so, and below max_faces triangles (0: any number); what would break that stays. Returns true if a triangle
+/// has changed hands. n log n; at once where there are no model edges.
+bool hand_over_slivers(const CutSurface& cut, int n_parts, int max_faces = 0);
+
+}  // namespace meshpipe

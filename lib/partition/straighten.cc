@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <numbers>
+#include <tuple>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/cut.h"
+#include "lib/core/progress.h"
+#include "lib/core/regions.h"
+#include "lib/core/topology.h"
+#include "lib/numeric/threshold.h"
+#include "lib/partition/partition.h"
+
+namespace meshpipe {
+namespace {
+
+/// A maximal run of interface edges between parts a < b, a on its left; closed, or from border or junction to
+/// another.
+struct Curve {
+  int a, b;
+  std::vector<int> half_edges;
+};
+
+enum class Role { moves, stays, other };
+
+struct Limits {
+  int n_parts;
+  double snap;
+  int max_faces;
+};
+
+/// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight, and
+/// whether the ends on a border stay at or between their vertices.
+struct Attempt {
+  double width;
+  int steps, sweeps;
+  bool ends_stay;
+};
+constexpr double pi = std::numbers::pi;
+constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}};
+constexpr Attempt last_attempt = {0, 0, 100, true};
+
+/// What happens near the curves that are straightened together: each has a band of triangles of its own.
+struct Bands {
+  SubMesh mesh;                   // of all bands
+  std::vector<int> opposite;      // of the bands' half-edges
+  std::vector<int> curve;         // of each triangle of the surface: its band, or -1
+  std::vector<double> held;       // of each vertex of the bands: the value it is held at, or not_held
+  std::vector<signed char> apex;  // the side (+1 a, -1 b) of a triangle on an interface edge that stays, or 0
+};
+
+std::vector<Curve> find_curves(const CutSurface& cut) {
+  const Surface& s = cut.surface;
+  const std::vector<int>& opposite = cut.opposite;
+  const std::vector<int>& part = s.face.get<int>("part");
+  struct Piece {
+    int a, b, from, half_edge;
+    auto key() const { return std::tie(a, b, from); }
+  };
+  std::vector<Piece> pieces;
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] >= 0 && part[h / 3] < part[opposite[h] / 3])
+      pieces.push_back({part[h / 3], part[opposite[h] / 3], origin(s.tris, h), h});
+  auto less = [](const Piece& p, const Piece& q) { return p.key() < q.key(); };
+  std::sort(pieces.begin(), pieces.end(), less);
+
+  std::vector<int> follower(pieces.size(), -1);
+  std::vector<char> follows(pieces.size(), 0), used(pieces.size(), 0);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece next{pieces[i].a, pieces[i].b, target(s.tris, pieces[i].half_edge), 0};
+    auto it = std::lower_bound(pieces.begin(), pieces.end(), next, less);
+    if (it == pieces.end() || it->key() != next.key()) continue;
+    follower[i] = (int)(it - pieces.begin());
+    follows[follower[i]] = 1;
+  }
+  std::vector<Curve> curves;
+  for (bool closed : {false, true})
+    for (int i = 0; i < (int)pieces.size(); ++i) {
+      if (used[i] || (!closed && follows[i])) continue;
+      Curve c{pieces[i].a, pieces[i].b, {}};
+      for (int k = i; k >= 0 && !used[k]; k = follower[k]) {
+        used[k] = 1;
+        c.half_edges.push_back(pieces[k].half_edge);
+      }
+      curves.push_back(std::move(c));
+    }
+  return curves;
+}
+
+bool is_closed(const Mesh& m, const Curve& c) {
+  return target(m.tris, c.half_edges.back()) == origin(m.tris, c.half_edges.front());
+}
+
+/// The largest angle by which a curve turns on the surface between edges that `skipped` does not
+/// name.
+template <class Skipped>
+double sharpest_turn(const CutSurface& cut, const Curve& c, Skipped skipped) {
+  const Surface& s = cut.surface;
+  const std::vector<int>& opposite = cut.opposite;
+  double sharpest = 0;
+  const std::size_t n = c.half_edges.size();
+  const bool closed = is_closed(s, c);
+  for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
+    const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
+    if (skipped(to) || skipped(from)) continue;
+    const Vec3 p = s.points[origin(s.tris, from)];
+    auto corner = [&](int h) {
+      return angle(s.points[target(s.tris, h)] - p, s.points[origin(s.tris, prev(h))] - p);
+    };
+    double left = 0, right = 0;
+    int h = from;
+    for (; h >= 0 && h != opposite[to]; h = opposite[prev(h)]) left += corner(h);
+    for (; h >= 0 && h != from; h = opposite[prev(h)]) right += corner(h);
+    if (h >= 0) sharpest = std::max(sharpest, pi * std::abs(left - right) / (left + right));
+  }
+  return sharpest;
+}
+
+/// Vertices go to the curve that reaches them first through its own two parts; a triangle is in the band of
+/// its vertices.
+Bands make_bands(const CutSurface& cut, const std::vector<Curve>& curves, const std::vector<Role>& role) {
+  const Surface& s = cut.surface;
+  const std::vector<int>& opposite = cut.opposite;
+  constexpr int rings = 14;  // the diffused indicator has its value there
+  constexpr int nobody = -1, blocked = -2;
+  const std::vector<int>& part = s.face.get<int>("part");
+  std::vector<int> owner(s.points.size(), nobody);
+  for (int c = 0; c < (int)curves.size(); ++c)
+    if (role[c] != Role::other)
+      for (int h : curves[c].half_edges)
+        owner[origin(s.tris, h)] = owner[target(s.tris, h)] = role[c] == Role::moves ? c : blocked;
+  auto of = [&](int t, int c) { return part[t] == curves[c].a || part[t] == curves[c].b; };
+
+  std::vector<int> rest(s.tris.size());
+  for (int t = 0; t < (int)rest.size(); ++t) rest[t] = t;
+  std::vector<std::pair<int, int>> claims;
+  for (int ring = 0; ring < rings; ++ring) {
+    claims.clear();
+    std::erase_if(rest, [&](int t) {
+      const Tri& v = s.tris[t];
+      const int most = std::max({owner[v[0]], owner[v[1]], owner[v[2]]});
+      if (most < 0) return false;
+      for (int x : v)
+        if (owner[x] == nobody && of(t, most)) claims.push_back({x, most});
+      return true;
+    });
+    if (claims.empty()) break;
+    for (auto [v, c] : claims)
+      if (owner[v] == nobody) owner[v] = c;
+  }
+
+  Bands bands;
+  bands.curve.assign(s.tris.size(), -1);
+  std::vector<int> in_band(s.tris.size(), -1);
+  for (std::size_t t = 0; t < s.tris.size(); ++t) {
+    const Tri& v = s.tris[t];
+    const int c = owner[v[0]];
+    if (c >= 0 && owner[v[1]] == c && owner[v[2]] == c && of((int)t, c)) bands.curve[t] = c, in_band[t] = 0;
+  }
+  bands.mesh = std::move(split_by_label(s, in_band, 1)[0]);
+
+  // at the rim the sides stay what they are, and the curve stays where it leaves the band or is a model edge
+  enum { rim = 1, side_a = 2, side_b = 4, on_level = 8 };
+  std::vector<char> marks(s.points.size(), 0);
+  std::vector<signed char> apex(s.points.size(), 0);
+  for (std::size_t t = 0; t < s.tris.size(); ++t)
+    for (int v : s.tris[t]) {
+      const int c = owner[v];
+      if (c < 0 || !of((int)t, c)) continue;
+      if (bands.curve[t] < 0) marks[v] |= rim;
+      marks[v] |= part[t] == curves[c].a ? side_a : side_b;
+    }
+  for (int c = 0; c < (int)curves.size(); ++c) {
+    if (role[c] != Role::moves) continue;
+    for (int h : curves[c].half_edges)
+      if (cut.connectivity().is_model(h) || bands.curve[h / 3] < 0 || bands.curve[opposite[h] / 3] < 0) {
+        marks[origin(s.tris, h)] |= on_level;
+        marks[target(s.tris, h)] |= on_level;
+        apex[origin(s.tris, prev(h))] = 1;
+        apex[origin(s.tris, prev(opposite[h]))] = -1;
+      }
+  }
+  // where two fans of a band meet in a vertex, the line could move in one of them only
+  bands.opposite = opposite_halfedges(bands.mesh.tris, (int)bands.mesh.points.size());
+  std::vector<int> fans(bands.mesh.points.size(), 0);
+  for (int h = 0; h < (int)bands.opposite.size(); ++h)
+    if (bands.opposite[h] < 0 && ++fans[origin(bands.mesh.tris, h)] > 1)
+      marks[bands.mesh.vertex[origin(bands.mesh.tris, h)]] |= rim;
+  for (int v : bands.mesh.vertex) {
+    const int m = marks[v];
+    const bool both = (m & side_a) && (m & side_b);
+    bands.held.push_back(m & on_level || (m & rim && both) ? 0.0
+                         : !(m & rim)                      ? not_held
+                         : m & side_a                      ? 1.0
+                                                           : -1.0);
+    bands.apex.push_back(apex[v]);
+  }
+  return bands;
+}
+
+/// The sides of the bands' vertices: +1 or -1, or 0 where triangles of both sides meet.
+std::vector<double> sides(const Bands& bands, const std::vector<double>& sign) {
+  std::vector<double> least(bands.mesh.points.size(), 1), most(least.size(), -1);
+  for (std::size_t k = 0; k < sign.size(); ++k)
+    for (int v : bands.mesh.tris[k]) {
+      least[v] = std::min(least[v], sign[k]);
+      most[v] = std::max(most[v], sign[k]);
+    }
+  for (std::size_t v = 0; v < least.size(); ++v) least[v] = (least[v] + most[v]) / 2;
+  return least;
+}
+
+/// The zero level of the bands' field, pulled straight, as a line of the surface, which has n vertices.
+LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, const Attempt& attempt,
+                        std::size_t n) {
+  std::vector<Hold> hold;
+  for (std::size_t v = 0; v < field.size(); ++v) {
+    double& f = field[v];
+    if (bands.held[v] != not_held) f = bands.held[v];
+    if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
+    hold.push_back(bands.held[v] == not_held && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
+  }
+  for (int h = 0; attempt.ends_stay && h < (int)bands.opposite.size(); ++h)
+    if (bands.opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
+  LevelLine line = zero_level(bands.mesh, field);
+  pull_straight({bands.mesh, bands.opposite}, line, hold, snap, attempt.sweeps);
+  return in_whole(line, bands.mesh.vertex, n);
+}
+
+/// Gives the pieces of each part, except its largest, to the other part of the band that they lie in.
+void keep_largest_pieces(const Connectivity& mesh, const std::vector<int>& band,
+                         const std::vector<Curve>& curves, std::vector<int>& part, int n_parts) {
+  std::vector<int> piece = part;
+  const int n = separate_pieces(mesh, piece);
+  if (n == n_parts) return;
+  std::vector<double> area(n, 0);
+  std::vector<int> of(n), largest(n_parts, -1);
+  for (std::size_t t = 0; t < part.size(); ++t) {
+    area[piece[t]] += norm(mesh.area_vector((int)t));
+    of[piece[t]] = part[t];
+  }
+  for (int i = 0; i < n; ++i)
+    if (int& l = largest[of[i]]; l < 0 || area[i] > area[l]) l = i;
+  for (std::size_t t = 0; t < part.size(); ++t)
+    if (band[t] >= 0 && piece[t] != largest[part[t]])
+      part[t] = curves[band[t]].a + curves[band[t]].b - part[t];
+}
+
+/// Length of each curve inside its band, and the number of its model edges.
+struct Measure {
+  std::vector<double> length;
+  std::vector<int> model_edges;
+};
+Measure measure(const CutSurface& cut, const std::vector<int>& band, std::size_t n_curves) {
+  const std::vector<int>& part = cut.surface.face.get<int>("part");
+  const Connectivity mesh = cut.connectivity();
+  Measure m{std::vector<double>(n_curves, 0), std::vector<int>(n_curves, 0)};
+  for (int h = 0; h < mesh.n_half_edges(); ++h) {
+    const int o = mesh.opposite[h];
+    if (o < h || part[h / 3] == part[o / 3] || band[h / 3] < 0 || band[h / 3] != band[o / 3]) continue;
+    m.length[band[h / 3]] += mesh.length(h);
+    m.model_edges[band[h / 3]] += mesh.is_model(h);
+  }
+  return m;
+}
+
+/// A curve that cannot be straightened with the others; with other means it might.
+struct Fault {
+  int curve;
+  bool again;
+};
+
+/// The line of the bands: their interfaces diffused, or as they are, then pulled straight.
+LevelLine line_of(const Surface& surface, const std::vector<Curve>& curves, const Bands& bands,
+                  const Attempt& attempt, double snap) {
+  std::vector<double> sign, time, scale(curves.size(), 0);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (int h : curves[c].half_edges)
+      scale[c] += edge_length(surface, h) / (double)curves[c].half_edges.size();
+    scale[c] *= scale[c] * attempt.width * attempt.width;
+  }
+  for (int t : bands.mesh.face) {
+    sign.push_back(surface.face.get<int>("part")[t] == curves[bands.curve[t]].a ? 1 : -1);
+    time.push_back(scale[bands.curve[t]]);
+  }
+  const std::vector<double> level =
+      attempt.steps > 0 ? threshold_dynamics(bands.mesh, std::move(sign), time, bands.held, attempt.steps)
+                        : sides(bands, sign);
+  return straight_line(bands, level, snap, attempt, surface.points.size());
+}
+
+/// The curves at fault for what has become longer, lost model edges, or broken; those next to a broken part
+/// if there is no other.
+std::vector<Fault> find_faults(const std::vector<Curve>& curves, const std::vector<Role>& role,
+                               const std::vector<char>& broken, const Measure& before, const Measure& now) {
+  constexpr double as_long = 3e-3;  // an increase of the length, as a fraction: it was straight
+  std::vector<Fault> at_fault, near_fault;
+  for (int c = 0; c < (int)curves.size(); ++c) {
+    if (role[c] != Role::moves) continue;
+    const bool fewer = now.model_edges[c] < before.model_edges[c];
+    if (now.length[c] > (1 + 1e-9) * before.length[c] || fewer)
+      at_fault.push_back({c, fewer || now.length[c] > (1 + as_long) * before.length[c]});
+    else if (broken[curves[c].a] || broken[curves[c].b])
+      near_fault.push_back({c, true});
+  }
+  if (at_fault.empty()) at_fault = near_fault;
+  if (at_fault.empty() && std::find(broken.begin(), broken.end(), 1) != broken.end())
+    for (int c = 0; c < (int)curves.size(); ++c)  // a bound on the triangles of a third part
+      if (role[c] == Role::moves) at_fault.push_back({c, true});
+  return at_fault;
+}
+
+/// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
+/// returns an empty list; otherwise returns the curves at fault.
+std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve>& curves,
+                                  const std::vector<Role>& role, const Attempt& attempt,
+                                  const Limits& limits) {
+  Surface& surface = cut.surface;
+  Bands bands = make_bands(cut, curves, role);
+  if (bands.mesh.tris.empty()) return {};
+  const LevelLine line = line_of(surface, curves, bands, attempt, limits.snap);
+  std::vector<char> active(surface.tris.size(), 0);
+  for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
+    const Tri& v = surface.tris[t];
+    active[t] = line.sign[v[0]] != 0 || line.sign[v[1]] != 0 || line.sign[v[2]] != 0;
+  }
+  const Measure before = measure(cut, bands.curve, curves.size());
+
+  Surface s = surface;
+  constexpr auto band_column = "straighten band";
+  s.face.set(band_column, std::move(bands.curve));
+  std::vector<int> side;
+  std::vector<int> after = cut.opposite;
+  cut_along_line({s, after}, line, active, side);
+  const std::vector<int> band = s.face.get<int>(band_column);
+  s.face.erase(band_column);
+  std::vector<int>& part = s.face.get<int>("part");
+  for (std::size_t t = 0; t < part.size(); ++t)
+    if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
+  keep_largest_pieces({s, after}, band, curves, part, limits.n_parts);
+  const std::vector<char> broken = broken_parts({s, after}, part, limits.n_parts, limits.max_faces);
+  const Measure now = measure({s, after}, band, curves.size());
+  const std::vector<Fault> faults = find_faults(curves, role, broken, before, now);
+  if (faults.empty()) surface = std::move(s), cut.opposite = std::move(after);
+  return faults;
+}
+
+/// Pairs of parts whose curves share a junction get different colors; curves of a color are straightened
+/// together.
+struct PairColor {
+  int a, b, color;
+  auto key() const { return std::tie(a, b); }
+};
+std::vector<PairColor> color_pairs(const Surface& s, const std::vector<Curve>& curves) {
+  std::vector<PairColor> pairs;
+  for (const Curve& c : curves) pairs.push_back({c.a, c.b, -1});
+  auto less = [](const PairColor& p, const PairColor& q) { return p.key() < q.key(); };
+  std::sort(pairs.begin(), pairs.end(), less);
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), [](auto& p, auto& q) { return p.key() == q.key(); }),
+              pairs.end());
+  std::vector<std::pair<int, int>> ends;  // (vertex, pair)
+  for (const Curve& c : curves) {
+    const int pair =
+        (int)(std::lower_bound(pairs.begin(), pairs.end(), PairColor{c.a, c.b, 0}, less) - pairs.begin());
+    ends.push_back({origin(s.tris, c.half_edges.front()), pair});
+    ends.push_back({target(s.tris, c.half_edges.back()), pair});
+  }
+  std::sort(ends.begin(), ends.end());
+  std::vector<std::vector<int>> conflicts(pairs.size());
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = i + 1; j < ends.size() && ends[j].first == ends[i].first; ++j)
+      if (ends[i].second != ends[j].second) {
+        conflicts[ends[i].second].push_back(ends[j].second);
+        conflicts[ends[j].second].push_back(ends[i].second);
+      }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    auto taken = [&](int color) {
+      return std::any_of(conflicts[i].begin(), conflicts[i].end(),
+                         [&](int j) { return pairs[j].color == color; });
+    };
+    for (pairs[i].color = 0; taken(pairs[i].color);) ++pairs[i].color;
+  }
+  return pairs;
+}
+
+/// A curve by the ends of an edge in its middle: unlike half-edges these last while other curves are
+/// straightened.
+using Handle = std::pair<int, int>;
+
+Handle handle_of(const Mesh& m, const Curve& c) {
+  const int h = c.half_edges[c.half_edges.size() / 2];
+  return {origin(m.tris, h), target(m.tris, h)};
+}
+
+/// Straightens these curves at once, without those that turn out to be at fault; returns those of the latter
+/// that may do better by other means.
+std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector<Handle>& handles,
+                                        const Attempt& attempt, const Limits& limits) {
+  const Surface& s = cut.surface;
+  if (handles.empty()) return {};
+  const std::vector<Curve> curves = find_curves(cut);
+  std::vector<Role> role(curves.size(), Role::other);
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    for (int h : curves[c].half_edges)
+      if (std::binary_search(handles.begin(), handles.end(), Handle{origin(s.tris, h), target(s.tris, h)})) {
+        role[c] = Role::moves;
+        pairs.push_back({curves[c].a, curves[c].b});
+      }
+  std::sort(pairs.begin(), pairs.end());
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    if (role[c] == Role::other &&
+        std::binary_search(pairs.begin(), pairs.end(), std::pair(curves[c].a, curves[c].b)))
+      role[c] = Role::stays;
+  std::vector<Handle> failed;
+  while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
+    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits);
+    if (faults.empty()) break;
+    for (auto [c, again] : faults) {
+      role[c] = Role::stays;
+      if (again) failed.push_back(handle_of(s, curves[c]));
+    }
+  }
+  std::sort(failed.begin(), failed.end());
+  return failed;
+}
+
+/// Triangles with two edges on an interface with one other part change to that, unless along creases: the
+/// interface takes the third edge. Neither part's topology changes.
+void trim_ears(const CutSurface& cut, const std::vector<char>& chosen, const Limits& limits) {
+  Surface& s = cut.surface;
+  const std::vector<int>& opposite = cut.opposite;
+  std::vector<int>& part = s.face.get<int>("part");
+  std::vector<int> faces(limits.n_parts, 0);
+  for (int p : part) ++faces[p];
+  const Connectivity view = cut.connectivity();
+  auto other = [&](int h) { return opposite[h] < 0 ? -1 : part[opposite[h] / 3]; };
+  // h leaves the apex, where all other triangles are the other part's
+  auto is_ear = [&](int h) {
+    const int mine = part[h / 3], theirs = other(h);
+    if (theirs < 0 || theirs == mine || other(prev(h)) != theirs || other(next(h)) != mine) return false;
+    if (!chosen.empty() && !chosen[mine] && !chosen[theirs]) return false;
+    if (limits.max_faces > 0 && faces[theirs] >= limits.max_faces) return false;
+    if (is_crease(view, h) || is_crease(view, prev(h))) return false;
+    int g = opposite[prev(h)];
+    while (g >= 0 && g != h && part[g / 3] == theirs) g = opposite[prev(g)];
+    return g == h;
+  };
+  std::vector<int> ears;
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (is_ear(h)) ears.push_back(h);
+  while (!ears.empty()) {
+    const int h = ears.back();
+    ears.pop_back();
+    if (!is_ear(h)) continue;
+    --faces[part[h / 3]];
+    ++faces[other(h)];
+    part[h / 3] = other(h);
+    const int behind = opposite[next(h)];
+    for (int g : {behind, next(behind), prev(behind)})
+      if (is_ear(g)) ears.push_back(g);
+  }
+}
+
+/// Straightens what is still bent, one curve at a time: on fans of large triangles the bands of neighbors may
+/// have left no triangles to move in.
+void straighten_corners(const CutSurface& cut, const std::vector<char>& chosen, const Limits& limits) {
+  const Surface& surface = cut.surface;
+  constexpr double bent = 0.5;
+  constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
+  trim_ears(cut, chosen, limits);
+  std::vector<std::pair<double, Handle>> corners;
+  auto crease = [&](int h) { return is_crease(cut.connectivity(), h); };
+  for (const Curve& c : find_curves(cut))
+    if (chosen.empty() || chosen[c.a] || chosen[c.b])
+      if (const double turn = sharpest_turn(cut, c, crease); turn > bent)
+        corners.push_back({-turn, handle_of(surface, c)});
+  std::sort(corners.begin(), corners.end());
+  corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
+  for (const auto& [turn, one] : corners)
+    if (!straighten_together(cut, {one}, attempts[2], limits).empty())
+      straighten_together(cut, {one}, last_attempt, limits);
+}
+
+}  // namespace
+
+void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces,
+                           const std::vector<char>& chosen) {
+  const Limits limits{n_parts, snap, max_faces};
+  const std::vector<PairColor> pairs = color_pairs(cut.surface, find_curves(cut));
+  constexpr double straight = 0.05;  // as a closed shortest line is
+  const Surface& surface = cut.surface;
+  auto model = [&](int h) { return cut.connectivity().is_model(h); };
+  int n_colors = 0;
+  for (const PairColor& p : pairs) n_colors = std::max(n_colors, p.color + 1);
+  for (int color = 0; color < n_colors; ++color) {
+    std::vector<Handle> open;
+    for (const Curve& c : find_curves(cut))
+      for (const PairColor& p : pairs)
+        if (p.a == c.a && p.b == c.b && p.color == color && (chosen.empty() || chosen[p.a] || chosen[p.b]) &&
+            !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
+          open.push_back(handle_of(surface, c));
+    std::sort(open.begin(), open.end());
+    // all together, those at fault again and more gently, in the end one by one
+    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits);
+    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits);
+    add_progress(0.2 / n_colors);
+  }
+  straighten_corners(cut, chosen, limits);
+}
+
+}  // namespace meshpipe

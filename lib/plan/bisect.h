@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts of one part of genus 0: by a short line, whatever its shape, along its limbs, or at model edges.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Cuts `part` (face column `part`) in two along the shortest line over the root of the smaller side's area
+/// that leaves two connected halves without pinched vertices. Lines are levels of the potential between each
+/// pair of vertices in `apart` (numbers in the surface), or of the Fiedler vector if there are none: both
+/// have connected sides except for rounding. `even` counts vertices instead of areas, all edges alike, with a
+/// third on each side: for parts off which a shape-aware line only ever cuts a few triangles. The triangles
+/// above the level become part new_part. Returns false, and changes nothing, if no line will do.
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
+                 bool even = false);
+
+/// Cuts `part` along the model edges (face column `model`) inside it, which the mesh keeps in any case.
+/// Pieces that do not map to the plane are joined to a neighbor; those above the first become parts n_parts,
+/// n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the edges enclose
+/// nothing, or little more than single triangles.
+int cut_along_model_edges(Surface& surface, int part, int n_parts);
+
+/// Cuts `part` by multiscale_cut although its aspect ratio is admissible: along its limbs, so that none
+/// shrinks to nothing in a chart. Returns the new number of parts as above; n_parts, with nothing changed, if
+/// there is no such cut.
+int cut_along_limbs(Surface& surface, int part, int n_parts);
+
+}  // namespace meshpipe

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <string>
+
+#include "lib/core/error.h"
+#include "lib/core/parallel.h"
+#include "lib/core/progress.h"
+#include "lib/core/topology.h"
+#include "lib/plan/bisect.h"
+#include "lib/plan/plan.h"
+#include "lib/plan/thresholds.h"
+
+namespace meshpipe {
+namespace {
+
+/// What is known of every part while charts are made.
+struct Charts {
+  std::vector<Chart> chart;
+  std::vector<ParamReport> report;
+  std::vector<std::string> failure;  ///< why there is no map; empty if there is one
+  std::vector<char> waiting;         ///< to be mapped
+  std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
+};
+
+/// Has the part, as cuts of its neighbors have left it, an inner edge that is a model edge?
+bool has_model_edges(const Surface& surface, int part) {
+  if (!surface.face.has("model")) return false;
+  const auto& model = surface.face.get<std::uint8_t>("model");
+  const auto& label = surface.face.get<int>("part");
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  for (std::size_t h = 0; h < opposite.size(); ++h)
+    if (label[h / 3] == part && opposite[h] >= 0 && label[opposite[h] / 3] == part &&
+        (model[h / 3] >> h % 3 & 1))
+      return true;
+  return false;
+}
+
+/// Cuts a limb along its length if its triangles then keep their shape much better in every piece; not across
+/// model edges, which would meet the cut at any angle. Returns the new number of parts; n_parts, with nothing
+/// changed, if it did not.
+int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts, const ParamOptions& options,
+                   const ParamReport& whole) {
+  if (topology_of(mesh).eta_geo < limit::limb_aspect || has_model_edges(surface, part)) return n_parts;
+  Surface trial = surface;
+  const int n = cut_along_limbs(trial, part, n_parts);
+  if (n == n_parts) return n_parts;
+  std::vector<int> piece = trial.face.get<int>("part");
+  for (int& label : piece) label = label == part ? 0 : label < n_parts ? -1 : label - n_parts + 1;
+  for (const SubMesh& half : split_by_label(trial, piece, n - n_parts + 1)) {
+    ParamReport report;
+    try {
+      map_part(half, options, report);
+    } catch (const GoalMissed&) {
+      return n_parts;
+    } catch (const NotAdmissible&) {
+      return n_parts;
+    }
+    if (report.anisotropy_median - 1 > limit::limb_gain * (whole.anisotropy_median - 1) ||
+        report.anisotropy_p99 > whole.anisotropy_p99)
+      return n_parts;
+  }
+  surface = std::move(trial);
+  return n;
+}
+
+/// Carries the map of a part over a cut of its neighbors, which put vertices on the edges of its border.
+/// Returns nothing if the part has changed in another way, or if the map is not one-to-one to rounding.
+std::vector<Vec2> same_map(const Chart& before, const SubMesh& part, std::size_t n_surface) {
+  std::vector<int> place(n_surface, -1);
+  for (std::size_t i = 0; i < before.uv.size(); ++i) place[before.mesh.vertex[i]] = (int)i;
+  std::vector<Vec2> uv(part.points.size());
+  std::size_t added = 0;
+  for (std::size_t v = 0; v < uv.size(); ++v) {
+    const int at = place[part.vertex[v]];
+    if (at >= 0)
+      uv[v] = before.uv[at];
+    else
+      ++added;
+  }
+  auto is_new = [&](int v) { return place[part.vertex[v]] < 0; };
+  const std::vector<int> opposite = opposite_halfedges(part.tris, (int)part.points.size());
+  for (const auto& loop : boundary_loops(opposite)) {
+    auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
+    std::size_t a = 0;
+    while (a < loop.size() && is_new(vertex(a))) ++a;
+    if (a == loop.size()) return {};
+    for (const std::size_t end = a + loop.size(); a < end;) {
+      std::size_t b = a + 1;
+      while (is_new(vertex(b))) ++b;
+      const int from = vertex(a), to = vertex(b);
+      const double length = norm(part.points[to] - part.points[from]);
+      for (std::size_t i = a + 1; i < b; ++i, --added)
+        uv[vertex(i)] = lerp(uv[from], uv[to],
+                             norm(part.points[vertex(i)] - part.points[from]) / std::max(length, 1e-300));
+      a = b;
+    }
+  }
+  if (added > 0 || count_inverted(part.tris, uv) > 0 || !border_is_simple({part, opposite}, uv)) return {};
+  return uv;
+}
+
+/// Takes the parts as they are after cuts. One that was not cut itself keeps its map if that still holds.
+void take_parts(const Surface& surface, int n_parts, Charts& charts) {
+  std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
+  charts.chart.resize(n_parts);
+  charts.report.resize(n_parts);
+  charts.failure.resize(n_parts);
+  charts.waiting.resize(n_parts, 1);
+  charts.as_it_is.resize(n_parts, 0);
+  for (int p = 0; p < n_parts; ++p) {
+    Chart& chart = charts.chart[p];
+    if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
+      chart.uv = same_map(chart, parts[p], surface.points.size());
+      charts.waiting[p] = chart.uv.empty();
+      if (!charts.waiting[p]) measure_distortion(parts[p], chart.uv, charts.report[p]);
+    }
+    chart.mesh = std::move(parts[p]);
+  }
+}
+
+/// Maps the parts that wait for it, in parallel.
+void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
+  parallel_for((int)charts.chart.size(), [&](int p) {
+    if (!charts.waiting[p]) return;
+    Chart& chart = charts.chart[p];
+    charts.failure[p].clear();
+    try {
+      const bool any = options.strict || round >= limit::limb_rounds || charts.as_it_is[p];
+      chart.uv = map_part(chart.mesh, options, charts.report[p], any ? HUGE_VAL : limit::area_scale);
+      if (round == 0) add_progress((double)chart.mesh.tris.size() / (double)n_triangles);
+    } catch (const GoalMissed& e) {
+      charts.failure[p] = "part " + std::to_string(p) + ": " + e.what();
+    } catch (const NotAdmissible& e) {
+      throw NotAdmissible("part " + std::to_string(p) + ": " + e.what());
+    }
+  });
+}
+
+/// Cuts a part without a map, or with a poor one. Returns the new number of parts, n_parts if it stays as it
+/// is; sets as_it_is[p] if it has to be mapped all the same.
+int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options, int round, Charts& charts) {
+  const ParamReport& report = charts.report[p];
+  const SubMesh& mesh = charts.chart[p].mesh;
+  const bool missed = !charts.failure[p].empty();
+  const double area_scale = missed ? HUGE_VAL : report.area_scale;
+  // a circle map that was asked for is the user's own choice
+  const bool chosen = report.used == options.map && options.map != MapKind::conformal;
+  const bool stretched = !missed && !chosen && round < limit::stretched_rounds &&
+                         report.anisotropy_mean > limit::mean_anisotropy &&
+                         mesh.tris.size() >= limit::least_triangles;
+  const bool limbs =
+      !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
+  int n = n_parts;
+  if (missed || limbs || stretched || report.anisotropy_p99 > limit::high_anisotropy)
+    n = cut_along_model_edges(surface, p, n_parts);
+  if (n == n_parts && (limbs || stretched)) n = cut_along_limbs(surface, p, n_parts);
+  if (n == n_parts && !missed && !chosen && round < limit::limb_rounds &&
+      report.anisotropy_median > limit::limb_anisotropy && mesh.tris.size() >= limit::limb_triangles)
+    n = cut_if_flatter(surface, mesh, p, n_parts, options, report);
+  charts.as_it_is[p] = charts.chart[p].uv.empty() && !missed && n == n_parts;
+  if (n > n_parts || charts.as_it_is[p] || !(area_scale > limit::unresolved_area_scale || stretched))
+    return n;
+  // between places that should be apart, and in halves; the latter first if the former has not helped
+  std::vector<std::array<int, 2>> choice[2] = {report.apart, {}};
+  for (auto& pair : choice[0]) pair = {mesh.vertex[pair[0]], mesh.vertex[pair[1]]};
+  if (round >= limit::limb_rounds) std::swap(choice[0], choice[1]);
+  const bool peeled = missed && round >= limit::even_rounds;  // little by little
+  const bool cut = (peeled && bisect_part(surface, p, n_parts, {}, true)) ||
+                   bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]);
+  return n_parts + cut;
+}
+
+}  // namespace
+
+std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
+                               std::vector<ParamReport>& reports) {
+  if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
+  Charts charts;
+  for (int round = 0;; ++round) {
+    take_parts(surface, n_parts, charts);
+    map_waiting(options, round, surface.tris.size(), charts);
+    const bool may_cut = !options.strict && round < limit::most_rounds;
+    bool again = false;
+    for (int p = 0, n = n_parts; p < n; ++p) {
+      if (!charts.waiting[p]) continue;
+      const int before = n_parts;
+      if (may_cut) n_parts = cut_again(surface, p, n_parts, options, round, charts);
+      charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]);
+      again |= charts.waiting[p];
+      if (!charts.waiting[p] && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
+    }
+    if (!again) break;
+  }
+  reports = std::move(charts.report);
+  return std::move(charts.chart);
+}
+
+}  // namespace meshpipe

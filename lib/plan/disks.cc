@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts a surface until every part has genus 0 and a border.
+#include <algorithm>
+#include <numeric>
+
+#include "lib/core/error.h"
+#include "lib/core/progress.h"
+#include "lib/partition/partition.h"
+#include "lib/plan/plan.h"
+#include "lib/plan/thresholds.h"
+
+namespace meshpipe {
+namespace {
+
+/// The most triangles that a part of a component may have; 0: any number.
+int bound_of(int faces, const PartitionOptions& options) {
+  return options.max_faces > 0            ? options.max_faces
+         : faces > limit::large_component ? limit::faces_of_large
+                                          : 0;
+}
+
+/// The best labelling of a component, within the bound on triangles. No parts if there is none.
+Labelling label_component(Component& c, const PartitionOptions& options) {
+  Labelling l;
+  if (c.whole.maps_to_the_plane()) {
+    l.label.assign(c.mesh.tris.size(), 0);
+    l.parts = 1;
+  } else {
+    l = best_labelling(c, options.homology, options.seed);
+  }
+  const int bound = bound_of((int)c.mesh.tris.size(), options);
+  if (l.parts == 0 || bound == 0) return l;
+  Labelling bounded = l;
+  bound_faces(c, bounded, bound, options.seed);
+  return bounded.parts > 0 || options.max_faces > 0 ? bounded : l;
+}
+
+}  // namespace
+
+int partition_to_disks(Surface& surface, const PartitionOptions& options, std::vector<int>* neighbors) {
+  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  if (int v = find_pinched_vertex({surface, opposite}); v >= 0)
+    throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
+  std::vector<int> component;
+  const int n_components = components(opposite, component);
+  const Regions whole = find_regions({surface, opposite}, component, n_components);
+  auto stays_whole = [&](int i) {
+    return whole.region[i].maps_to_the_plane() && bound_of(whole.region[i].faces, options) == 0;
+  };
+  std::vector<int> part(component);
+  for (int& i : part) i = stays_whole(i) ? -1 : i;
+  constexpr double before = 0.05, searching = 0.6;
+  add_progress(before);
+  std::vector<SubMesh> subs = split_by_label(surface, part, n_components);
+  std::vector<std::vector<int>> within = opposite_of_parts(subs, {surface, opposite}, part);
+  int n_parts = 0;
+  std::vector<int> first(n_components);
+  for (int i = 0; i < n_components; ++i) {
+    first[i] = n_parts;
+    if (stays_whole(i)) {
+      ++n_parts;
+      continue;
+    }
+    ConnectedPart sub{std::move(subs[i]), std::move(within[i]), {}};
+    const std::vector<int> face = std::move(sub.face);
+    if (surface.face.has("model"))
+      for (int t : face) sub.model.push_back(surface.face.get<std::uint8_t>("model")[t]);
+    Component c = make_component(std::move(sub), whole.region[i]);
+    c.share = searching * (double)face.size() / (double)part.size();
+    const Labelling l = label_component(c, options);
+    if (l.parts == 0)
+      throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
+                       " triangles and genus " + std::to_string(c.whole.genus()) +
+                       " could not be cut into parts of genus 0");
+    for (std::size_t t = 0; t < l.label.size(); ++t) part[face[t]] = l.label[t];
+    n_parts += l.parts;
+  }
+  for (std::size_t t = 0; t < part.size(); ++t) part[t] = first[component[t]] + std::max(part[t], 0);
+  surface.face.set("part", std::move(part));
+  if (!surface.face.has("origin")) {
+    std::vector<int> identity(surface.tris.size());
+    std::iota(identity.begin(), identity.end(), 0);
+    surface.face.set("origin", std::move(identity));
+  }
+  if (n_parts > n_components) {  // else each maps to the plane as it is
+    straighten_interfaces({surface, opposite}, n_parts, limit::snap, options.max_faces);
+    hand_over_slivers({surface, opposite}, n_parts, options.max_faces);
+    if (std::string fault = part_fault({surface, opposite}, surface.face.get<int>("part")); !fault.empty())
+      throw GoalMissed(fault);
+  }
+  if (neighbors) *neighbors = std::move(opposite);
+  return n_parts;
+}
+
+}  // namespace meshpipe

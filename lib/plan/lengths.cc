@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts every part that is too long, until none is.
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "lib/core/cut.h"
+#include "lib/core/error.h"
+#include "lib/core/progress.h"
+#include "lib/partition/partition.h"
+#include "lib/plan/plan.h"
+#include "lib/plan/thresholds.h"
+
+namespace meshpipe {
+namespace {
+
+/// A surface with its parts, as far as they are cut.
+struct Work {
+  Surface& surface;
+  const MultiscaleOptions& options;
+  std::vector<MultiscaleCut>* cuts;
+  std::vector<int> opposite;
+  std::vector<Topology> is;   ///< of each part
+  std::vector<char> was_cut;  ///< of each part
+  int parts() const { return (int)is.size(); }
+};
+
+/// A part that is to be cut.
+struct Task {
+  int part, depth;
+  double share;  ///< of the work, as predicted
+};
+
+/// A surface with one part cut in two.
+struct Halves {
+  Surface surface;
+  std::vector<int> opposite, side;
+  std::vector<Topology> is;
+  int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
+};
+
+std::string name(int part) { return "part " + std::to_string(part); }
+
+bool is_disk_with_holes(const Topology& t) { return t.components == 1 && t.genus == 0 && t.loops >= 1; }
+
+/// Measures the two sides of a cut.
+void measure_halves(Halves& halves) {
+  try {
+    halves.is = topology_of_parts({halves.surface, halves.opposite}, halves.side, 2);
+  } catch (const NotAdmissible&) {  // a pinched vertex, where the line was snapped to one twice
+    return;
+  }
+  if (is_disk_with_holes(halves.is[0]) && is_disk_with_holes(halves.is[1]))
+    halves.loops = halves.is[0].loops + halves.is[1].loops;
+}
+
+/// What holds the vertices of a part while a line is pulled straight: creases that it follows closely.
+std::vector<Hold> holds_of(const Part& part, const std::vector<double>& field, const LevelLine& level) {
+  const std::vector<Tri>& tris = part.mesh.tris;
+  std::vector<Hold> hold(field.size(), Hold::moves);
+  for (int h = 0; h < (int)part.crease.size(); ++h) {
+    const int u = origin(tris, h), v = target(tris, h), apex = target(tris, next(h));
+    if (!part.crease[h] || level.sign[u] != level.sign[v] || level.sign[u] == level.sign[apex]) continue;
+    // a triangle may reach far from its crease
+    auto reach = [&](int w) {
+      return field[w] / (field[w] - field[apex]) * norm(part.mesh.points[apex] - part.mesh.points[w]);
+    };
+    if (std::max(reach(u), reach(v)) < norm(part.mesh.points[v] - part.mesh.points[u]))
+      hold[u] = hold[v] = Hold::joins;
+  }
+  return hold;
+}
+
+/// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight. A line
+/// that is snapped to vertices may touch itself there: then it is snapped less, until the halves have no more
+/// loops than expected. On a few coarse triangles it may be pulled off the part: at last it stays as it is.
+Halves split(const Work& work, const Part& part, const std::vector<double>& field,
+             const std::vector<char>& active, int expected_loops) {
+  struct Pull {
+    double snap;
+    int sweeps;
+  };
+  const LevelLine level = zero_level(part.mesh, field);
+  const std::vector<Hold> hold = holds_of(part, field, level);
+  Halves best;
+  for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
+    LevelLine line = level;
+    pull_straight({part.mesh, part.opposite}, line, hold, snap, sweeps);
+    Halves trial{work.surface, work.opposite, {}, {}};
+    cut_along_line({trial.surface, trial.opposite}, in_whole(line, part.vertex, work.surface.points.size()),
+                   active, trial.side);
+    measure_halves(trial);
+    if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
+    best = std::move(trial);
+    if (best.loops <= expected_loops) break;
+  }
+  return best;
+}
+
+/// The single-level cut, as it comes; says how much of the part its map cannot tell apart.
+CutMaps single_cut(const Part& part, MultiscaleCut& says, std::vector<double>& field) {
+  CutMaps cut;
+  cut.disk = fill_holes(part.mesh);
+  MaxCut one = max_cut(cut.disk);
+  says.too_small = one.too_small;
+  says.reversed = one.reversed;
+  cut.levels.push_back(std::move(one.level));
+  cut.lines.push_back(std::move(one.line));
+  cut.field = field = std::move(one.field);
+  return cut;
+}
+
+/// Throws if the single-level cut has failed.
+void expect_single_cut(const MultiscaleOptions& options, const MultiscaleCut& cut, const Halves& made,
+                       std::size_t faces) {
+  auto fail = [&](const std::string& why) {
+    throw GoalMissed(name(cut.part) + " " + why + ": one map shrinks " + std::to_string(cut.too_small) +
+                     " of " + std::to_string(faces) + " triangles below 1e-15 of area and reverses " +
+                     std::to_string(cut.reversed));
+  };
+  if (made.loops == 0) fail("cannot be cut into 2 connected halves");
+  if (std::max(made.is[0].eta_geo, made.is[1].eta_geo) > options.max_aspect)
+    fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +
+         std::to_string(made.is[1].eta_geo) + ", above " + std::to_string(options.max_aspect));
+  constexpr double blind = 0.01;  // a share of the triangles
+  if (cut.too_small + cut.reversed > blind * (double)faces)
+    fail("is cut by a line that does not see all of it");
+}
+
+/// The triangles of one part with its connectivity; marks them in `active`.
+Part take_part(const Work& work, int p, std::vector<char>& active) {
+  const std::vector<int>& label = work.surface.face.get<int>("part");
+  std::vector<int> mine(label.size());
+  active.resize(label.size());
+  for (std::size_t t = 0; t < label.size(); ++t) {
+    active[t] = label[t] == p;
+    mine[t] = active[t] ? 0 : -1;
+  }
+  return make_part(select_part({work.surface, work.opposite, model_of(work.surface)}, mine, 0));
+}
+
+/// Cuts one part in two; adds the tasks of halves that are still too long. Nothing if it cannot be cut.
+void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
+  constexpr double once = 2. / 3;  // of what a cut is predicted to take; the rest is for cutting its halves
+  const MultiscaleOptions& options = work.options;
+  const bool single = options.method == CutMethod::maxcut;
+  std::vector<char> active;
+  const Part part = take_part(work, task.part, active);
+  MultiscaleCut cut;
+  cut.part = task.part;
+  cut.halves[0] = task.part;
+  cut.halves[1] = work.parts();
+  cut.eta = work.is[task.part].eta_geo;
+  std::vector<double> field;
+  CutMaps maps = single ? single_cut(part, cut, field) : best_cut(part, once * task.share, field);
+  cut.levels = (int)maps.levels.size();
+  const Assessment expected = assess(part, field);
+  cut.length = expected.length / diagonal(part.mesh);
+  if (options.keep_maps) cut.maps = std::move(maps);
+  Halves made;
+  if (expected.valid) made = split(work, part, field, active, expected.loops);
+  if (work.cuts && (single || made.loops > 0)) work.cuts->push_back(cut);
+  if (single) expect_single_cut(options, cut, made, part.mesh.tris.size());
+  if (made.loops == 0) return;
+  const int other = work.parts();
+  work.surface = std::move(made.surface);
+  work.opposite = std::move(made.opposite);
+  std::vector<int>& label = work.surface.face.get<int>("part");
+  for (std::size_t t = 0; t < label.size(); ++t)
+    if (made.side[t] == 1) label[t] = other;
+  work.is.resize(other + 1);
+  work.was_cut.resize(other + 1, 0);
+  add_progress(0.3 * once * task.share);
+  for (int s : {0, 1}) {
+    const int half = s ? other : task.part;
+    const double share = (1 - once) / 2 * task.share;
+    work.was_cut[half] = 1;
+    work.is[half] = made.is[s];
+    if (work.is[half].eta_geo > options.max_aspect)
+      tasks.push_back({half, task.depth + 1, share});
+    else
+      add_progress(share);
+  }
+}
+
+/// Straightens the interfaces of the parts that were joined, unless that makes a part too long.
+void straighten_unions(Work& work, int n, const std::vector<char>& is_union) {
+  Surface straight = work.surface;
+  std::vector<int> after = work.opposite;
+  straighten_interfaces({straight, after}, n, limit::snap, 0, is_union);
+  const std::vector<Topology> is = topology_of_parts({straight, after}, straight.face.get<int>("part"), n);
+  if (std::all_of(is.begin(), is.end(),
+                  [&](const Topology& t) { return admissible(t, work.options.max_aspect); }))
+    work.surface = std::move(straight), work.opposite = std::move(after);
+}
+
+/// Joins neighbors one of which was cut here while the union is admissible: a ring's two long arcs, each cut
+/// lengthwise, make two flat rings.
+void join_parts(Work& work) {
+  Surface& s = work.surface;
+  std::vector<int>& label = s.face.get<int>("part");
+  if (*std::min_element(label.begin(), label.end()) < 0) return;  // only some of the parts are given
+  const int n_before = work.parts();
+  const double max_aspect = work.options.max_aspect;
+  Joiner joiner({s, work.opposite}, label, find_regions({s, work.opposite}, label, n_before));
+  std::vector<int> becomes(n_before);
+  std::iota(becomes.begin(), becomes.end(), 0);
+  auto length = [&](int h) { return norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]); };
+  const bool any = join_neighbors(joiner, {s, work.opposite}, label, length, [&](int a, int b) {
+    if (!work.was_cut[a] && !work.was_cut[b]) return false;
+    const Region r = joiner.joined(a, b);
+    if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect) return false;
+    std::vector<int> both(label.size());
+    for (std::size_t t = 0; t < both.size(); ++t) both[t] = label[t] == a || label[t] == b ? 0 : -1;
+    if (!admissible(topology_of_parts({s, work.opposite}, both, 1)[0], max_aspect)) return false;
+    std::replace(becomes.begin(), becomes.end(), b, a);
+    return true;
+  });
+  if (!any) return;
+  std::vector<int> number(n_before, -1);
+  int n = 0;
+  for (int p = 0; p < n_before; ++p)
+    if (becomes[p] == p) number[p] = n++;
+  for (int& l : label) l = number[l];
+  std::vector<char> is_union(n, 0);
+  for (int p = 0; p < n_before; ++p)
+    if (becomes[p] != p) is_union[number[becomes[p]]] = 1;
+  if (work.cuts)
+    for (MultiscaleCut& c : *work.cuts)
+      for (int& half : c.halves) half = number[becomes[half]];
+  if (n <= limit::straightened_unions) straighten_unions(work, n, is_union);
+  work.is.assign(n, {});
+}
+
+/// The parts' topology, found again for those whose triangles are not as many as they were: a cut splits
+/// those of its neighbors.
+std::vector<Topology> refreshed(const Work& work) {
+  std::vector<Topology> is = work.is;
+  std::vector<int> label = work.surface.face.get<int>("part"), faces(is.size(), 0);
+  for (int l : label)
+    if (l >= 0) ++faces[l];
+  for (int& l : label)
+    if (l >= 0 && faces[l] == is[l].faces) l = -1;
+  if (std::all_of(label.begin(), label.end(), [](int l) { return l < 0; })) return is;
+  std::vector<Topology> changed = topology_of_parts({work.surface, work.opposite}, label, (int)is.size());
+  for (std::size_t p = 0; p < is.size(); ++p)
+    if (changed[p].faces > 0) is[p] = std::move(changed[p]);
+  return is;
+}
+
+/// Hands slivers next to the cuts over, unless that makes a part too long.
+void drop_slivers(Work& work) {
+  const std::vector<int> before = work.surface.face.get<int>("part");
+  if (!hand_over_slivers({work.surface, work.opposite}, work.parts())) return;
+  std::vector<int>& part = work.surface.face.get<int>("part");
+  std::vector<Topology> now = topology_of_parts({work.surface, work.opposite}, part, work.parts());
+  if (std::all_of(now.begin(), now.end(),
+                  [&](const Topology& t) { return t.eta_geo <= work.options.max_aspect; }))
+    work.is = std::move(now);
+  else
+    part = before;
+}
+
+}  // namespace
+
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts,
+                   std::vector<Topology>* topology, std::vector<int>* neighbors) {
+  const std::vector<int>& given = surface.face.get<int>("part");
+  const int given_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
+  Work work{surface, options, cuts, opposite_halfedges(surface.tris, (int)surface.points.size()), {}, {}};
+  work.is = topology_of_parts({surface, work.opposite}, given, given_parts);
+  work.was_cut.assign(given_parts, 0);
+  std::vector<Task> tasks;
+  double faces = 0;
+  for (int p = given_parts - 1; p >= 0; --p) {
+    const Topology& t = work.is[p];
+    if (!is_disk_with_holes(t))
+      throw NotAdmissible(name(p) + " has " + std::to_string(t.components) + " components, genus " +
+                          std::to_string(t.genus) + " and " + std::to_string(t.loops) +
+                          " boundary loops where 1, 0 and at least 1 are needed; run mpartition first");
+    if (t.eta_geo > options.max_aspect) {
+      tasks.push_back({p, 0, (double)t.faces});
+      faces += (double)t.faces;
+    }
+  }
+  constexpr double before = 0.05, all = 0.9;  // of the work
+  add_progress(before);
+  for (Task& t : tasks) t.share *= all / faces;
+  while (!tasks.empty()) {
+    const Task task = tasks.back();
+    tasks.pop_back();
+    if (task.depth >= limit::cut_depth) continue;  // cuts do not make it shorter
+    if (options.most_parts > 0 && work.parts() >= options.most_parts)
+      throw GoalMissed("more than " + std::to_string(options.most_parts) +
+                       " parts are needed for aspect ratios below " + std::to_string(options.max_aspect));
+    cut_part(work, task, tasks);
+  }
+  if (work.parts() > std::max(given_parts, 2)) join_parts(work);
+  if (work.parts() > 1 && std::find(work.was_cut.begin(), work.was_cut.end(), 1) != work.was_cut.end())
+    drop_slivers(work);
+  if (topology) *topology = refreshed(work);
+  if (neighbors) *neighbors = std::move(work.opposite);
+  return work.parts();
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The cutting planner: decides what is cut so that every part maps to the plane, and what is cut again once a
+// map has failed. All of its limits are in lib/plan/thresholds.h.
+#pragma once
+#include <vector>
+
+#include "lib/core/chart.h"
+#include "lib/core/mesh.h"
+#include "lib/core/topology.h"
+#include "lib/multiscale/multiscale.h"
+#include "lib/param/param.h"
+
+namespace meshpipe {
+
+struct PartitionOptions {
+  bool homology = false;  ///< try cuts along handles (lib/partition/handles.h) even if METIS does well
+  int seed = 1;
+  int max_faces = 0;  ///< most triangles of a part; 0: as lib/plan/thresholds.h says
+};
+
+/// Sets face columns `part` (0..n-1) and `origin` (where missing) so that every part is edge-connected,
+/// touches itself nowhere, has genus 0 and a border: as few parts as it finds, then the shortest and
+/// smoothest cut. Cuts run through triangles, and along model edges where they can (face column `model`).
+/// `opposite`, if given, receives the result's. Returns the number of parts. Requires: an oriented manifold.
+/// Throws NotAdmissible, and GoalMissed if there is no such cut.
+int partition_to_disks(Surface& surface, const PartitionOptions& options = {},
+                       std::vector<int>* opposite = nullptr);
+
+enum class CutMethod {
+  multiscale,
+  maxcut  ///< one map and one straight line (lib/multiscale/maxcut.h), for comparison
+};
+
+struct MultiscaleOptions {
+  CutMethod method = CutMethod::multiscale;
+  double max_aspect = 4;   ///< eta_max of the paper's eq. (5)
+  int most_parts = 0;      ///< more are a failure (0: any number)
+  bool keep_maps = false;  ///< fill MultiscaleCut::maps
+};
+
+/// One cut that was made.
+struct MultiscaleCut {
+  int part = 0;  ///< of the input, or the half of an earlier cut that was cut again
+  /// Parts of the result; cut again themselves if they are the `part` of a later cut.
+  int halves[2] = {0, 0};
+  double eta = 0;     ///< eta_geo before
+  int levels = 0;     ///< of Laplace maps
+  double length = 0;  ///< of the cut line, over the diagonal of the part's bounding box
+  int too_small = 0;  ///< with maxcut: triangles whose image is smaller than 1e-15
+  int reversed = 0;   ///< with maxcut: or has no positive area
+  CutMaps maps = {};  ///< with keep_maps
+};
+
+/// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, then
+/// joins halves to neighbors where the union is admissible. Triangles of no part (-1) are left alone, and
+/// then nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts; `cuts`,
+/// `topology` and `opposite` receive, if given, what was done in order, and the result's.
+/// Requires: parts of genus 0 with a border. Throws NotAdmissible; GoalMissed if more than most_parts are
+/// needed, and with maxcut if one cut does not do or its map loses too many triangles.
+int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
+                   std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
+                   std::vector<int>* opposite = nullptr);
+
+/// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane, charts in parallel. A part
+/// whose map fails, or is worse than lib/plan/thresholds.h allows, is cut, and its pieces are mapped in its
+/// place: along model edges inside it if these bound simple pieces, else along its limbs, else by a short
+/// line. Cuts append vertices, split triangles and rewrite face column `part`; with options.strict there are
+/// none. Before circle maps, triangles with two edges on the longest loop are split (lib/param/ears.h).
+/// Returns the charts, with one row of `reports` per part. Throws GoalMissed if a part has no one-to-one map.
+std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
+                               std::vector<ParamReport>& reports);
+
+}  // namespace meshpipe

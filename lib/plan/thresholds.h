@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every limit by which the planner decides to cut: what it is, why, and what it does on 40 surfaces (34 real
+// ones, CAD, scans and segmentations, and 6 generated ones, with 2200 maps in all).
+#pragma once
+#include <cstddef>
+
+namespace meshpipe::limit {
+
+// Of a surface, before any map is known.
+
+/// Triangles of a component above which its parts are bounded, and that bound: solves stay near linear, and
+/// there is work for all threads. Effect: none below 300000 triangles.
+constexpr int large_component = 300000, faces_of_large = 100000;
+/// Cuts within cuts of one part, after which it counts as one that does not get shorter. Effect: 4 levels
+/// are the most, on 2 surfaces.
+constexpr int cut_depth = 12;
+/// Parts up to which the interfaces of joined ones are straightened again: each attempt copies the surface.
+/// Effect: halves are joined on 5 surfaces, straightened on 1.
+constexpr int straightened_unions = 8;
+/// Fraction of an edge within which a cut is moved to the edge's end: no slivers.
+constexpr double snap = 0.1;
+
+// Of a map, when its part is cut again.
+
+/// Area scale (p99 / p1) above which a part is cut along its limbs: a limb that shrinks so much does so by a
+/// factor over every few elements, and loses its shape. Effect: 51 maps on 10 surfaces.
+constexpr double area_scale = 1e8;
+/// Area scale above which a part is cut by any line: edges of 1e-8 of the chart keep half their digits.
+/// Effect: with the next one, 58 cuts on 4 surfaces.
+constexpr double unresolved_area_scale = 1e16;
+/// Mean of sigma1/sigma2 over the area above which a part is cut: coarse tubes and rings of CAD, which have
+/// nothing between their ends to follow a ring in the plane, lie flat once they are open. Effect: 92 maps on
+/// 5 surfaces.
+constexpr double mean_anisotropy = 4;
+/// 99 % quantile of sigma1/sigma2 above which a part is cut if model edges bound pieces of it, at no cost.
+/// Effect: 21 cuts on 6 surfaces for this reason alone.
+constexpr double high_anisotropy = 4;
+/// Median of sigma1/sigma2 above which a limb is cut along its length. A limb with N edges around it changes
+/// its scale by exp(2 pi / N) over each of them, which shears triangles to about 1 + 3.6 / N. Effect: 56 maps
+/// on 20 surfaces.
+constexpr double limb_anisotropy = 1.05;
+/// That median, less 1, in the pieces over that of the whole: the cut is undone above it. Effect: keeps 4 of
+/// the 56, on 3 surfaces.
+constexpr double limb_gain = 0.6;
+/// Geodesic aspect ratio below which no limb is cut along its length: it has no length.
+constexpr double limb_aspect = 2;
+/// Triangles below which no limb is cut along its length: it costs more than it gains.
+constexpr std::size_t limb_triangles = 500;
+/// Triangles below which no part is cut for the mean of sigma1/sigma2.
+constexpr std::size_t least_triangles = 50;
+/// Triangles that the pieces bounded by model edges have on average, at least: else the edges are noise.
+constexpr std::size_t piece_triangles = 8;
+/// Parts that one cut along limbs may end in: a ragged part keeps its aspect ratio through many cuts. Effect:
+/// 80 of 121 cuts are given up, on 4 surfaces.
+constexpr int limb_parts = 4;
+
+// Rounds of mapping and cutting, after which a kind of cut is no longer tried.
+
+constexpr int limb_rounds = 2;        ///< cuts along limbs; then halves come before pairs of places
+constexpr int stretched_rounds = 12;  ///< cuts for the mean of sigma1/sigma2; 8 rounds are the most
+constexpr int even_rounds = 12;       ///< then parts without a map are halved by their triangles; never
+constexpr int most_rounds = 24;       ///< cuts of any kind; 9 rounds are the most
+
+}  // namespace meshpipe::limit

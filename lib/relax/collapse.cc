@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/operations.h"
+
+namespace meshpipe {
+namespace {
+
+/// May `gone` go as far as the connectivity and what is held are concerned?
+bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
+  const EditMesh& m = s.mesh;
+  if (s.hold[kept] == frozen) return false;  // may be joined outside the patch
+  if (merge ? s.hold[gone] != fixed : s.hold[gone] >= fixed || (s.hold[gone] == slides && !m.hard[h]))
+    return false;
+  if (!m.can_collapse(h, gone, merge)) return false;
+  const int g = m.opp[h];
+  if (g < 0) return true;
+  const int c = m.apex(h), d = m.apex(g);
+  return m.valence(gone) + m.valence(kept) - 4 <= rules::largest_valence &&
+         !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]);
+}
+
+/// Does the line through `gone` hardly change when it goes straight to p, where `kept` will be?
+bool line_stays(const State& s, int gone, int kept, Vec3 p) {
+  int beyond = -1;  // the line's next vertex on the other side
+  s.mesh.star(gone, [&](int e) {
+    if (s.mesh.hard[e] && s.mesh.to(e) != kept) beyond = s.mesh.to(e);
+    if (s.mesh.hard[prev(e)] && s.mesh.apex(e) != kept) beyond = s.mesh.apex(e);
+  });
+  if (beyond < 0) return false;
+  const Vec3 chord = p - s.points[beyond];
+  return !(norm(cross(chord, s.points[gone] - s.points[beyond])) >
+           rules::line_deviation * s.target(gone) * norm(chord));
+}
+
+/// Collapses the edge whichever way works.
+bool collapse_either(State& s, int h, const rules::Collapse& limits) {
+  const int a = s.mesh.from(h), b = s.mesh.to(h);
+  return collapse_edge(s, h, a, limits) || collapse_edge(s, h, b, limits);
+}
+
+}  // namespace
+
+bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge) {
+  const EditMesh& m = s.mesh;
+  const int kept = m.from(h) == gone ? m.to(h) : m.from(h), g = m.opp[h];
+  if (!may_collapse(s, h, gone, kept, merge)) return false;
+  Place place = s.place[kept];
+  Vec3 p = s.points[kept];
+  if (s.hold[kept] == loose) {
+    place = s.reference->walk.closest(s.place[kept], lerp(s.points[gone], p, 0.5));
+    p = s.reference->walk.point(place);
+  }
+  if (s.hold[gone] == slides && !line_stays(s, gone, kept, p)) return false;
+  const Vec3 normal = s.hold[kept] ? s.normal[kept] : s.reference->normal(place);
+  double shape_before = 0, shape_after = 0, cosine_before = 1, cosine_after = 1;
+  bool short_enough = true;
+  for (int v : {gone, kept})
+    m.star(v, [&](int e) {
+      const int b = m.to(e), f = m.apex(e);
+      const Vec3 x = s.points[v], y = s.points[b], z = s.points[f];
+      shape_before = std::max(shape_before, shape_energy(x, y, z));
+      cosine_before = std::min(cosine_before, s.cosine(v, b, f));
+      if (e / 3 == h / 3 || (g >= 0 && e / 3 == g / 3)) return;
+      shape_after = std::max(shape_after, shape_energy(p, y, z));
+      cosine_after = std::min(cosine_after, normal_cosine(p, y, z, normal + s.normal[b] + s.normal[f]));
+      const double l = norm(y - p);
+      if (l > limits.length * 0.5 * (s.target(b) + s.target(kept)) && l > norm(y - x)) short_enough = false;
+    });
+  if (!short_enough || (shape_after > limits.shape && shape_after > shape_before) ||
+      folds(cosine_before, cosine_after))
+    return false;
+  if (s.hold[kept] == loose) put(s, kept, place, p, normal);
+  remove_vertex(s, h, gone);
+  return true;
+}
+
+void remove_vertex(State& s, int h, int gone) {
+  const int kept = s.mesh.from(h) == gone ? s.mesh.to(h) : s.mesh.from(h);
+  if (s.recording) s.edits.push_back({Edit::collapse, h, gone});
+  s.mesh.collapse(h, gone);
+  mark_edited(s, kept);
+  s.mesh.neighbours(kept, [&](int v) { mark_edited(s, v); });
+  ++s.counts.collapses;
+}
+
+void collapse_short(State& s, double below, double least) {
+  if (s.mesh.live <= least) return;
+  for (int h : edges_by_length(s, below, true)) {
+    if (s.mesh.live <= least) break;
+    if (!s.mesh.dead(h / 3) && !s.mesh.hard[h] && s.length(h) < below)
+      collapse_either(s, h, rules::short_edge);
+  }
+}
+
+void collapse_short_segments(State& s) {
+  const EditMesh& m = s.mesh;
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    if (m.dead(h / 3) || !m.hard[h] || h < m.opp[h]) continue;
+    if (s.keep_border && m.opp[h] < 0)
+      collapse_either(s, h, rules::kept_border);
+    else if (s.length(h) < rules::short_segment)
+      collapse_either(s, h, rules::short_line);
+  }
+}
+
+void merge_corners(State& s) {
+  const EditMesh& m = s.mesh;
+  auto close = [&](int h) { return s.length(h) < rules::merged_corners; };
+  // two lines may become one only where they are as close, and not around the last triangle of a patch
+  auto joins_lines = [&](int e) {
+    if (e < 0 || !m.hard[next(e)] || !m.hard[prev(e)]) return false;
+    const int t = m.opp[next(e)] / 3;
+    return m.opp[next(e)] < 0 || m.opp[prev(e)] < 0 || s.labels.patch[t] != s.labels.patch[e / 3] ||
+           !(close(next(e)) && close(prev(e)));
+  };
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    if (m.dead(h / 3) || !m.hard[h] || h < m.opp[h] || !close(h)) continue;
+    const int a = m.from(h), b = m.to(h);
+    if (s.hold[a] != fixed || s.hold[b] != fixed) continue;
+    if (s.keep_border && (m.on_border(a) || m.on_border(b))) continue;
+    if (joins_lines(h) || joins_lines(m.opp[h])) continue;
+    if (collapse_edge(s, h, a, rules::short_line, true) || collapse_edge(s, h, b, rules::short_line, true))
+      ++s.counts.corners_merged;
+  }
+}
+
+void remove_irregular(State& s) {
+  const EditMesh& m = s.mesh;
+  const int n = (int)m.out.size();
+  for (int v = 0; v < n; ++v) {
+    if (m.out[v] < 0 || s.hold[v] || m.valence(v) > 4 || m.on_border(v)) continue;
+    int best = -1;
+    double shortest = 1e300;
+    m.star(v, [&](int h) {
+      const double l = norm(s.points[m.to(h)] - s.points[v]);
+      if (l < shortest) shortest = l, best = h;
+    });
+    collapse_edge(s, best, v, rules::irregular);
+  }
+}
+
+}  // namespace meshpipe

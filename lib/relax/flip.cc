@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/operations.h"
+
+namespace meshpipe {
+namespace {
+
+/// The worse shape of the two triangles of the edge of h as they are, and as they would be flipped.
+double worse_now(const State& s, int h) {
+  const EditMesh& m = s.mesh;
+  const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(m.opp[h]);
+  return std::max(s.shape(a, b, c), s.shape(b, a, d));
+}
+double worse_flipped(const State& s, int h) {
+  const EditMesh& m = s.mesh;
+  const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(m.opp[h]);
+  return std::max(s.shape(a, d, c), s.shape(b, c, d));
+}
+
+/// By how much flipping the edge of h changes the sum of the squares of the excesses.
+int flip_gain(const State& s, int h) {
+  const EditMesh& m = s.mesh;
+  return 2 *
+         (2 - excess(s, m.from(h)) - excess(s, m.to(h)) + excess(s, m.apex(h)) + excess(s, m.apex(m.opp[h])));
+}
+
+/// May the valence at both ends be chosen? Not on model edges inside the surface.
+bool valence_is_free(const State& s, int h) {
+  if (s.mesh.opp[h] < 0 || s.mesh.hard[h]) return false;
+  for (int v : {s.mesh.from(h), s.mesh.to(h)})
+    if (s.hold[v] && s.hold[v] != anchored && !s.mesh.on_border(v)) return false;
+  return true;
+}
+
+/// The edges of the star of v: those at v and those opposite to it. Returns their number, 0 if they are too
+/// many.
+int edges_of_star(const EditMesh& m, int v, int (&edges)[2 * rules::largest_star]) {
+  int n = 0;
+  if (m.valence(v) <= rules::largest_star) m.star(v, [&](int e) { edges[n++] = e, edges[n++] = next(e); });
+  return n;
+}
+
+/// Looks for up to `depth` flips that begin with the edge of h, cost nothing in valence until the last and
+/// gain there. Keeps them, or undoes them and returns false.
+bool unravel(State& s, int h, int depth, int gained) {
+  EditMesh& m = s.mesh;
+  if (!valence_is_free(s, h)) return false;
+  gained += flip_gain(s, h);
+  if (gained > 0 || (gained == 0 && depth == 1)) return false;
+  const double w = worse_flipped(s, h);
+  if ((w > rules::sound_for_smoothing && w > worse_now(s, h)) || !may_flip(s, h)) return false;
+  const int four[4] = {m.from(h), m.to(h), m.apex(h), m.apex(m.opp[h])};
+  m.flip(h);
+  const int flipped = next(h);
+  bool found = gained < 0;
+  for (int i = 0; i < 4 && !found; ++i) {
+    if (excess(s, four[i]) == 0) continue;
+    int edges[2 * rules::largest_star];
+    const int n = edges_of_star(m, four[i], edges);
+    for (int k = 0; k < n && !found; ++k)
+      found = edges[k] != flipped && edges[k] != m.opp[flipped] && unravel(s, edges[k], depth - 1, gained);
+  }
+  if (!found) {
+    // flips that were undone have left the edges in place but not their numbers
+    int back = -1;
+    m.star(four[2], [&](int e) {
+      if (m.to(e) == four[3]) back = e;
+    });
+    m.flip(back);
+    return false;
+  }
+  for (int v : four) mark_edited(s, v);
+  ++s.counts.flips;
+  return true;
+}
+
+}  // namespace
+
+bool may_flip(const State& s, int h) {
+  const EditMesh& m = s.mesh;
+  const int g = m.opp[h];
+  if (g < 0 || m.hard[h]) return false;
+  const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(g);
+  if (s.hold[c] == frozen && s.hold[d] == frozen) return false;  // may be joined outside the patch
+  if (c == d || m.valence(a) <= 3 || m.valence(b) <= 3) return false;
+  const Vec3 n0 = s.face_normal(h / 3), n1 = s.face_normal(g / 3),
+             m0 = normalized(area_vector(s.points[a], s.points[d], s.points[c])),
+             m1 = normalized(area_vector(s.points[b], s.points[c], s.points[d]));
+  if (dot(m0, n0 + n1) <= 0 || dot(m1, n0 + n1) <= 0 ||
+      dot(m0, m1) < std::min(dot(n0, n1), rules::bend) - rules::same_cosine)
+    return false;
+  return !folds(std::min(s.cosine(a, b, c), s.cosine(b, a, d)),
+                std::min(s.cosine(a, d, c), s.cosine(b, c, d))) &&
+         !(s.hold[c] == frozen ? m.joined(d, c) : m.joined(c, d));  // the rim may meet itself in a vertex
+}
+
+void flip_edge(State& s, int h) {
+  EditMesh& m = s.mesh;
+  const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(m.opp[h]);
+  if (s.recording) s.edits.push_back({Edit::flip, h, -1});
+  m.flip(h);
+  for (int v : {a, b, c, d}) mark_edited(s, v);
+  ++s.counts.flips;
+}
+
+int excess(const State& s, int v) { return s.mesh.valence(v) - (s.mesh.on_border(v) ? 4 : 6); }
+
+void flip_to_regular(State& s) {
+  for (int h = 0; h < (int)s.mesh.opp.size(); ++h) {
+    if (s.mesh.dead(h / 3) || h > s.mesh.opp[h] || !valence_is_free(s, h) || flip_gain(s, h) >= 0) continue;
+    const double w = worse_flipped(s, h);
+    if ((w <= rules::sound_for_valence || w <= worse_now(s, h)) && may_flip(s, h)) flip_edge(s, h);
+  }
+}
+
+void flip_to_shape(State& s) {
+  const EditMesh& m = s.mesh;
+  const std::vector<int>& changed = s.clocks.changed;
+  const int since = s.clocks.flipped;
+  s.clocks.flipped = ++s.clocks.now;
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    if (m.dead(h / 3) || h > m.opp[h] || m.hard[h]) continue;
+    if (std::max({changed[m.from(h)], changed[m.to(h)], changed[m.apex(h)], changed[m.apex(m.opp[h])]}) <
+        since)
+      continue;
+    const double most = rules::shape_gain * worse_now(s, h);  // no triangle has less than 1
+    if (most > 1 && worse_flipped(s, h) < most && may_flip(s, h)) flip_edge(s, h);
+  }
+}
+
+void remove_dislocations(State& s, int depth) {
+  const int n = (int)s.mesh.out.size();
+  for (int v = 0; v < n; ++v) {
+    if (s.mesh.out[v] < 0 || s.hold[v] || excess(s, v) == 0) continue;
+    int edges[2 * rules::largest_star];
+    const int k = edges_of_star(s.mesh, v, edges);
+    for (int i = 0; i < k; ++i)
+      if (unravel(s, edges[i], depth, 0)) break;
+  }
+}
+
+}  // namespace meshpipe

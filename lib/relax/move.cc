@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <numeric>
+
+#include "lib/relax/operations.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double sqrt3 = 1.7320508075688772;
+
+/// What the energy of a vertex depends on, gathered: its triangles (p, y[i], z[i]). By coordinates, so that
+/// the compiler takes several triangles at a time.
+struct Star {
+  static constexpr int most = rules::largest_star;
+  int n = 0;
+  double y[3][most], z[3][most];
+  double normal[3][most];  ///< sum of the reference normals at the two other corners
+  double area[3][most];    ///< area vectors of the triangles with the last p
+  void look(Vec3 p);
+  double energy(Vec3 p, double size);
+  /// The least cosine of the normal deviations at p, whose reference normal is `normal_p`.
+  double worst_cosine(Vec3 p, Vec3 normal_p) const;
+};
+
+void Star::look(Vec3 p) {
+  for (int i = 0; i < n; ++i) {
+    const double ux = y[0][i] - p.x, uy = y[1][i] - p.y, uz = y[2][i] - p.z;
+    const double vx = z[0][i] - p.x, vy = z[1][i] - p.y, vz = z[2][i] - p.z;
+    area[0][i] = uy * vz - uz * vy;
+    area[1][i] = uz * vx - ux * vz;
+    area[2][i] = ux * vy - uy * vx;
+  }
+}
+
+/// Sum over the triangles of q^2 + w (s + 1/s), s the square of the area over the target's; without a root,
+/// so that only one division a triangle is left.
+double Star::energy(Vec3 p, double size) {
+  look(p);
+  const double a2 = 0.75 * size * size * size * size;  // (twice the target area)^2
+  const double squeezed = rules::size_weight * a2, stretched = rules::size_weight / a2;
+  double each[most];
+  for (int i = 0; i < n; ++i) {
+    const double ux = y[0][i] - p.x, uy = y[1][i] - p.y, uz = y[2][i] - p.z;
+    const double vx = z[0][i] - p.x, vy = z[1][i] - p.y, vz = z[2][i] - p.z;
+    const double wx = vx - ux, wy = vy - uy, wz = vz - uz;
+    const double squares =
+        ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + wx * wx + wy * wy + wz * wz;
+    const double n2 = area[0][i] * area[0][i] + area[1][i] * area[1][i] + area[2][i] * area[2][i];
+    const double e = (squares * squares / 12 + squeezed) / n2 + stretched * n2;
+    each[i] = n2 > 0 ? e : 1e30;
+  }
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += each[i];
+  return sum;
+}
+
+double Star::worst_cosine(Vec3 p, Vec3 normal_p) const {
+  double least = 1;
+  for (int i = 0; i < n; ++i)
+    least = std::min(least, normal_cosine(p, {y[0][i], y[1][i], y[2][i]}, {z[0][i], z[1][i], z[2][i]},
+                                          normal_p + Vec3{normal[0][i], normal[1][i], normal[2][i]}));
+  return least;
+}
+
+/// False for a star too large to be worth it.
+bool gather(const State& s, int v, Star& star) {
+  star.n = 0;
+  if (s.mesh.valence(v) > Star::most) return false;
+  s.mesh.star(v, [&](int h) {
+    const int i = star.n++, a = s.mesh.to(h), b = s.mesh.apex(h);
+    const Vec3 &y = s.points[a], &z = s.points[b], f = s.normal[a] + s.normal[b];
+    star.y[0][i] = y.x, star.y[1][i] = y.y, star.y[2][i] = y.z;
+    star.z[0][i] = z.x, star.z[1][i] = z.y, star.z[2][i] = z.z;
+    star.normal[0][i] = f.x, star.normal[1][i] = f.y, star.normal[2][i] = f.z;
+  });
+  return true;
+}
+
+/// Does a move of v from x to p, where the reference normal is `normal`, fold its star?
+bool folds_star(const State& s, const Star& star, int v, Vec3 x, Vec3 p, Vec3 normal) {
+  const double after = star.worst_cosine(p, normal);
+  return after < rules::least_cosine && folds(star.worst_cosine(x, s.normal[v]), after);
+}
+
+/// The energy of a star, and its derivatives by steps along two unit vectors.
+struct Derivatives {
+  double energy = 0;
+  Vec2 gradient{};
+  double xx = 0, xy = 0, yy = 0;
+  bool flat = true;  ///< is no triangle folded or almost degenerate?
+};
+
+/// Derivatives at x by steps along s and t, for normal n. The square of twice the area, A, and the sum of the
+/// squared sides, S, are quadratic in the vertex's position, A'' = 2 (e x s) (e x t) with the opposite side
+/// e, S'' = 4 I; the energy is Q / A + w A / l0^2 with Q = S^2 / 12 + w l0^2, l0 twice the target area.
+Derivatives derivatives(const Star& star, Vec3 x, Vec3 n, Vec3 s, Vec3 t, double l0) {
+  const double squeezed = rules::size_weight * l0 * l0, stretched = rules::size_weight / (l0 * l0);
+  double energy[Star::most], gx[Star::most], gy[Star::most], xx[Star::most], xy[Star::most], yy[Star::most],
+      up[Star::most];
+  for (int i = 0; i < star.n; ++i) {
+    const double ux = star.y[0][i] - x.x, uy = star.y[1][i] - x.y, uz = star.y[2][i] - x.z;
+    const double vx = star.z[0][i] - x.x, vy = star.z[1][i] - x.y, vz = star.z[2][i] - x.z;
+    const double nx = star.area[0][i], ny = star.area[1][i], nz = star.area[2][i];
+    const double ex = vx - ux, ey = vy - uy, ez = vz - uz, mx = ux + vx, my = uy + vy, mz = uz + vz;
+    const double S = ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + ex * ex + ey * ey + ez * ez;
+    const double A = nx * nx + ny * ny + nz * nz, u = 1 / A, Q = S * S / 12 + squeezed;
+    const double sx = ey * s.z - ez * s.y, sy = ez * s.x - ex * s.z, sz = ex * s.y - ey * s.x;
+    const double tx = ey * t.z - ez * t.y, ty = ez * t.x - ex * t.z, tz = ex * t.y - ey * t.x;
+    const double Ss = -2 * (mx * s.x + my * s.y + mz * s.z), St = -2 * (mx * t.x + my * t.y + mz * t.z);
+    const double As = 2 * (nx * sx + ny * sy + nz * sz), At = 2 * (nx * tx + ny * ty + nz * tz);
+    const double q = S * u / 6, a = stretched - Q * u * u, qa = -q * u, aa = 2 * Q * u * u * u;
+    up[i] = nx * n.x + ny * n.y + nz * n.z;
+    energy[i] = Q * u + stretched * A;
+    gx[i] = q * Ss + a * As;
+    gy[i] = q * St + a * At;
+    xx[i] = u / 6 * Ss * Ss + 4 * q + 2 * qa * Ss * As + aa * As * As + 2 * a * (sx * sx + sy * sy + sz * sz);
+    yy[i] = u / 6 * St * St + 4 * q + 2 * qa * St * At + aa * At * At + 2 * a * (tx * tx + ty * ty + tz * tz);
+    xy[i] = u / 6 * Ss * St + qa * (Ss * At + St * As) + aa * As * At + 2 * a * (sx * tx + sy * ty + sz * tz);
+  }
+  Derivatives d;
+  for (int i = 0; i < star.n; ++i) {
+    d.energy += energy[i];
+    d.gradient = d.gradient + Vec2{gx[i], gy[i]};
+    d.xx += xx[i], d.xy += xy[i], d.yy += yy[i];
+    d.flat &= up[i] > rules::flat * l0;
+  }
+  return d;
+}
+
+/// Is v held, or has nothing changed in its star since it was last tried?
+bool settled(const State& s, int v) {
+  if (s.hold[v] >= fixed) return true;
+  const std::vector<int>&tried = s.clocks.tried, &changed = s.clocks.changed;
+  if (tried[v] <= changed[v]) return false;
+  bool quiet = true;
+  s.mesh.neighbours(v, [&](int w) { quiet &= changed[w] < tried[v]; });
+  return quiet;
+}
+
+/// Moves v at time `now` unless it is settled.
+bool advance(State& s, int v, int now) {
+  if (settled(s, v)) return false;
+  s.clocks.tried[v] = now;
+  return s.hold[v] == slides ? slide_vertex(s, v) : move_vertex(s, v);
+}
+
+/// Lists the vertices that may move, by color.
+void list_by_color(State& s) {
+  const std::vector<signed char>& color = s.coloring.color;
+  std::vector<int>& start = s.coloring.start;
+  const int n = (int)s.mesh.out.size();
+  auto moves = [&](int v) { return s.mesh.out[v] >= 0 && s.hold[v] < fixed && color[v] >= 0; };
+  start.assign(65, 0);
+  for (int v = 0; v < n; ++v)
+    if (moves(v)) ++start[color[v] + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> next(start.begin(), start.end() - 1);
+  s.coloring.order.resize(start.back());
+  for (int v = 0; v < n; ++v)
+    if (moves(v)) s.coloring.order[next[color[v]]++] = v;
+  s.coloring.listed = true;
+}
+
+}  // namespace
+
+bool slide_vertex(State& s, int v) {
+  Star star;
+  if (!gather(s, v, star)) return false;
+  Vec3 ahead{}, behind{};
+  s.mesh.star(v, [&](int e) {
+    if (s.mesh.hard[e]) ahead = s.points[s.mesh.to(e)];
+    if (s.mesh.hard[prev(e)]) behind = s.points[s.mesh.from(prev(e))];
+  });
+  const SurfaceWalk& walk = s.reference->walk;
+  const Vec3 x = s.points[v], direction = normalized(ahead - behind);
+  const double size = s.target(v), reach = std::min(norm(ahead - x), norm(behind - x)),
+               probe = rules::probe * reach;
+  if (reach <= 0) return false;
+  auto place_at = [&](double step) { return walk.slide(s.place[v], x + step * direction); };
+  auto energy = [&](double step) { return star.energy(walk.point(place_at(step)), size); };
+  const double now = star.energy(x, size), left = energy(-probe), right = energy(probe);
+  const double bend = left - 2 * now + right;
+  double step = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
+  step = std::clamp(rules::line_relaxation * step, -rules::reach * reach, rules::reach * reach);
+  if (!(std::abs(step) >= rules::shortest_step * size)) return false;
+  const Place place = place_at(step);
+  const Vec3 p = walk.point(place), normal = s.mesh.on_border(v) ? s.reference->normal(place) : Vec3{};
+  if (star.energy(p, size) > now * (1 - rules::least_gain)) return false;
+  for (const Vec3& end : {ahead, behind})
+    if (norm(end - p) > std::max(rules::longest_segment * size, norm(end - x))) return false;
+  if (folds_star(s, star, v, x, p, normal)) return false;
+  put(s, v, place, p, normal);
+  return true;
+}
+
+bool move_vertex(State& state, int v) {
+  Star star;
+  if (!gather(state, v, star)) return false;
+  const SurfaceWalk& walk = state.reference->walk;
+  const Vec3 x = state.points[v];
+  star.look(x);
+  Vec3 n{};
+  for (int i = 0; i < star.n; ++i) n = n + Vec3{star.area[0][i], star.area[1][i], star.area[2][i]};
+  n = normalized(n);
+  const Vec3 s = normalized(std::abs(n.x) < 0.6 ? cross(n, {1, 0, 0}) : cross(n, {0, 1, 0})), t = cross(n, s);
+  const double size = state.target(v);
+  const Derivatives d = derivatives(star, x, n, s, t, sqrt3 / 2 * size * size);
+  double now = d.energy;
+  Vec2 step;
+  const double det = d.xx * d.yy - d.xy * d.xy;
+  if (d.flat && det > 1e-12 * d.xx * d.yy && d.xx > 0) {
+    step = (-1 / det) *
+           Vec2{d.yy * d.gradient.x - d.xy * d.gradient.y, d.xx * d.gradient.y - d.xy * d.gradient.x};
+  } else {
+    // a star with folded triangles: towards its center
+    Vec3 center{};
+    for (int i = 0; i < star.n; ++i) center = center + (Vec3{star.y[0][i], star.y[1][i], star.y[2][i]} - x);
+    center = (1.0 / star.n) * center;
+    step = {dot(center, s), dot(center, t)};
+    now = star.energy(x, size);
+  }
+  const double length = norm(step);
+  if (length < rules::shortest_step * size) return false;
+  step = std::min(rules::overrelaxation, rules::longest_step * size / length) * step;
+  for (int halving = 0; halving < rules::halvings; ++halving, step = 0.5 * step) {
+    const Place place = walk.closest(state.place[v], x + step.x * s + step.y * t);
+    const Vec3 p = walk.point(place);
+    if (star.energy(p, size) >= now) continue;
+    const Vec3 normal = state.reference->normal(place);
+    if (folds_star(state, star, v, x, p, normal)) continue;
+    put(state, v, place, p, normal);
+    return true;
+  }
+  return false;
+}
+
+bool improve_vertex(State& s, int v) {
+  if (s.mesh.out[v] < 0 || !advance(s, v, ++s.clocks.now)) return false;
+  mark_changed(s, v);
+  ++s.counts.moves;
+  return true;
+}
+
+void smooth(State& s, int sweeps) {
+  if (!s.coloring.listed) list_by_color(s);
+  const std::vector<int>&order = s.coloring.order, &start = s.coloring.start;
+  for (int i = 0; i < sweeps; ++i) {
+    int moves = 0;
+    for (int c = 0; c < 64 && start[c] < start[64]; ++c) {
+      const int now = ++s.clocks.now, first = start[c], last = start[c + 1];
+      auto one = [&](int v) {
+        const bool moved = advance(s, v, now);
+        if (moved) s.clocks.changed[v] = now;
+        return moved;
+      };
+      if (last - first > rules::vertices_worth_threads) {
+#pragma omp parallel for schedule(static) reduction(+ : moves)
+        for (int k = first; k < last; ++k) moves += one(order[k]);
+      } else {  // not even a team of one: patches of a hundred triangles are smoothed hundreds of times
+        for (int k = first; k < last; ++k) moves += one(order[k]);
+      }
+    }
+    s.counts.moves += moves;
+  }
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/patch.h"
+
+namespace meshpipe {
+namespace {
+
+/// The vertices of triangles, ascending: in this order a patch numbers them.
+std::vector<int> vertices_of(const EditMesh& mesh, const std::vector<int>& triangles) {
+  std::vector<int> vertices;
+  for (int t : triangles) vertices.insert(vertices.end(), mesh.tris[t].begin(), mesh.tris[t].end());
+  sort_unique(vertices);
+  return vertices;
+}
+
+}  // namespace
+
+double quality(const State& s, int t) {
+  const auto [a, b, c] = s.mesh.tris[t];
+  if (s.cosine(a, b, c) < 0) return 0;
+  const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
+  const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
+  // the least angle, between u and v, is opposite to the shortest side
+  const bool at_p = qr <= pq && qr <= rp, at_q = !at_p && rp <= pq;
+  const Vec3 u = at_p ? q - p : at_q ? r - q : p - r, v = at_p ? r - p : at_q ? p - q : q - r;
+  // where it is good with a margin there is no need to know it
+  if (norm(cross(u, v)) > rules::tangent_with_margin * dot(u, v)) return k / rules::good_kappa;
+  return std::min(k / rules::good_kappa, angle(u, v) / rules::good_angle);
+}
+
+int irregularity(const State& s, int v) {
+  const bool inside = s.mesh.out[v] >= 0 && (s.hold[v] == loose || s.hold[v] == anchored);
+  return inside ? std::max(0, std::abs(excess(s, v)) - 1) : 0;
+}
+
+double objective(const State& s) {
+  double sum = 0;
+  for (int v = 0; v < (int)s.mesh.out.size(); ++v) sum += rules::irregular_vertex * irregularity(s, v);
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const double q = quality(s, t), lack = std::max(0.0, rules::margin - q);
+    sum += lack * lack * lack / (q + rules::needle);
+  }
+  return sum;
+}
+
+int worst(const State& s) {
+  std::pair<double, int> least{1e300, -1};
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t)) least = std::min(least, {quality(s, t), t});
+  return least.second;
+}
+
+double worst_cosine(const State& s) {
+  double least = 1;
+  for (const auto& [a, b, c] : s.mesh.tris)
+    if (a >= 0) least = std::min(least, s.cosine(a, b, c));
+  return least;
+}
+
+double deviation(const State& s) {
+  const EditMesh& m = s.mesh;
+  const SurfaceWalk& walk = s.reference->walk;
+  double most = 0;
+  // from each corner, whose sheet may end before the nearest place; one on a model edge knows but one side
+  auto look = [&](std::initializer_list<int> corners, Vec3 p) {
+    double least = 1e300;
+    for (int v : corners)
+      least = std::min(least, norm(walk.point(walk.closest(s.place[v], p, true)) - p) / s.target(v));
+    most = std::max(most, least);
+  };
+  for (int t = 0; t < (int)m.tris.size(); ++t) {
+    if (m.dead(t)) continue;
+    const auto [a, b, c] = m.tris[t];
+    look({a, b, c}, (1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]));
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (m.opp[h] < h) look({m.from(h), m.to(h)}, 0.5 * (s.points[m.from(h)] + s.points[m.to(h)]));
+  }
+  return most;
+}
+
+std::vector<int> triangles_around(const EditMesh& mesh, int t, int rings) {
+  std::vector<int> found{t}, sorted{t};
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<int> more;
+    for (int v : vertices_of(mesh, found))
+      mesh.star(v, [&](int h) {
+        if (!std::binary_search(sorted.begin(), sorted.end(), h / 3)) more.push_back(h / 3);
+      });
+    sort_unique(more);
+    found.insert(found.end(), more.begin(), more.end());
+    sorted = found;
+    std::sort(sorted.begin(), sorted.end());
+  }
+  return found;
+}
+
+State extract(const State& s, const std::vector<int>& triangles) {
+  const std::vector<int> vertices = vertices_of(s.mesh, triangles);
+  auto local = [&](int v) {
+    return (int)(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  };
+  std::vector<Tri> tris;
+  std::vector<std::uint8_t> model;
+  for (int t : triangles) {
+    const Tri& v = s.mesh.tris[t];
+    const std::uint8_t* hard = &s.mesh.hard[3 * t];
+    tris.push_back({local(v[0]), local(v[1]), local(v[2])});
+    model.push_back(hard[0] | hard[1] << 1 | hard[2] << 2);
+  }
+  auto pick = [&](const auto& column) {
+    std::decay_t<decltype(column)> picked;
+    picked.reserve(vertices.size());
+    for (int v : vertices) picked.push_back(column[v]);
+    return picked;
+  };
+  const int n = (int)vertices.size();
+  State patch(*s.reference, EditMesh(std::move(tris), n, model), pick(s.points), pick(s.place), pick(s.size));
+  patch.normal = pick(s.normal), patch.refinement = pick(s.refinement), patch.hold = pick(s.hold);
+  patch.keep_border = s.keep_border;
+  patch.recording = true;
+  for (int h = 0; h < (int)patch.mesh.opp.size(); ++h)
+    if (patch.mesh.opp[h] < 0 && s.mesh.opp[3 * triangles[h / 3] + h % 3] >= 0)
+      patch.hold[patch.mesh.from(h)] = patch.hold[patch.mesh.to(h)] = frozen;
+  return patch;
+}
+
+void settle(State& s, int times) {
+  for (int i = 0; i < times; ++i) {
+    flip_to_shape(s);
+    smooth(s, rules::sweeps_to_settle);
+  }
+}
+
+void adopt(State& s, const State& patch, std::vector<int> triangles) {
+  std::vector<int> vertices = vertices_of(s.mesh, triangles);
+  for (const Edit& e : patch.edits) {
+    const int h = 3 * triangles[e.h / 3] + e.h % 3;
+    if (e.kind == Edit::flip) {
+      flip_edge(s, h);
+    } else if (e.kind == Edit::split) {
+      const int v = (int)vertices.size();
+      for (int i = 0; i < (s.mesh.opp[h] < 0 ? 1 : 2); ++i) triangles.push_back((int)s.mesh.tris.size() + i);
+      vertices.push_back((int)s.mesh.out.size());
+      insert_vertex(s, h, patch.place[v], patch.points[v], patch.normal[v]);
+    } else {
+      remove_vertex(s, h, vertices[e.gone]);
+    }
+  }
+  for (int i = 0; i < (int)vertices.size(); ++i) {
+    const int v = vertices[i];
+    const Hold held = patch.hold[i];
+    if (patch.mesh.out[i] < 0 || held == frozen || (held == fixed && s.hold[v] == fixed)) continue;
+    s.hold[v] = held;
+    put(s, v, patch.place[i], patch.points[i], patch.normal[i]);
+    mark_changed(s, v);
+  }
+  s.coloring.listed = false;
+}
+
+void keep_best(std::vector<Trial>& trials, std::size_t most) {
+  for (Trial& t : trials) t.objective = objective(t.state);
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const Trial& a, const Trial& b) { return a.objective < b.objective; });
+  if (trials.size() > most) trials.erase(trials.begin() + (std::ptrdiff_t)most, trials.end());
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/repair.h"
+
+namespace meshpipe {
+namespace {
+
+/// Makes a change if it may be made; else nothing is changed.
+bool try_edit(State& s, const Edit& edit) {
+  if (edit.kind == Edit::split) return split_edge(s, edit.h);
+  if (edit.kind == Edit::collapse)
+    return s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h] &&
+           collapse_edge(s, edit.h, edit.gone, rules::on_trial);
+  const bool may = may_flip(s, edit.h);
+  if (may) flip_edge(s, edit.h);
+  return may;
+}
+
+/// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
+/// share a vertex with it.
+std::vector<Edit> edits_around(const EditMesh& m, int t, bool wide) {
+  std::vector<int> halfedges;
+  for (int s : wide ? triangles_around(m, t, 1) : std::vector<int>{t})
+    for (int h = 3 * s; h < 3 * s + 3; ++h) {
+      const int g = m.opp[h];
+      if (!wide || g < h) halfedges.push_back(h);
+      if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
+    }
+  std::vector<Edit> edits;
+  for (int h : halfedges) {
+    edits.push_back({Edit::collapse, h, m.from(h)});
+    edits.push_back({Edit::collapse, h, m.to(h)});
+    edits.push_back({Edit::split, h, -1});
+    if (!m.hard[h]) edits.push_back({Edit::flip, h, -1});
+  }
+  return edits;
+}
+
+/// Tries each edit on a copy of `from`. All settle a little, then the best of them quite.
+std::vector<Trial> try_all(const State& from, const std::vector<Edit>& edits) {
+  std::vector<Trial> trials;
+  State copy = from;
+  for (const Edit& e : edits) {
+    if (!try_edit(copy, e)) continue;
+    settle(copy, 1);
+    trials.push_back({0, std::move(copy)});
+    copy = from;
+  }
+  keep_best(trials, rules::promising);
+  for (Trial& t : trials) settle(t.state, 1);
+  keep_best(trials, rules::promising);
+  return trials;
+}
+
+/// Was a change tried at the first of these triangles without success, when their edges were what they are?
+/// Triangles that only sweeps have moved since are as they were.
+bool failed_before(const State& s, const std::vector<int>& failed, const std::vector<int>& triangles) {
+  const int t = triangles.front(), then = t < (int)failed.size() ? failed[t] : 0;
+  auto unedited = [&](int u) {
+    const Tri& v = s.mesh.tris[u];
+    return std::all_of(v.begin(), v.end(), [&](int w) { return s.clocks.edited[w] < then; });
+  };
+  return then > 0 && std::all_of(triangles.begin(), triangles.end(), unedited);
+}
+
+/// Repairs at each of these triangles, as long as it is wanted; returns the number of changes.
+template <class Wanted>
+int repair_each(State& s, std::vector<int> triangles, bool thorough, std::vector<int>& failed,
+                Wanted wanted) {
+  auto around = [&](int t, std::vector<int> found) -> std::vector<int> {
+    if (s.mesh.dead(t) || !wanted(t)) return {};
+    if (found.empty()) found = triangles_around(s.mesh, t, thorough ? rules::thorough_rings : rules::rings);
+    if ((int)found.size() > rules::largest_patch || failed_before(s, failed, found)) return {};
+    return found;
+  };
+  auto attempt = [&](int, const std::vector<int>& patch) { return repaired(s, patch, thorough); };
+  auto remember = [&](const std::vector<int>& patch) {
+    failed.resize(s.mesh.tris.size());
+    failed[patch.front()] = s.clocks.now;
+  };
+  return change_neighborhoods(s, triangles, INT_MAX, INT_MAX, around, attempt, remember);
+}
+
+/// The triangles that are not good enough, the worst first.
+std::vector<int> bad_triangles(const State& s) {
+  std::vector<std::pair<double, int>> bad;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t))
+      if (const double q = quality(s, t); q < 1) bad.push_back({q, t});
+  std::sort(bad.begin(), bad.end());
+  std::vector<int> triangles;
+  for (auto [q, t] : bad) triangles.push_back(t);
+  return triangles;
+}
+
+}  // namespace
+
+std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough) {
+  const State before = extract(s, triangles);
+  const double bad = objective(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
+  const std::vector<Trial> trials = try_all(before, edits_around(before.mesh, 0, thorough));
+  if (trials.empty()) return {};
+  Trial best = trials.front();
+  for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {
+    if (best.objective <= good_enough) break;
+    const State& from = trials[i].state;
+    for (Trial& second : try_all(from, edits_around(from.mesh, worst(from), false)))
+      if (second.objective < best.objective) best = std::move(second);
+  }
+  if (best.objective > good_enough) return {};
+  return std::move(best.state);
+}
+
+void repair_worst(State& s, Repairs& memory) {
+  const int most = rules::repairs + s.mesh.live / rules::triangles_per_repair;
+  int before = 0, first = 0;
+  for (int round = 0; round < (memory.forced ? 1 : rules::repair_rounds); ++round) {
+    std::vector<int> triangles = bad_triangles(s), irregular;
+    const int count = (int)triangles.size();
+    if (round == 0) first = count;
+    if (round > 1 && count > rules::hopeless) {
+      memory.forced = memory.forced || count > rules::forced_share * first;
+      if (count > rules::same_share * before) return;
+    }
+    before = count;
+    // far more than can be repaired: then there is time for fewer
+    if (const int few = count > 4 * most ? most / 2 : most; count > few) triangles.resize(few);
+    const bool done = triangles.empty();
+    int changes = repair_each(s, std::move(triangles), round > 0, memory.failed[round > 0],
+                              [&](int t) { return quality(s, t) < 1; });
+    for (int v = 0; v < (int)s.mesh.out.size() && (int)irregular.size() < most; ++v)
+      if (irregularity(s, v)) irregular.push_back(s.mesh.out[v] / 3);
+    if (done && irregular.empty()) return;
+    changes += repair_each(s, std::move(irregular), false, memory.failed[false], [&](int t) {
+      const Tri& v = s.mesh.tris[t];
+      return irregularity(s, v[0]) + irregularity(s, v[1]) + irregularity(s, v[2]) > 0;
+    });
+    if (round > 0 && changes == 0) return;
+  }
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The thresholds of the optimization, in one table; for lib/relax/ only. Lengths are in units of the size
+// field, shapes are shape energies (state.h: 1 is equilateral, 4 has kappa 0.6 or so), cosines compare
+// normals.
+#pragma once
+
+namespace meshpipe::rules {
+
+/// Limits of a collapse: the worst triangle and the longest edge that it may leave.
+struct Collapse {
+  double shape, length;
+};
+
+// normals
+constexpr double least_cosine =
+    0.5;  // triangle against reference normal; beyond 60 degrees it counts as folded
+constexpr double same_cosine = 1e-12;  // cosines that differ by less are rounding errors
+
+// moves (move.cc)
+constexpr double size_weight = 0.012;    // area against shape: equal areas without giving up equal angles
+constexpr double shortest_step = 3e-3;   // length: shorter steps do not show, and would keep neighbors awake
+constexpr double overrelaxation = 1.5;   // factor: errors over many edges even out in fewer sweeps
+constexpr double line_relaxation = 1.3;  // factor: the same along a line, where a parabola is less exact
+constexpr double longest_step = 0.5;     // length: beyond it the star is another
+constexpr int halvings = 3;              // tries: a step that does not help at a quarter will not
+constexpr double flat = 1e-3;  // area over the target's: below it Newton's model of a triangle is wrong
+constexpr double longest_segment = 1.2;  // length: a longer segment of a line cuts its bends
+constexpr double probe = 0.1,
+                 reach = 0.4;        // of the shorter segment: where a slide looks, and the farthest it goes
+constexpr double least_gain = 1e-4;  // of the energy: what a slide must gain
+constexpr int largest_star = 32;     // triangles: stars are arrays of this length; larger ones stay
+constexpr int vertices_worth_threads = 800;  // of a color: below it starting threads takes longer than moving
+
+// splits and collapses (split.cc, collapse.cc)
+constexpr double split_above = 1.4,
+                 collapse_below = 0.65;  // length: sqrt(2) and its inverse, with hysteresis
+constexpr double stretch_above = 1.05, squeeze_below = 0.95;  // length: edges that may go to meet a count
+constexpr double count_tolerance = 0.005;                     // of the triangles: what sweeps keep
+constexpr double off_edge = 0.5,
+                 off_line = 0.3;         // of the edge: a new vertex farther away is on another sheet
+constexpr double same_side = 0.3;        // cosine: sides of a model edge that differ by less are one
+constexpr double short_segment = 0.6;    // length: segments that an interface left next to a corner
+constexpr double merged_corners = 0.05;  // length: no good triangle between corners this close
+constexpr double line_deviation = 0.1;   // length: what a line may change when it loses a vertex
+constexpr int largest_valence = 9;       // of a vertex that a collapse leaves
+constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};
+constexpr Collapse kept_border{2000, 3};  // almost anything, to have no new vertex on it
+constexpr Collapse on_trial{1e9, 2};      // the objective judges
+constexpr double open_seam = 1e-3;        // length: borders this close are two sides of a seam
+
+// flips (flip.cc)
+constexpr double sound_for_valence = 3;    // shape: what a flip for the valence may leave
+constexpr double shape_gain = 0.9;         // of the worse shape: smaller gains go back and forth
+constexpr double bend = 0.9;               // cosine: 26 degrees across the new edge are always allowed
+constexpr double sound_for_smoothing = 4;  // shape: smoothing repairs better ones
+constexpr int dislocation_depth = 3;       // flips: each one more multiplies the search by the edges around
+
+// repair (patch.cc, repair.cc)
+constexpr double good_kappa = 0.75;  // triangles below it are repaired; mcheck asks for 0.1
+constexpr double good_angle = 35 * 3.14159265358979323846 / 180;  // radians: the same
+constexpr double margin = 1.05;                    // of the quality: no triangle is improved beyond it
+constexpr double tangent_with_margin = 0.747;      // of margin * good_angle
+constexpr double needle = 0.05;                    // of the quality: one needle counts more than two slivers
+constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-break
+constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change
+constexpr int promising = 8, promising_pairs = 5;  // trials that go on, of about 100
+constexpr int rings = 2, thorough_rings = 3;       // of triangles in a patch
+constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
+constexpr int sweeps_to_settle = 3;
+constexpr int repair_rounds = 4;
+constexpr int repairs = 200,
+              triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
+constexpr int hopeless = 100;              // triangles: if more are left, look whether rounds help
+constexpr double forced_share = 0.8,
+                 same_share = 0.98;  // of the bad ones are left: borders and lines force them
+
+// intersections (separate.cc)
+constexpr double refinement = 0.8;  // of the size, each round
+constexpr int separate_rounds = 12, useless_rounds = 4;
+
+// missed features (missed_features.cc)
+constexpr double bent = 0.985;          // cosine: 10 degrees, from where edges have samples
+constexpr double samples_per_edge = 3;  // of the mesh: one is half way at most
+constexpr double most_samples = 50;     // of an edge
+constexpr double missed = 0.1;          // length: the distance from which features are reached
+constexpr double farthest_share = 0.7;  // of the largest distance: those are reached first
+constexpr double larger_size = 1.2;     // over the mean: from here the distance is seen against it
+constexpr double retry = 1.2;           // of the wanted distance: from where half way is worth it
+constexpr double along_border = 0.1;    // of the distance: a sample that slides less is on no border
+constexpr int features = 4, triangles_per_feature = 800;  // the larger: more cost the mesh its regularity
+constexpr double spoils = 1.8e-3;      // of the objective: one triangle with 0.9 of the quality wanted
+constexpr double spoils_farther = 5;   // of `missed`: up to where distance excuses more
+constexpr int tries_per_feature = 20;  // places tried for each that may be reached; real surfaces take 8
+constexpr int promising_features = 3;  // trials that go on, of 6
+constexpr double reached = 1e-6;       // length
+
+// schedule (relax.cc)
+constexpr int coarse_rounds = 3;    // of splits and collapses before the first sweep
+constexpr int feature_rounds = 5;   // what is repaired misses features, what reaches them needs repair
+constexpr double goal_range = 0.6;  // of the count: sizes are not scaled beyond
+constexpr double spoilt = 0.7;      // of the first try's worst quality: what another may come to
+constexpr double count_first = 0.025,
+                 count_aimed = 0.015;                   // of the count: good enough at once, and when aimed
+constexpr double sluggish = 0.6, least_response = 0.2;  // triangles gone per triangle less asked for
+constexpr int tries = 4, sluggish_tries = 3;
+
+}  // namespace meshpipe::rules

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <initializer_list>
+
+#include "lib/relax/operations.h"
+
+namespace meshpipe {
+namespace {
+
+/// The place nearest to p that can be walked to from one of the vertices. A loose vertex is asked first,
+/// since one on a model edge has two sides: then the one whose normal is along `normal` is meant.
+Place place_near(const State& s, Vec3 p, std::initializer_list<int> vertices, Vec3 normal) {
+  const SurfaceWalk& walk = s.reference->walk;
+  for (int v : vertices)
+    if (s.hold[v] == loose) return walk.closest(s.place[v], p);
+  Place best = s.place[*vertices.begin()];
+  double least = 1e300;
+  for (int v : vertices)
+    for (const Place& start : {s.place[v], walk.across(s.place[v])}) {
+      const Place q = walk.closest(start, p);
+      const Vec3 d = walk.point(q) - p;
+      const bool same_side = dot(walk.normal(q), normal) > rules::same_side * norm(normal);
+      const double score = dot(d, d) * (same_side ? 1 : 1e6);
+      if (score < least) least = score, best = q;
+    }
+  return best;
+}
+
+/// The place on the line of edge a, b nearest to its middle.
+Place place_on_line(const State& s, int a, int b, Vec3 middle) {
+  const SurfaceWalk& walk = s.reference->walk;
+  const int from = end_on_line(s, a, b);
+  const Place place = walk.slide(s.place[from < 0 ? a : from], middle);
+  if (from >= 0) return place;
+  // from a corner it may have gone the other way
+  const Place other = walk.slide(s.place[b], middle);
+  return norm(walk.point(other) - middle) < norm(walk.point(place) - middle) ? other : place;
+}
+
+}  // namespace
+
+int end_on_line(const State& s, int a, int b) {
+  return s.hold[a] == slides ? a : s.hold[b] == slides ? b : -1;
+}
+
+bool split_edge(State& s, int h) {
+  const EditMesh& m = s.mesh;
+  const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
+  if (g < 0 && s.keep_border) return false;
+  // the rim of a patch, as a rule, or a seam
+  if (g < 0 && s.hold[a] >= frozen && s.hold[b] >= frozen) return false;
+  const Vec3 middle = lerp(s.points[a], s.points[b], 0.5);
+  Place place;
+  if (m.hard[h]) {
+    if (end_on_line(s, a, b) < 0 && g >= 0) return false;
+    place = place_on_line(s, a, b, middle);
+  } else {
+    place = place_near(s, middle, {a, b, c, d}, s.face_normal(h / 3) + s.face_normal(g / 3));
+  }
+  const Vec3 normal = m.hard[h] && g >= 0 ? Vec3{} : s.reference->normal(place);
+  const Vec3 p = s.reference->walk.point(place);
+  if (norm(p - middle) > (m.hard[h] ? rules::off_line : rules::off_edge) * norm(s.points[b] - s.points[a]))
+    return false;
+  const int ring[5] = {b, c, a, d, b};
+  for (int i = 0; i < (g < 0 ? 2 : 4); ++i) {
+    const int v = ring[i], w = ring[i + 1];
+    if (folds(i < 2 ? s.cosine(a, b, c) : s.cosine(b, a, d),
+              normal_cosine(p, s.points[v], s.points[w], normal + s.normal[v] + s.normal[w])))
+      return false;
+  }
+  insert_vertex(s, h, place, p, normal);
+  return true;
+}
+
+void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal) {
+  EditMesh& m = s.mesh;
+  const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
+  const bool hard = m.hard[h];
+  if (s.recording) s.edits.push_back({Edit::split, h, -1});
+  s.points.push_back(p);
+  s.place.push_back(place);
+  s.normal.push_back(normal);
+  s.size.push_back(s.reference->sizes ? s.reference->size(place) : 0.5 * (s.size[a] + s.size[b]));
+  s.refinement.push_back(std::min(s.refinement[a], s.refinement[b]));
+  s.hold.push_back(hard ? slides : loose);
+  for (std::vector<int>* times : {&s.clocks.tried, &s.clocks.changed, &s.clocks.edited}) times->push_back(0);
+  s.coloring.color.push_back(-1);
+  if (Labels& l = s.labels; !l.kind.empty()) {
+    const int from = end_on_line(s, a, b);
+    l.kind.push_back(hard);
+    l.line.push_back(hard ? l.line[from < 0 ? a : from] : -1);
+    for (std::vector<int>* label : {&l.patch, &l.part}) {
+      label->push_back((*label)[h / 3]);
+      if (g >= 0) label->push_back((*label)[g / 3]);
+    }
+  }
+  const int v = m.split(h);
+  for (int w : {v, a, b, c, d})
+    if (w >= 0) mark_edited(s, w);
+  ++s.counts.splits;
+}
+
+void split_long(State& s, double above, double most) {
+  if (s.mesh.live >= most) return;
+  for (int h : edges_by_length(s, above, false)) {
+    if (s.mesh.live >= most) break;
+    if (s.length(h) > above) split_edge(s, h);
+  }
+}
+
+}  // namespace meshpipe

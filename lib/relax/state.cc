@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/state.h"
+
+#include "lib/core/normals.h"
+
+namespace meshpipe {
+namespace {
+
+/// The first color that no neighbor of v has, or -1.
+signed char free_color(const State& s, int v) {
+  std::uint64_t taken = 0;
+  s.mesh.neighbours(v, [&](int w) {
+    if (const int c = s.coloring.color[w]; c >= 0) taken |= std::uint64_t(1) << c;
+  });
+  for (int c = 0; c < 63; ++c)
+    if (!(taken >> c & 1)) return (signed char)c;
+  return -1;
+}
+
+}  // namespace
+
+Reference::Reference(const Surface& reference)
+    : surface(reference),
+      sizes(reference.vertex.has("size") ? &reference.vertex.get<double>("size") : nullptr),
+      walk(reference, reference.face.has("model") ? reference.face.get<std::uint8_t>("model")
+                                                  : std::vector<std::uint8_t>{}),
+      normals(vertex_area_vectors(reference)) {}
+
+Vec3 Reference::normal(const Place& p) const {
+  const Tri& v = surface.tris[p.face];
+  return normalized(p.b0 * normals[v[0]] + p.b1 * normals[v[1]] + p.b2 * normals[v[2]]);
+}
+
+double Reference::size(const Place& p) const {
+  const Tri& v = surface.tris[p.face];
+  return p.b0 * (*sizes)[v[0]] + p.b1 * (*sizes)[v[1]] + p.b2 * (*sizes)[v[2]];
+}
+
+State::State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, std::vector<Place> places,
+             std::vector<double> sizes)
+    : reference(&on),
+      mesh(std::move(edited_mesh)),
+      points(std::move(at)),
+      place(std::move(places)),
+      normal(points.size()),
+      size(std::move(sizes)),
+      refinement(points.size(), 1),
+      hold(points.size()) {
+  const int n = (int)points.size();
+  clocks.tried.resize(n), clocks.changed.resize(n), clocks.edited.resize(n);
+  coloring.color.assign(n, -1);
+  for (int v = 0; v < n; ++v)
+    if (mesh.out[v] >= 0) coloring.color[v] = free_color(*this, v);
+}
+
+State start_state(LiftedMesh& lifted, const Reference& reference, const std::vector<int>& line_kind,
+                  const std::vector<char>& corner) {
+  const int n = (int)lifted.points.size();
+  State s(reference, EditMesh(std::move(lifted.tris), n, lifted.model), std::move(lifted.points),
+          std::move(lifted.place), std::move(lifted.size));
+  s.labels = {std::move(lifted.kind), std::move(lifted.line), std::move(lifted.patch),
+              std::move(lifted.part)};
+  for (int v = 0; v < n; ++v) {
+    const int line = s.labels.line[v];
+    if (line >= 0 && line_kind[line] != interface_line) s.hold[v] = slides;
+    s.normal[v] = reference.normal(s.place[v]);
+  }
+  std::vector<std::uint8_t> ends(n);
+  for (int h = 0; h < (int)s.mesh.hard.size(); ++h) {
+    if (!s.mesh.hard[h] || h < s.mesh.opp[h]) continue;
+    for (int v : {s.mesh.from(h), s.mesh.to(h)}) {
+      s.hold[v] = slides;
+      if (s.mesh.opp[h] >= 0) s.normal[v] = {};
+      if (ends[v] < 3) ++ends[v];
+    }
+  }
+  // where an interface ended on a line the vertex slides; a corner of the model stays
+  for (int v = 0; v < n; ++v) {
+    if (!s.hold[v]) continue;
+    const Place& p = s.place[v];
+    const Tri& t = reference.surface.tris[p.face];
+    const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
+    if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) s.hold[v] = fixed;
+  }
+  return s;
+}
+
+std::vector<int> finish(State& s, LiftedMesh& r) {
+  const EditMesh& m = s.mesh;
+  std::vector<int> number(m.out.size(), -1), row(m.tris.size(), -1);
+  auto& [kind, line, patch, part] = s.labels;
+  int n = 0, k = 0;
+  for (std::size_t v = 0; v < m.out.size(); ++v) {
+    if (m.out[v] < 0) continue;
+    number[v] = n;
+    const bool on_line = s.hold[v] == slides || s.hold[v] == fixed || s.hold[v] == paired;
+    s.place[n] = s.place[v], s.size[n] = s.size[v];
+    kind[n] = on_line ? kind[v] : 0, line[n] = on_line ? line[v] : -1;
+    s.points[n++] = s.points[v];
+  }
+  s.points.resize(n), s.place.resize(n), s.size.resize(n), kind.resize(n), line.resize(n);
+  r = {};
+  for (int t = 0; t < (int)m.tris.size(); ++t) {
+    if (m.dead(t)) continue;
+    const Tri& v = m.tris[t];
+    std::uint8_t model = 0;
+    for (int i = 0; i < 3; ++i)
+      if (m.hard[3 * t + i] && m.opp[3 * t + i] >= 0) model |= 1 << i;
+    r.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
+    r.model.push_back(model);
+    patch[k] = patch[t], part[k] = part[t];
+    row[t] = k++;
+  }
+  patch.resize(k), part.resize(k);
+  r.points = std::move(s.points), r.place = std::move(s.place), r.size = std::move(s.size);
+  r.kind = std::move(kind), r.line = std::move(line);
+  r.patch = std::move(patch), r.part = std::move(part);
+  return row;
+}
+
+Mesh without_gaps(const State& s, std::vector<int>& number) {
+  Mesh now{s.points, {}};
+  number.clear();
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t)) now.tris.push_back(s.mesh.tris[t]), number.push_back(t);
+  return now;
+}
+
+void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal) {
+  s.place[v] = place;
+  s.points[v] = p;
+  s.normal[v] = normal;
+  if (s.reference->sizes) s.size[v] = s.reference->size(place);
+}
+
+void mark_edited(State& s, int v) {
+  mark_changed(s, v);
+  s.clocks.edited[v] = s.clocks.now;
+  std::vector<signed char>& color = s.coloring.color;
+  bool clash = color[v] < 0;
+  s.mesh.neighbours(v, [&](int w) { clash |= color[w] == color[v]; });
+  if (clash) color[v] = free_color(s, v);
+  s.coloring.listed = false;
+}
+
+std::vector<int> edges_by_length(const State& s, double limit, bool shorter) {
+  std::vector<std::pair<double, int>> found;
+  for (int h = 0; h < (int)s.mesh.opp.size(); ++h) {
+    if (s.mesh.dead(h / 3) || h >= s.mesh.opp[h] || s.mesh.hard[h]) continue;
+    const double l = s.length(h);
+    if (shorter ? l < limit : l > limit) found.push_back({shorter ? l : -l, h});
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<int> edges(found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) edges[i] = found[i].second;
+  return edges;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The mesh while it is optimized, as plain columns, and the reference it lies on; for lib/relax/ only.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/edit_mesh.h"
+#include "lib/core/surface_walk.h"
+#include "lib/relax/relax.h"
+#include "lib/relax/rules.h"
+
+namespace meshpipe {
+
+/// Shape energy of a triangle: the square of the inverse mean ratio (l1^2 + l2^2 + l3^2) / (4 sqrt(3) A)
+/// (Knupp 2001): 1 for the equilateral, infinite for the degenerate; squared so that the worst count most.
+inline double shape_energy(Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 n = area_vector(a, b, c);
+  const double n2 = dot(n, n), squares = dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c);
+  return n2 > 0 ? squares * squares / (12 * n2) : 1e30;
+}
+
+/// Cosine of the normal deviation of triangle p, q, r: the angle between its normal and `reference`, the sum
+/// of the reference normals at its corners. 1 where that is zero, since all corners are on model edges.
+inline double normal_cosine(Vec3 p, Vec3 q, Vec3 r, Vec3 reference) {
+  const Vec3 n = area_vector(p, q, r);
+  const double l2 = dot(n, n) * dot(reference, reference);
+  return l2 > 0 ? dot(n, reference) / std::sqrt(l2) : 1;
+}
+
+/// Does a change fold a triangle? By the least cosines before and after it.
+inline bool folds(double before, double after) {
+  return after < std::min(before, rules::least_cosine) - rules::same_cosine;
+}
+
+/// The reference surface, ready to be walked on. Keeps a reference to it.
+struct Reference {
+  explicit Reference(const Surface& reference);
+  /// Smooth unit normal at a place.
+  Vec3 normal(const Place& p) const;
+  double size(const Place& p) const;
+
+  const Surface& surface;
+  const std::vector<double>* sizes;  ///< null if the surface has none
+  const SurfaceWalk walk;
+  std::vector<Vec3> normals;  ///< at the vertices, not of unit length
+};
+
+/// How a vertex may move. From `fixed` on it does not.
+enum Hold : char {
+  loose,
+  slides,    ///< along a border or model edge
+  fixed,     ///< a corner
+  anchored,  ///< at a feature that the mesh would miss
+  frozen,    ///< at the rim of a patch
+  paired     ///< on an open seam
+};
+
+/// A change of connectivity: of the edge of half-edge h, and for a collapse the vertex that goes.
+struct Edit {
+  enum Kind { flip, split, collapse } kind;
+  int h, gone;
+};
+
+/// Times at which vertices changed, by one clock: what has not changed is not tried again.
+struct Clocks {
+  std::vector<int> tried;    ///< when each vertex was last tried to move
+  std::vector<int> changed;  ///< when it last moved or its neighbors changed
+  std::vector<int> edited;   ///< when its neighbors changed
+  int flipped = 0;           ///< when flip_to_shape last looked
+  int now = 0;
+};
+
+/// Colors of vertices: neighbors have different ones, so that the vertices of a color can move in parallel.
+struct Coloring {
+  std::vector<signed char> color;  ///< -1: more than 63 neighbors, not moved
+  std::vector<int> order, start;   ///< vertices that may move by color, while `listed`
+  bool listed = false;
+};
+
+/// Columns that pass through: of vertices, and of triangles. A patch has none.
+struct Labels {
+  std::vector<int> kind, line;
+  std::vector<int> patch, part;
+};
+
+/// A mesh on its reference, while it is optimized.
+struct State {
+  State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, std::vector<Place> places,
+        std::vector<double> sizes);
+
+  double target(int v) const { return size[v] * refinement[v]; }
+  /// Length of an edge over the size at its ends.
+  double length(int a, int b) const { return 2 * norm(points[b] - points[a]) / (target(a) + target(b)); }
+  double length(int h) const { return length(mesh.from(h), mesh.to(h)); }
+  double shape(int a, int b, int c) const { return shape_energy(points[a], points[b], points[c]); }
+  double cosine(int a, int b, int c) const {
+    return normal_cosine(points[a], points[b], points[c], normal[a] + normal[b] + normal[c]);
+  }
+  /// Unit normal of triangle t.
+  Vec3 face_normal(int t) const {
+    const Tri& v = mesh.tris[t];
+    return normalized(area_vector(points[v[0]], points[v[1]], points[v[2]]));
+  }
+
+  const Reference* reference;
+  EditMesh mesh;
+  std::vector<Vec3> points;
+  std::vector<Place> place;        ///< on the reference
+  std::vector<Vec3> normal;        ///< of the reference; zero on model edges, which have two
+  std::vector<double> size;        ///< the size field
+  std::vector<double> refinement;  ///< factor on it, below 1 where triangles intersected
+  std::vector<Hold> hold;
+  Labels labels;
+  Clocks clocks;
+  Coloring coloring;
+  RelaxCounts counts;
+  bool keep_border = false;  ///< no new vertex on the border
+  bool recording = false;
+  std::vector<Edit> edits;  ///< while recording
+};
+
+/// The mesh to optimize, which is moved from. `line_kind` and `corner` as in relax.
+State start_state(LiftedMesh& mesh, const Reference& reference, const std::vector<int>& line_kind,
+                  const std::vector<char>& corner);
+
+/// Numbers vertices and triangles without gaps and moves them to `mesh`; returns for each triangle its row
+/// there, or -1.
+std::vector<int> finish(State& s, LiftedMesh& mesh);
+
+/// The mesh without gaps, for searches; number[i] is the triangle of s that is its triangle i.
+Mesh without_gaps(const State& s, std::vector<int>& number);
+
+/// Puts v at a place of the reference, whose point is p.
+void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal);
+
+inline void mark_changed(State& s, int v) { s.clocks.changed[v] = ++s.clocks.now; }
+/// To be called for every vertex whose neighbors have changed.
+void mark_edited(State& s, int v);
+
+/// Edges inside (the smaller half-edge) that are no model edges and longer than `limit` times the size, the
+/// longest first; with `shorter`, those that are shorter, the shortest first.
+std::vector<int> edges_by_length(const State& s, double limit, bool shorter);
+
+}  // namespace meshpipe

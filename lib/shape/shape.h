@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Test surfaces from formulas and from implicit functions, and typical faults of files.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Tube of diameter 1 along z and height `aspect`, n vertices around; `closed` caps both ends by flat disks.
+Mesh tube(double aspect, int n, bool closed);
+/// Sphere of radius 1: an icosahedron whose faces are split into k^2 each, at least n triangles.
+Mesh sphere(int n);
+/// Torus of radii 1 and r, about n triangles.
+Mesh torus(double r, int n);
+
+/// A body made of faces: patch[t] indexes names.
+struct Body : Mesh {
+  std::vector<int> patch;
+  std::vector<std::string> names;
+};
+/// Unit cube, one patch per side, about n triangles.
+Body cube(int n);
+/// A closed CAD-like body as STL exporters triangulate it: a plate of columns x rows squares, each with a
+/// drilled hole or a bored boss in turn; full-length slivers on the cylinders, fans around the holes and on
+/// the caps. Its genus is columns * rows. Circles have `segments` chords.
+Body cad_body(int columns, int rows, int segments);
+
+/// A function of space that is negative inside a body, with a gradient of at most 1.
+using Implicit = std::function<double(Vec3)>;
+/// Returns the zero level of f on a grid of n cubes along the longest side of the box lo..hi, by marching
+/// tetrahedra (six per cube): closed, oriented outward, manifold. Skips blocks that f shows to be off the
+/// surface, and keeps two slices of the grid. Requires: f > 0 on the box's faces.
+/// Throws: GoalMissed with the number of cubes if the grid is beyond memory or patience.
+Mesh march(const Implicit& f, Vec3 lo, Vec3 hi, int n);
+/// Moves the vertices towards the middle of their neighbors and back to the zero level of f, `rounds` times;
+/// those of the border slide along it in its plane.
+void relax_on(Mesh& mesh, const Implicit& f, int rounds);
+
+/// Smooth surface of genus g: a plate with g circular holes, its edges rounded, about n triangles.
+Mesh genus_surface(int g, int n);
+/// A branching tree of tubes along z with an inlet of diameter 1 and open ends, about n triangles.
+/// `generations`: bifurcations up to each outlet; `outlets`: number of ends, if not 0; `ratio`: a child's
+/// radius over its parent's; `aspect`: diameters of a tube of the same area, 0: branches are 5.5 radii long.
+/// Throws: GoalMissed if tubes touch, or their radii differ too much for one grid.
+Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed, double aspect = 0);
+
+/// Moves every vertex by a random vector of length up to amount times the mean edge length.
+void add_noise(Mesh& mesh, double amount, int seed);
+/// Splits a fraction of the edges close to one end, which leaves triangles with angles of about a degree.
+/// Face columns follow.
+void add_slivers(Surface& surface, double fraction, int seed);
+/// Adds faults of files in the wild, each to about `fraction` of the triangles: duplicate, degenerate and
+/// inconsistently oriented triangles, unused vertices, unwelded copies of vertices. Face columns follow.
+void add_dirt(Surface& surface, double fraction, int seed);
+
+}  // namespace meshpipe

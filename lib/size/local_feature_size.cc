@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/size/local_feature_size.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lib/core/neighbours.h"
+#include "lib/core/normals.h"
+#include "lib/core/shortest_paths.h"
+#include "lib/core/topology.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
+constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
+constexpr double opposite_sides = 0.6 * pi;  ///< least angle between the two ends of a ring at its vertex
+constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
+constexpr double least_area = 0.2;  ///< of a circle as long: a path there and back the same way has none
+
+/// Lowers `size` on closed lines: loops of border or model edges that no other such edge meets.
+void lower_on_lines(const Connectivity& surface, std::vector<double>& size) {
+  const Mesh& mesh = surface.mesh;
+  const int n = static_cast<int>(mesh.points.size());
+  std::vector<std::array<int, 2>> ends(n, {-1, -1});  // the other ends of the first two edges
+  std::vector<int> degree(n, 0);
+  for (int h = 0; h < surface.n_half_edges(); ++h) {
+    const int o = surface.opposite[h], a = surface.from(h), b = surface.to(h);
+    if (o > h || (o >= 0 && !surface.is_model(h) && !surface.is_model(o))) continue;
+    if (degree[a] < 2) ends[a][degree[a]] = b;
+    if (degree[b] < 2) ends[b][degree[b]] = a;
+    ++degree[a], ++degree[b];
+  }
+  std::vector<char> seen(n, 0);
+  std::vector<int> loop;
+  for (int first = 0; first < n; ++first) {
+    if (seen[first] || degree[first] != 2) continue;
+    loop.clear();
+    double length = 0;
+    int v = first, before = ends[first][0];
+    do {
+      seen[v] = 1;
+      loop.push_back(v);
+      const int u = ends[v][ends[v][0] == before];
+      length += norm(mesh.points[u] - mesh.points[v]);
+      before = v, v = u;
+    } while (v != first && degree[v] == 2 && !seen[v]);
+    if (v != first) continue;  // it ends in a junction
+    for (int u : loop) size[u] = std::min(size[u], length / ring_edges);
+  }
+}
+
+/// Finds the rings around tubes, from one vertex after the other.
+class TubeFinder {
+ public:
+  TubeFinder(const Mesh& mesh, const Neighbours& next)
+      : mesh_(mesh),
+        next_(next),
+        normal_(vertex_area_vectors(mesh)),
+        distance_(mesh.points.size(), infinite),
+        from_(mesh.points.size()),
+        branch_(mesh.points.size()) {}
+
+  /// Returns the length of the shortest ring through v, at most `below`. Leaves the vertices nearer than half
+  /// of it in near(), with their distances.
+  double ring(int v, double below) {
+    for (int u : reached_) distance_[u] = infinite;
+    near_.clear();
+    reached_.assign(1, v);
+    distance_[v] = 0, from_[v] = branch_[v] = v;
+    double shortest = below;
+    shortest_paths(reached_, distance_, [&](int a, auto reach) {
+      if (distance_[a] > 0.5 * shortest) return false;
+      near_.push_back(a);
+      for (int k = next_.start[a]; k < next_.start[a + 1]; ++k) {
+        const int b = next_.vertex[k];
+        const double l = distance_[a] + norm(mesh_.points[b] - mesh_.points[a]), before = distance_[b];
+        if (l + before < shortest && from_[a] != b && from_[b] != a && is_ring(v, a, b))
+          shortest = l + before;
+        if (!reach(b, l)) continue;
+        if (before == infinite) reached_.push_back(b);
+        from_[b] = a, branch_[b] = a == v ? b : branch_[a];
+      }
+      return true;
+    });
+    return shortest;
+  }
+
+  const std::vector<int>& near() const { return near_; }
+  double distance(int v) const { return distance_[v]; }
+
+ private:
+  /// Whether the paths to a and b leave v on opposite sides, and their ring lies across the surface.
+  bool is_ring(int v, int a, int b) const {
+    const Vec3 p = mesh_.points[v];
+    if (a == v || b == v ||
+        angle(mesh_.points[branch_[a]] - p, mesh_.points[branch_[b]] - p) < opposite_sides)
+      return false;
+    Vec3 area = cross(mesh_.points[a] - p, mesh_.points[b] - p);
+    for (int x = a; x != v; x = from_[x])
+      area = area + cross(mesh_.points[from_[x]] - p, mesh_.points[x] - p);
+    for (int x = b; x != v; x = from_[x])
+      area = area + cross(mesh_.points[x] - p, mesh_.points[from_[x]] - p);
+    double along = 0;
+    int n = 1;
+    auto look = [&](int x) { along += std::abs(std::cos(angle(area, normal_[x]))), ++n; };
+    look(v);
+    for (int end : {a, b})
+      for (int x = end; x != v; x = from_[x]) look(x);
+    const double length = distance_[a] + distance_[b] + norm(mesh_.points[a] - mesh_.points[b]);
+    return along < across * n && norm(area) > least_area * length * length / (2 * pi);
+  }
+
+  const Mesh& mesh_;
+  const Neighbours& next_;
+  std::vector<Vec3> normal_;
+  std::vector<double> distance_;
+  std::vector<int> from_, branch_, reached_, near_;
+};
+
+}  // namespace
+
+std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
+                                       const std::vector<double>& size) {
+  const Mesh& mesh = surface.mesh;
+  const std::size_t n = mesh.points.size();
+  std::vector<double> feature(n, infinite), bend(n, 0);
+  lower_on_lines(surface, feature);
+  const Neighbours next(mesh);
+
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t)
+    for (int v : mesh.tris[t]) bend[v] = std::max(bend[v], curvature[t]);
+  TubeFinder tubes(mesh, next);
+  std::vector<char> done(n, 0);
+  for (int v = 0; v < static_cast<int>(n); ++v) {
+    const double below = ring_edges * size[v];
+    if (done[v] || !(bend[v] * below > full_bend)) continue;
+    const double length = tubes.ring(v, below);
+    // every vertex of a tube is within a quarter of its ring of one that was searched from
+    for (int u : tubes.near()) {
+      if (tubes.distance(u) > length / (length < below ? 4 : 16)) break;
+      done[u] = 1;
+      if (length < below) feature[u] = std::min(feature[u], length / ring_edges);
+    }
+  }
+  return feature;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The longest edges that narrow tubes and short closed lines permit.
+#pragma once
+#include <vector>
+
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+
+/// Returns per vertex a quarter of the shortest ring through it, where that is below `size` (elsewhere
+/// infinity, or more than the size), so that four edges fit around it. A ring is a closed line of border or
+/// model edges that meets no other, or the shortest closed path of edges around a tube. Tubes are searched
+/// where the curvature (per triangle) permits one.
+std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
+                                       const std::vector<double>& size);
+
+}  // namespace meshpipe

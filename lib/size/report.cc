@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdio>
+
+#include "lib/core/number.h"
+#include "lib/size/size.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double met =
+    0.01;  // of the number of triangles: the search for the scale ends within a tenth of it
+constexpr double much = 0.1;  // of the number of triangles: a smaller difference is not worth a line
+
+bool within(const SizeReport& r, const SizeOptions& o, double tolerance) {
+  return std::abs(r.triangles - o.triangles) <= std::max(1.0, tolerance * o.triangles);
+}
+
+}  // namespace
+
+bool met_count(const SizeReport& r, const SizeOptions& o) { return o.triangles > 0 && within(r, o, met); }
+
+std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, bool counted) {
+  std::vector<std::string> lines;
+  char text[160];
+  if (r.smallest == r.largest)
+    std::snprintf(text, sizeof text, "target edge length %.6g", r.smallest);
+  else
+    std::snprintf(text, sizeof text, "target edge length %.6g to %.6g, about %.0f triangles; %d edges split",
+                  r.smallest, r.largest, r.triangles, r.added);
+  lines.push_back(text);
+  if (r.scale != 1)
+    lines.push_back("the requested sizes are multiplied by " + shown(r.scale) +
+                    " for this number of triangles");
+  if (r.lowered > 0)
+    lines.push_back("the size is lowered at " + std::to_string(r.lowered) +
+                    " vertices of narrow tubes or closed lines, which need four edges around them: at " +
+                    shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) +
+                    " from " + shown(r.lowered_from) + " to " + shown(r.lowered_to));
+  if (counted && !within(r, o, much))
+    lines.push_back("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
+                    " triangles instead of the requested " + std::to_string(std::llround(o.triangles)));
+  if (o.size > 0 && r.smallest > o.size)
+    lines.push_back("the size is " + shown(r.smallest) + " by --min, instead of the requested " +
+                    shown(o.size));
+  if (o.size > 0 && o.max > 0 && o.max < o.size)
+    lines.push_back("the size is at most " + shown(o.max) + " by --max, instead of the requested " +
+                    shown(o.size));
+  return lines;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/size/size.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "lib/core/error.h"
+#include "lib/core/neighbours.h"
+#include "lib/core/number.h"
+#include "lib/core/shortest_paths.h"
+#include "lib/core/split_edges.h"
+#include "lib/core/topology.h"
+#include "lib/feature/feature.h"
+#include "lib/size/local_feature_size.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double default_size = 0.1;       ///< of the diagonal, where no source bounds the size
+constexpr double longest_edge = 1.0 / 16;  ///< of the diagonal, where a field may have detail anywhere
+constexpr int most_passes = 12;            ///< of splitting edges; each halves them, fields have few scales
+constexpr double interpolation_error = 0.15;  ///< of the size in the middle of an edge
+constexpr double count_error = 1e-3;          ///< of the number of triangles asked for
+
+/// The field while it is made: wishes at the vertices, edges split where they are not linear.
+struct Field {
+  Surface& s;
+  Table* chart;
+  const SizeOptions& o;
+  double diagonal = 0, cap = 0;
+  double uniform = infinite, scale = 1;  ///< meet_count varies these two
+  std::vector<int> opposite{};
+  std::vector<double> curvature{};                ///< per triangle; empty if not needed
+  std::vector<double> wish{}, size{}, permits{};  ///< per vertex: of the sources, the field, the surface
+};
+
+std::vector<double> curvature_of(const Field& f) {
+  const auto model = model_of(f.s);
+  return face_curvature({f.s, f.opposite, model});
+}
+
+double edge_length(const Field& f, int h) { return edge_length(f.s, h); }
+
+/// Returns the size that a curvature asks for.
+double by_curvature(const SizeOptions& o, double k) {
+  if (!(k > 0)) return infinite;
+  double h = infinite;
+  if (o.per_turn > 0) h = 2 * std::numbers::pi / (o.per_turn * k);
+  // a chord of length h over an arc of radius r is r - sqrt(r^2 - h^2 / 4) away from it
+  if (o.chord > 0)
+    h = std::min(h, o.chord * k < 1 ? 2 * std::sqrt(2 * o.chord / k - o.chord * o.chord) : 2 / k);
+  return h;
+}
+
+double asked(const SizeOptions& o, Vec3 p, double curvature) {
+  const double h = o.at(p, curvature);
+  if (!(h > 0))
+    throw BadInput("the size at " + shown(p.x) + ' ' + shown(p.y) + ' ' + shown(p.z) + " is " + shown(h) +
+                   ", but sizes are positive");
+  return h;
+}
+
+/// Sets the wishes: what the sources ask for at the vertices.
+void set_wishes(Field& f) {
+  const std::size_t n = f.s.points.size();
+  f.wish.assign(n, infinite);
+  std::vector<double> most(n, 0);
+  if (!f.curvature.empty())
+    for (std::size_t t = 0; t < f.s.tris.size(); ++t) {
+      const double h = by_curvature(f.o, f.curvature[t]);
+      for (int v : f.s.tris[t]) {
+        f.wish[v] = std::min(f.wish[v], h);
+        most[v] = std::max(most[v], f.curvature[t]);
+      }
+    }
+  if (!f.o.data.empty()) {
+    const auto& data = f.s.vertex.get<double>(f.o.data);
+    for (std::size_t v = 0; v < n; ++v) {
+      if (!(data[v] > 0))
+        throw BadInput("vertex " + std::to_string(v) + " has " + f.o.data + ' ' + shown(data[v]) +
+                       ", but sizes are positive");
+      f.wish[v] = std::min(f.wish[v], data[v]);
+    }
+  }
+  if (f.o.at)
+    for (std::size_t v = 0; v < n; ++v) f.wish[v] = std::min(f.wish[v], asked(f.o, f.s.points[v], most[v]));
+}
+
+/// Returns what the sources ask for in the middle of an edge.
+double wish_between(const Field& f, int h) {
+  const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
+  double least = infinite, most = 0;
+  if (!f.curvature.empty()) {
+    most = o >= 0 ? std::max(f.curvature[h / 3], f.curvature[o / 3]) : f.curvature[h / 3];
+    least = by_curvature(f.o, most);
+  }
+  if (!f.o.data.empty()) {
+    const auto& data = f.s.vertex.get<double>(f.o.data);
+    least = std::min(least, 0.5 * (data[a] + data[b]));
+  }
+  if (f.o.at) least = std::min(least, asked(f.o, lerp(f.s.points[a], f.s.points[b], 0.5), most));
+  return least;
+}
+
+double bounded(const Field& f, double wish) {
+  return std::max(std::min({f.uniform, f.cap, f.diagonal, f.scale * wish}), f.o.min);
+}
+
+/// Sets the sizes: the wishes times `scale`, at most `uniform`, bounded and graded.
+void set_sizes(Field& f, double uniform, double scale) {
+  f.uniform = uniform;
+  f.scale = scale;
+  f.size.resize(f.wish.size());
+  for (std::size_t v = 0; v < f.size.size(); ++v) {
+    f.size[v] = bounded(f, f.wish[v]);
+    if (!f.permits.empty()) f.size[v] = std::min(f.size[v], std::max(f.permits[v], f.o.min));
+  }
+  limit_gradation(f.s, f.o.gradation, f.size);
+}
+
+/// Sets the sizes to a field that asks for the given number of triangles. The number falls as x grows: while
+/// x < 0 the uniform length is e^x diagonals; beyond, the other sources are multiplied by e^x.
+void meet_count(Field& f) {
+  auto count_at = [&](double x) {
+    set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinite, x > 0 ? std::exp(x) : 1);
+    return std::log(count_for_size(f.s, f.size) / f.o.triangles);
+  };
+  constexpr double step = 0.3, most = 20;  // of x: sizes grow by a third a step, up to e^20 times
+  double low = std::min(0.0, std::log(size_for_count(total_area(f.s), f.o.triangles) / f.diagonal)),
+         high = low;
+  double above = count_at(low), below = above;
+  while (below > 0 && high < most) {
+    if (high > low) low = high, above = below;
+    high += step;
+    below = count_at(high);
+    if (low > 0 && above - below < 1e-6) break;  // bounds let the sizes grow no more
+  }
+  if (below > 0) count_at(low);
+  if (above <= 0 || below > 0)
+    return;  // already the uniform length asks for no more, or all sizes are too small
+  for (int i = 0; i < 30 && std::abs(below) > count_error && high - low > 1e-6; ++i) {
+    // regula falsi, with a bisection every third step since it may creep
+    double x = low + (high - low) * std::clamp(above / (above - below), 0.05, 0.95);
+    if (i % 3 == 2) x = 0.5 * (low + high);
+    const double c = count_at(x);
+    if (c > 0)
+      low = x, above = c;
+    else
+      high = x, below = c;
+    if (std::abs(c) < count_error) return;
+  }
+  count_at(high);
+}
+
+void make_sizes(Field& f) {
+  if (f.o.triangles > 0)
+    meet_count(f);
+  else
+    set_sizes(f, infinite, 1);
+}
+
+/// Whether interpolation along the edge misses the field in its middle, on a scale that a mesh would show.
+bool bends(const Field& f, int h) {
+  const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
+  const double l = edge_length(f, h);
+  if (l < 0.5 * std::min(f.size[a], f.size[b])) return false;
+  const Vec3 middle = lerp(f.s.points[a], f.s.points[b], 0.5);
+  double m =
+      std::min(bounded(f, wish_between(f, h)), std::min(f.size[a], f.size[b]) + 0.5 * f.o.gradation * l);
+  for (int side : {h, o}) {
+    if (side < 0) continue;
+    const int apex = target(f.s.tris, next(side));
+    m = std::min(m, f.size[apex] + f.o.gradation * norm(f.s.points[apex] - middle));
+  }
+  const double linear = 0.5 * (f.size[a] + f.size[b]);
+  return l > m && std::abs(m - linear) > interpolation_error * m;
+}
+
+void connect(Field& f) { f.opposite = opposite_halfedges(f.s.tris, static_cast<int>(f.s.points.size())); }
+
+/// Splits the edges that pass the test; returns whether there were any.
+template <class Test>
+bool split(Field& f, const Test& test) {
+  std::vector<char> mark(f.opposite.size(), 0);
+  for (int h = 0; h < static_cast<int>(mark.size()); ++h)
+    if (f.opposite[h] < h) mark[h] = test(h);
+  const std::vector<int> parent = split_edges({f.s, f.opposite}, std::move(mark), f.chart);
+  if (parent.empty()) return false;
+  connect(f);
+  if (!f.curvature.empty()) {
+    std::vector<double> k;
+    k.reserve(parent.size());
+    for (int t : parent) k.push_back(f.curvature[t]);
+    f.curvature = std::move(k);
+  }
+  return true;
+}
+
+/// Lowers sizes to the local feature size; reports the place where that is most.
+void lower_where_narrow(Field& f, SizeReport& report) {
+  const auto model = model_of(f.s);
+  if (f.curvature.empty()) f.curvature = curvature_of(f);
+  f.permits = local_feature_size({f.s, f.opposite, model}, f.curvature, f.size);
+  double most = 1;
+  for (std::size_t v = 0; v < f.permits.size(); ++v) {
+    const double r = std::max(f.permits[v], f.o.min);
+    if (!(r < f.size[v])) continue;
+    ++report.lowered;
+    if (f.size[v] / r <= most) continue;
+    most = f.size[v] / r;
+    report.lowered_at = f.s.points[v];
+    report.lowered_from = f.size[v];
+    report.lowered_to = r;
+  }
+  if (report.lowered > 0) make_sizes(f);
+}
+
+/// Converts vertex data to doubles, in place.
+void convert_data(Surface& s, const std::string& name) {
+  const Column* c = s.vertex.find(name);
+  if (!c) {
+    std::string known;
+    for (const Column& other : s.vertex.columns) known += (known.empty() ? "" : ", ") + other.name;
+    throw NotAdmissible("no vertex data '" + name + "'; there is " + (known.empty() ? "none" : known));
+  }
+  std::visit([&](const auto& v) { s.vertex.set(name, std::vector<double>(v.begin(), v.end())); },
+             decltype(Column::data)(c->data));
+}
+
+/// Makes a field that is not uniform.
+std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
+                               SizeReport& report) {
+  Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
+  f.cap = o.max > 0 ? o.max : infinite;
+  if (o.size > 0) f.cap = std::min(f.cap, o.size);
+  if (!(o.size > 0 || o.triangles > 0 || o.max > 0 || o.at || !o.data.empty()))
+    f.cap = default_size * f.diagonal;
+  connect(f);
+  if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature)) f.curvature = curvature_of(f);
+  const std::size_t n_before = s.points.size();
+  if (may_split && o.at)
+    while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
+    }
+  for (int pass = 0;; ++pass) {
+    set_wishes(f);
+    make_sizes(f);
+    if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
+  }
+  lower_where_narrow(f, report);
+  report.added = static_cast<int>(s.points.size() - n_before);
+  report.scale = f.scale;
+  return std::move(f.size);
+}
+
+}  // namespace
+
+void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit) {
+  const double smallest = *std::min_element(size.begin(), size.end());
+  if (!(smallest > 0)) return;
+  const double triangles = count_for_size(mesh, size);
+  if (triangles <= limit) return;
+  char why[120];
+  std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, but memory holds about %.2g", smallest,
+                triangles, limit);
+  throw GoalMissed(why);
+}
+
+void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
+  const Neighbours next(mesh);
+  auto each_lower = [&](int v, const auto& lower) {
+    for (int k = next.start[v]; k < next.start[v + 1]; ++k)
+      if (const int u = next.vertex[k]; size[u] > size[v])
+        lower(u, size[v] + slope * norm(mesh.points[u] - mesh.points[v]));
+  };
+  std::vector<int> sources;
+  for (int v = 0; v < (int)size.size(); ++v) {
+    bool lowers = false;
+    each_lower(v, [&](int u, double most) { lowers |= most < size[u]; });
+    if (lowers) sources.push_back(v);
+  }
+  shortest_paths(sources, size, [&](int v, auto reach) { each_lower(v, reach); });
+}
+
+SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split) {
+  if (surface.tris.empty()) throw NotAdmissible("the surface has no triangles");
+  if (!options.data.empty()) convert_data(surface, options.data);
+  const double area = total_area(surface);
+  if (!(area > 0)) throw NotAdmissible("the surface has no area");
+  const bool uniform = !(options.per_turn > 0 || options.chord > 0 || !options.data.empty() || options.at);
+  SizeReport report;
+  std::vector<double> size;
+  if (uniform) {
+    double h = options.size > 0 ? options.size : infinite;
+    if (options.triangles > 0) h = std::min(h, size_for_count(area, options.triangles));
+    if (options.max > 0) h = std::min(h, options.max);
+    size.assign(surface.points.size(), std::max(h, options.min));
+  } else {
+    size = make_field(surface, chart, options, may_split, report);
+  }
+  report.triangles = count_for_size(surface, size);
+  const auto [least, most] = std::minmax_element(size.begin(), size.end());
+  report.smallest = *least;
+  report.largest = *most;
+  refuse_more_triangles(surface, size, options.most_triangles);
+  surface.vertex.set("size", std::move(size));
+  return report;
+}
+
+}  // namespace meshpipe

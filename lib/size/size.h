@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The size field: target edge length at every vertex.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "lib/core/mesh.h"
+#include "lib/core/triangle_count.h"
+#include "lib/size/size_field.h"
+
+namespace meshpipe {
+
+/// Sources and bounds of the size; 0 or empty: none.
+struct SizeOptions {
+  double size = 0;       ///< the same length everywhere
+  double triangles = 0;  ///< number to ask for: a uniform size is added, or the other sources are scaled
+  double per_turn = 0;   ///< edges per full turn along the most curved direction
+  double chord = 0;      ///< largest distance of a chord from its arc
+  std::string data;      ///< a vertex column
+  /// The size at a point with this largest absolute curvature; infinite: not bounded there.
+  std::function<double(Vec3, double)> at;
+  bool at_curvature = true;  ///< `at` reads the curvature; else it gets 0, which takes less time
+  double min = 0, max = 0;
+  double gradation = 0.3;             ///< growth per unit of length
+  double most_triangles = 715827882;  ///< half-edges are numbered by int
+};
+
+struct SizeReport {
+  double smallest = 0, largest = 0;
+  double triangles = 0;  ///< that the field asks for
+  double scale = 1;      ///< factor of the other sources where they ask for more than `triangles`
+  int added = 0;         ///< vertices
+  int lowered = 0;       ///< vertices where the local feature size is below the size that was asked for
+  Vec3 lowered_at{};     ///< where that is most, with
+  double lowered_from = 0, lowered_to = 0;
+};
+
+/// Sets vertex column `size` to the minimum of all sources (a tenth of the diagonal if none sets it), bounded
+/// by the local feature size, graded unless it is uniform, within `min` and `max`. Splits edges along which
+/// interpolation does not follow the field, unless `may_split` is false; `chart`: table chart_vertex or null.
+/// Throws: NotAdmissible if the surface has no area or no column `data`, GoalMissed if the field asks for too
+/// many triangles, BadInput if a source has a value that is not positive.
+SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split = true);
+
+/// Whether the field asks for the number of triangles that was requested; bounds may prevent that.
+bool met_count(const SizeReport& report, const SizeOptions& options);
+
+/// Returns lines for the user: the sizes, and where they differ from what was requested. `counted`: the
+/// number of triangles was requested by the user.
+std::vector<std::string> describe(const SizeReport& report, const SizeOptions& options, bool counted);
+
+/// Throws: GoalMissed, with both numbers, if a field asks for more triangles than `limit`. Fields with values
+/// that are not positive pass.
+void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit);
+
+/// Reduces sizes until they grow by at most `slope` per unit of length along every edge. Source: Borouchaki,
+/// Hecht and Frey, "Mesh gradation control", 1998.
+void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size);
+
+}  // namespace meshpipe

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A size field given on another mesh or on scattered points.
+#pragma once
+#include <vector>
+
+#include "lib/core/bvh.h"
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Points with a target edge length each, linear on the triangles between them. A point of no triangle has
+/// one of its own, with three equal corners (add_lone_points).
+struct SizeField : Mesh {
+  std::vector<double> size;
+};
+
+/// Adds a triangle for every point that no triangle uses.
+void add_lone_points(SizeField& field);
+
+/// Returns the size at the point of the field nearest to p; where several sheets are almost equally near, the
+/// smallest. `tree` holds the field's triangles.
+double size_near(const SizeField& field, const Bvh& tree, Vec3 p);
+
+}  // namespace meshpipe

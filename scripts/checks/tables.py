@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What scripts/check holds the source to: the order of modules, words, and limits."""
+
+# A file may include headers of its own module and of those before it.
+MODULES = ["core", "numeric", "clean", "wrap", "feature", "param", "partition", "multiscale", "plan", "size", "lines", "mesh2d",
+           "lift", "relax", "check", "shape", "draw", "formats", "tools"]
+# modules without one header of their own: each of theirs is for everybody
+TOOLBOXES = ["core", "numeric", "formats", "tools"]
+# modules that decide where the surface is cut into parts
+CUTTING = ["partition", "multiscale", "plan"]
+
+# name -> (limit, what is counted)
+LIMITS = {
+    "opposite": (19, "parameters that are a bare column of opposite half-edges"),
+    "members": (0, "classes with more than 25 members, data and functions"),
+    "functions": (0, "functions of more than 80 lines"),
+    "comments": (0, "comments on a declaration of more than 8 lines"),
+    "words": (0, "words with a better one in scripts/checks/tables.py"),
+    "lib-lines": (24700, "lines in lib/"),
+    "cutting-lines": (4910, "lines of the modules that cut: partition, multiscale, plan"),
+    "cutting-in-param": (0, "includes of those in lib/param"),
+    "eigen": (0, "includes of Eigen outside lib/numeric"),
+    "against": (0, "includes against the order of modules"),
+    "inner": (0, "includes of a module's inner headers by another"),
+    "modules": (0, "modules without a header of their name, or not in the order"),
+}
+
+# word -> what to write instead
+WORDS = {
+    "is told": "is reported, is known", "are told": "are reported, are known", "tells? of": "reports",
+    "parted by": "separated by", "is due": "is expected", "are due": "are expected", "but for": "except",
+    "beside": "next to, adjacent to", "so many": "the number, count", "as good as": "almost", "a row an?": "one row per",
+    "tips?": "missed features", "mend(?:s|ed|ing)?": "repair", "badness": "objective",
+    "facing": "reference normal", "agreement": "normal deviation", "burdens?": "predicted number of charts",
+    "forecasts?": "distortion estimate", "unevenness": "area distortion", "cells?": "aggregates",
+    "rooms?": "local feature size", "embeds?": "noncrossing refinement", "turned": "inconsistently oriented",
+    "culprits?": "offending faces", "walls?": "feature edges", "wedges?": "sharp feature corner",
+    "uncut": "recover the original triangles",
+}
+
+# (word, files, what the line must hold, reason)
+WORD_EXCEPTIONS = [
+    ("cells?", "formats/*", "", "VTK's word for elements, and tables of SVG"),
+    ("cells?", "tests/*_test.py", "", "VTK's word for elements"),
+    ("cells?", "tools/mconvert.1", "", "VTK's word for elements"),
+    ("cells?", "tests/unit/formats/*", "", "VTK's word for elements"),
+    ("cells?", "lib/core/*", "", "squares and cubes of a search grid"),
+    ("cells?", "lib/draw/*", "", "squares of a picture"),
+    ("cells?", "*shape*", "", "cubes of the grid that marching goes through"),
+    ("tips?", "lib/check/check.*", "", "real ones: of needles"),
+    ("tips?", "lib/param/ears.*", "", "real ones: of ears"),
+    ("tips?", "lib/shape/tree.cc", "", "real ones: of branches"),
+    ("tips?", "lib/check/*", "needle_?tip|needle", "real ones: of needles"),
+    ("tips?", "tests/unit/check/*", "", "real ones: of needles"),
+    ("tips?", "tests/unit/param/*", "", "real ones: of ears"),
+    ("tips?", "tests/unit/multiscale/*", "", "real ones: of branches"),
+    ("rooms?", "*", r"rooms? (?:for|in|to)\b|make_room", "space in a file, an array, or between lines"),
+    ("walls?", "CMakeLists.txt", "-Wall", "the compiler's option"),
+    ("walls?", "scripts/benches/*", "", "time by the clock on the wall"),
+    ("walls?", "lib/numeric/sparse.h", "wall", "time by the clock on the wall"),
+    ("walls?", "lib/shape/shape.cc", "", "real ones: of bodies"),
+    ("walls?", "lib/check/examine.h", "thin walls", "real ones: of bodies"),
+    ("walls?", "formats/*", "", "real ones: names of patches"),
+    ("walls?", "tests/*", "", "real ones: names of patches"),
+    ("wedges?", "formats/*", "", "VTK's and Gmsh's word for prisms"),
+    ("wedges?", "*", "kappa_off_wedges", "a key of mcheck's report and contract, which is public"),
+    ("turned", "lib/draw/*", "", "rotated"),
+    ("turned", "*", r"turned (?:into|on|off|out)\b", "plain English"),
+    ("turned", "tools/mmultiscale.cc", "turned_over", "a key of its report, which is public"),
+    ("turned", "*", "turned_edges", "a key of mcheck's report, which is public"),
+    ("culprits?", "*", r"--culprits|Fl -culprits|o\.culprits", "a public option of mclean and mcheck"),
+    ("cells?", "scripts/benches/*", "", "entries of a printed table"),
+    ("cells?", "tests/cases/*", "", "VTK's word for elements"),
+    ("cells?", "tools/mconvert.1", "", "VTK's word for elements"),
+    ("cells?", "tools/report/*", "", "entries of a table of pictures"),
+    ("cells?", "tests/unit/core/chart_test.cc", "", "squares of a grid"),
+    ("cells?", "tests/unit/mesh2d/*", "", "squares of a grid"),
+    ("cells?", "lib/mesh2d/cdt.cc", "", "squares of Hilbert's curve"),
+    ("culprits?", "tests/cases/check-finds-faults/*", "", "written by a public option"),
+    ("tips?", "tests/unit/relax/*", "", "real ones: of pyramids"),
+    ("beside", "*", r"--beside|Fl -beside", "a public option of mdraw"),
+    ("rooms?", "tools/files.*", "", "space in an array"),
+    ("turned", "lib/param/conformal.cc", "rotation", "rotated"),
+    ("embeds?", "*", "embed(?:s|ded)? in", "plain English"),
+]

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "lib/check/check.h"
+#include "lib/core/error.h"
+#include "lib/shape/shape.h"
+
+namespace meshpipe {
+namespace {
+
+/// What the default contract finds in a mesh that was made from `reference`.
+std::vector<Failure> verdict(const Mesh& mesh, const Mesh& reference,
+                             const std::string& contract = default_contract) {
+  return judge(parse_contract(contract), examine(surface_of(mesh), surface_of(reference), nullptr, 2000),
+               mesh);
+}
+
+bool fails(const std::vector<Failure>& failures, const std::string& requirement) {
+  for (const Failure& f : failures)
+    if (f.requirement == requirement) return true;
+  return false;
+}
+
+TEST(contract, lists_are_read_and_refused) {
+  const Contract c = parse_contract("topology,kappa=0.25,hausdorff=1e-3");
+  ASSERT_EQ(c.size(), 3u);
+  EXPECT_EQ(c[0].name, "topology");
+  EXPECT_EQ(c[1].limit, 0.25);
+  EXPECT_EQ(c[2].limit, 1e-3);
+  for (const char* bad : {"", "topologie", "kappa", "kappa=", "kappa=x", "kappa=0.1x", "topology=1",
+                          "kappa=-1", "hausdorff=inf", "mean=nan", "topology,", "angle=30 "})
+    EXPECT_THROW(parse_contract(bad), BadUsage) << bad;
+}
+
+TEST(contract, what_is_not_a_number_fails_and_what_there_is_not_does_not) {
+  const Mesh m = sphere(500);
+  Findings f = examine(surface_of(m), surface_of(m), nullptr, 1000);
+  const Contract c = parse_contract("features=1,trace=1,mean=1,boundary=1,vertices=1,size=1");
+  EXPECT_TRUE(judge(c, f, m).empty());
+  const double nan = std::nan("");
+  f.features = f.kappa_by_cuts = f.kappa_elsewhere = f.distance.mean = f.boundary = f.quality.edge_deviation =
+      f.off[f.farthest] = nan;
+  EXPECT_EQ(judge(c, f, m).size(), c.size());
+  EXPECT_FALSE(offending_faces(c, f, m).tris.empty());
+}
+
+TEST(contract, nothing_is_found_where_nothing_is) {
+  for (const Mesh& m : {sphere(500), torus(0.4, 800), Mesh(cube(600)), tube(3, 40, false)})
+    EXPECT_TRUE(verdict(m, m).empty()) << verdict(m, m)[0].fact;
+  // every part of the sphere is there, in other triangles
+  EXPECT_TRUE(
+      verdict(sphere(900), sphere(2000), "topology,intersections,folds,patches,vertices=0.1").empty());
+}
+
+TEST(contract, a_flipped_triangle) {
+  Mesh m = sphere(500);
+  std::swap(m.tris[7][0], m.tris[7][1]);
+  const auto f = verdict(m, sphere(500));
+  ASSERT_TRUE(fails(f, "topology"));
+  EXPECT_EQ(f[0].fact.rfind("3 edges whose triangles disagree on orientation, the first in triangle ", 0),
+            0u);
+}
+
+TEST(contract, a_hole) {
+  Mesh m = sphere(500);
+  m.tris.erase(m.tris.begin());
+  const auto f = verdict(m, sphere(500));
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].fact.rfind("boundary loops 1, the reference has 0; the shortest passes triangle ", 0), 0u);
+}
+
+TEST(contract, a_crack) {
+  // the triangles on one side of two edges in a row get a middle vertex of their own: a slit without width
+  const Mesh good = torus(0.4, 800);
+  const Soundness c = soundness_of(good);
+  Mesh m = good;
+  const int v = m.tris[0][0], copy = (int)m.points.size();
+  std::vector<int> fan;
+  for (int h = 0;;) {
+    fan.push_back(h);
+    h = c.opposite[prev(h)];
+    if (h == 0) break;
+  }
+  m.points.push_back(m.points[v]);
+  for (int i = 0; i < 3; ++i) m.tris[fan[i] / 3][fan[i] % 3] = copy;
+  const auto f = verdict(m, good);
+  ASSERT_TRUE(fails(f, "topology"));
+  EXPECT_NE(f[0].fact.find("boundary loops 1, the reference has 0"), std::string::npos) << f[0].fact;
+}
+
+TEST(contract, a_fold) {
+  // a vertex pulled over the far side of one of its triangles, off the surface by so little that nothing
+  // meets
+  Mesh m;
+  const int n = 6;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) m.points.push_back({(double)x, (double)y, 0});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x;
+      m.tris.push_back({a, a + 1, a + n + 2});
+      m.tris.push_back({a, a + n + 2, a + n + 1});
+    }
+  const Mesh good = m;
+  Vec3& p = m.points[3 * (n + 1) + 3];
+  p = {4.4, 3.6, 0.05};
+  const auto f = verdict(m, good, "folds");
+  ASSERT_TRUE(fails(f, "folds"));
+  EXPECT_NE(f[0].fact.find(" folded, the first in triangle "), std::string::npos);
+}
+
+TEST(contract, thin_walls_and_ridges_are_no_folds) {
+  // a coarse ridge of 20 degrees, whose reference is finer
+  const Mesh ridge{{{0, 0, 0}, {0, 3, 0}, {-0.2, 0, 1}, {-0.2, 3, 1}, {0.2, 0, 1}, {0.2, 3, 1}},
+                   {{0, 1, 3}, {0, 3, 2}, {1, 0, 4}, {1, 4, 5}}};
+  EXPECT_TRUE(verdict(ridge, ridge, "folds").empty());
+}
+
+TEST(contract, a_doubled_triangle) {
+  Mesh m = sphere(500);
+  m.tris.push_back(m.tris[5]);
+  const auto f = verdict(m, sphere(500));
+  ASSERT_TRUE(fails(f, "topology"));
+  EXPECT_NE(f[0].fact.find("3 edges with more than two triangles, the first in triangle "),
+            std::string::npos);
+  EXPECT_TRUE(fails(f, "intersections"));
+}
+
+TEST(contract, a_moved_vertex) {
+  const Mesh good = sphere(2000);
+  Mesh m = good;
+  const Tri& t = m.tris[3];
+  const double edge = norm(m.points[t[0]] - m.points[t[1]]);
+  m.points[t[0]] = m.points[t[0]] + 0.4 * edge * normalized(m.points[t[0]]);
+  auto f = verdict(m, good);
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_EQ(f[0].requirement, "vertices");
+  EXPECT_NE(f[0].fact.find("vertex " + std::to_string(t[0]) + " lies off the reference, at ("),
+            std::string::npos);
+  f = verdict(m, good, "hausdorff=0.001");
+  ASSERT_EQ(f.size(), 1u);
+  EXPECT_NE(f[0].fact.find(" the distance found at ("), std::string::npos);
+}
+
+TEST(contract, a_crossing_and_a_lost_name) {
+  const Mesh good = sphere(500);
+  Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);
+  f.lost_patches = {"inlet"};
+  f.intersections = {{4, 9}, {5, 8}};
+  f.new_intersections = {{4, 9}};
+  f.reference_intersections = 1;
+  const Contract contract = parse_contract(default_contract);
+  const auto failures = judge(contract, f, good);
+  ASSERT_EQ(failures.size(), 2u);
+  EXPECT_EQ(failures[0].requirement, "intersections");
+  EXPECT_NE(failures[0].fact.find("triangle 9 with triangle 4 at ("), std::string::npos);
+  EXPECT_EQ(failures[1].fact, "patch inlet is lost");
+  const Surface faulty = offending_faces(contract, f, good);
+  EXPECT_EQ(faulty.face.get<int>("triangle"), (std::vector<int>{4, 9}));
+  EXPECT_EQ(faulty.face.get<std::uint8_t>("fault")[0], offends_intersections);
+}
+
+TEST(contract, figures_by_the_cuts) {
+  // interface x = 0 of a plane: there the triangles are worse
+  Surface m;
+  for (int y = 0; y <= 20; ++y)
+    for (int x = -20; x <= 20; ++x)
+      m.points.push_back({(double)x, std::sqrt(0.75) * (y + (std::abs(x) <= 1 ? 0.3 * (x % 2) : 0)), 0});
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const int a = y * 41 + x;
+      m.tris.push_back({a, a + 1, a + 42});
+      m.tris.push_back({a, a + 42, a + 41});
+    }
+  m.vertex.rows = m.points.size();
+  m.face.rows = m.tris.size();
+  Lines lines;
+  lines.lines.push_back({interface_line, 0, 0, 21, 0});
+  for (int y = 0; y <= 20; ++y) lines.points.push_back({y * 41 + 20, y * 41 + 20, 0});
+  const Findings f = examine(m, m, &lines, 1000);
+  EXPECT_LT(*f.kappa_by_cuts, *f.kappa_elsewhere - 0.003);
+  EXPECT_TRUE(fails(judge(parse_contract("trace=0.003"), f, m), "trace"));
+  lines.lines[0].kind = model_line;
+  EXPECT_FALSE(examine(m, m, &lines, 1000).kappa_by_cuts);
+}
+
+}  // namespace
+}  // namespace meshpipe

@@ -1,0 +1,737 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/clean/clean.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "lib/core/error.h"
+#include "lib/core/topology.h"
+#include "lib/core/weld.h"
+
+using namespace meshpipe;
+
+static Surface surface(std::vector<Vec3> points, std::vector<Tri> tris) {
+  Surface s;
+  s.points = std::move(points);
+  s.tris = std::move(tris);
+  std::vector<int> patch;
+  for (int t = 0; t < (int)s.tris.size(); ++t) patch.push_back(10 + t);
+  s.face.set("patch", patch);
+  return s;
+}
+
+static const std::vector<Vec3> tetra_points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+static const std::vector<Tri> tetra_tris{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+
+/// Every triangle on its own three points, as STL has them.
+static Surface soup(const std::vector<Vec3>& points, const std::vector<Tri>& tris) {
+  Surface s = surface({}, tris);
+  for (Tri& t : s.tris)
+    for (int& v : t) {
+      s.points.push_back(points[v]);
+      v = (int)s.points.size() - 1;
+    }
+  return s;
+}
+
+static void expect_manifold(const Surface& s) {
+  auto o = opposite_halfedges(s.tris, (int)s.points.size());
+  EXPECT_EQ(find_pinched_vertex({s, o}), -1);
+  EXPECT_EQ(s.face.get<int>("patch").size(), s.tris.size());
+}
+
+static double volume(const Surface& s) {
+  double v = 0;
+  for (const Tri& t : s.tris) v += dot(s.points[t[0]], cross(s.points[t[1]], s.points[t[2]])) / 6;
+  return v;
+}
+
+TEST(Clean, LeavesACleanSurfaceAsItIs) {
+  Surface s = surface(tetra_points, tetra_tris);
+  EXPECT_TRUE(clean(s).nothing);
+  EXPECT_EQ(s.tris, tetra_tris);
+  EXPECT_EQ(s.points, tetra_points);
+}
+
+TEST(Clean, WeldsASoupByFirstUseAndTakesMinusZeroForZero) {
+  Surface s = soup(tetra_points, tetra_tris);
+  s.points[3].x = -0.0;
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.welded, 8);
+  EXPECT_EQ(s.points.size(), 4u);
+  EXPECT_EQ(s.tris[0], (Tri{0, 1, 2}));
+  EXPECT_EQ(s.points[1], (Vec3{0, 1, 0}));  // the second corner of the first triangle
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  expect_manifold(s);
+}
+
+TEST(Clean, TurnsTheMinorityAndTheInsideOut) {
+  Surface s = surface(tetra_points, tetra_tris);
+  std::swap(s.tris[2][0], s.tris[2][1]);
+  EXPECT_EQ(clean(s).flipped, 1);
+  EXPECT_GT(volume(s), 0);
+  for (Tri& t : s.tris) std::swap(t[1], t[2]);
+  EXPECT_EQ(clean(s).flipped, 4);
+  EXPECT_GT(volume(s), 0);
+  expect_manifold(s);
+}
+
+/// Nested tetrahedra, largest first, those with a minus inside out.
+static Surface nested(const std::string& signs) {
+  Surface s;
+  double size = 1;
+  for (char sign : signs) {
+    const int first = (int)s.points.size();
+    for (Vec3 p : tetra_points)
+      s.points.push_back(Vec3{0.2, 0.21, 0.22} + size * (p - Vec3{0.2, 0.21, 0.22}));
+    for (Tri t : tetra_tris) {
+      for (int& v : t) v += first;
+      if (sign == '-') std::swap(t[1], t[2]);
+      s.tris.push_back(t);
+    }
+    size /= 3;
+  }
+  s.face.set("patch", std::vector<int>(s.tris.size(), 1));
+  return s;
+}
+
+TEST(Clean, FacesOutOfWhatIsEnclosed) {
+  for (const char* consistent : {"+", "+-", "+-+", "+-+-", "++", "+++"}) {
+    Surface s = nested(consistent);
+    const std::vector<Tri> before = s.tris;
+    EXPECT_TRUE(clean(s).nothing) << consistent;
+    EXPECT_EQ(s.tris, before);
+  }
+  for (auto [given, expected, reversed] :
+       {std::tuple{"-", "+", 4}, {"-+", "+-", 8}, {"--", "+-", 4}, {"-+-", "+-+", 12}}) {
+    Surface s = nested(given);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.flipped, reversed) << given;
+    EXPECT_EQ((int)r.offending.size(), reversed) << given;
+    const Surface result = nested(expected);
+    for (int c = 0; c < (int)s.tris.size() / 4; ++c) {
+      auto part = [&](const Surface& whole) {
+        return volume(surface(whole.points, {whole.tris.begin() + 4 * c, whole.tris.begin() + 4 * c + 4}));
+      };
+      EXPECT_GT(part(s) * part(result), 0) << given << ' ' << c;
+    }
+    EXPECT_TRUE(clean(s).nothing) << given;
+  }
+}
+
+TEST(Clean, ManyTrianglesInLineTakeLittleTime) {
+  // a vertex on the line of the others: all but the last triangle of its fan are flat
+  const int n = 60000;
+  std::vector<Vec3> points{{0, 0, 0}};
+  std::vector<Tri> tris;
+  for (int i = 1; i <= n; ++i) points.push_back({(double)i, 0, 0});
+  points.push_back({0, 1, 0});
+  for (int i = 1; i < n; ++i) tris.push_back({0, i, i + 1});
+  tris.push_back({0, n, n + 1});
+  Surface s = surface(points, tris);
+  clean(s);
+  for (const Tri& t : s.tris) EXPECT_GT(norm(area_vector(s.points[t[0]], s.points[t[1]], s.points[t[2]])), 0);
+  EXPECT_TRUE(clean(s).nothing);
+}
+
+TEST(Clean, OneVertexFarOffDoesNotSlowTheWeld) {
+  const int n = 300;
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) points.push_back({(double)x, (double)y, 0});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const int a = y * (n + 1) + x;
+      tris.push_back({a, a + 1, a + n + 2});
+      tris.push_back({a, a + n + 2, a + n + 1});
+    }
+  points.push_back({1e40, 3e20, -1e40});
+  tris.push_back({0, n + 1, (int)points.size() - 1});
+  for (double tolerance : {0.001, 1e-300}) {
+    Surface s = surface(points, tris);
+    EXPECT_EQ(clean(s, {.weld = tolerance}).welded_near, 0);
+  }
+}
+
+TEST(Clean, DropsDuplicatesDegeneratesAndUnreferencedVertices) {
+  Surface s = surface(tetra_points, tetra_tris);
+  s.points.push_back({5, 5, 5});
+  s.tris.insert(s.tris.begin() + 1, {{2, 1, 0}, {3, 3, 1}});  // one again, reversed; one with a vertex twice
+  s.face.columns.clear();
+  s.face.set<int>("patch", {0, 1, 2, 3, 4, 5});
+  s.vertex.set<double>("size", {1, 2, 3, 4, 5});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.duplicate, 1);
+  EXPECT_EQ(r.degenerate, 1);
+  EXPECT_EQ(r.unreferenced, 1);
+  EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{0, 3, 4, 5}));
+  EXPECT_EQ(s.vertex.get<double>("size"), (std::vector<double>{1, 3, 2, 4}));
+  EXPECT_EQ(s.tris.size(), 4u);
+  expect_manifold(s);
+}
+
+//  1---2
+//   \ /        two triangles that meet at vertex 0 only
+//    0
+//   / \        .
+//  3---4
+TEST(Clean, SplitsAPinchedVertexIntoOneCopyAFan) {
+  Surface s = surface({{0, 0, 0}, {-1, 1, 0}, {1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}, {{0, 2, 1}, {0, 3, 4}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.nonmanifold_vertices, 1);
+  ASSERT_EQ(s.points.size(), 6u);
+  EXPECT_EQ(s.points[5], s.points[0]);
+  EXPECT_EQ(s.tris[0], (Tri{0, 2, 1}));
+  EXPECT_EQ(s.tris[1], (Tri{5, 3, 4}));
+  expect_manifold(s);
+  // what it has split it does not weld again
+  const std::vector<Tri> before = s.tris;
+  EXPECT_TRUE(clean(s).nothing);
+  EXPECT_EQ(s.tris, before);
+}
+
+TEST(Clean, SplitsThreeSheetsOnOneEdge) {
+  Surface s =
+      surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.nonmanifold_edges, 1);
+  EXPECT_EQ(r.nonmanifold_vertices, 2);
+  EXPECT_EQ(r.copies, 4);
+  EXPECT_EQ(s.points.size(), 9u);
+  expect_manifold(s);
+}
+
+TEST(Clean, RemarksWhatTheTopologyHides) {
+  Surface s = surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}},
+                      {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 4}});
+  const std::string remark = remark_of(clean(s));
+  EXPECT_EQ(remark, "clean opened 1 split 2 dropped 1");
+  EXPECT_EQ(parse_remark(remark).opened, 1);
+  EXPECT_EQ(parse_remark(remark).split, 2);
+  EXPECT_EQ(parse_remark(remark).dropped, 1);
+  EXPECT_EQ(parse_remark("cleaned by hand").opened, 0);
+  EXPECT_EQ(remark_of(clean(s)), "clean opened 1 split 2 dropped 0");
+}
+
+TEST(Clean, KeepsSheetsJoinedOnRequest) {
+  // the same three sheets on the edge 0-1: two of them of one patch
+  Surface s =
+      surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  s.face.set<int>("patch", {7, 8, 7});
+  const std::vector<Tri> before = s.tris;
+  CleanReport r = clean(s, {.sheets = CleanOptions::keep});
+  EXPECT_EQ(r.nonmanifold_edges, 1);
+  EXPECT_EQ(r.copies, 0);
+  EXPECT_EQ(r.components, 3);
+  EXPECT_FALSE(r.nothing);
+  EXPECT_EQ(s.tris, before);
+  EXPECT_EQ(s.points.size(), 5u);
+  EXPECT_EQ(s.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{1, 1, 1}));
+  EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(r.sheet_patches, (std::vector<std::array<int, 2>>{{9, 7}}));
+  EXPECT_THROW(opposite_halfedges(s.tris, 5), NotAdmissible);
+  Mesh apart = sheets_apart(s);
+  EXPECT_EQ(apart.points.size(), 9u);
+  EXPECT_EQ(topology_of(apart).components, 3);
+  // kept once, it is clean
+  EXPECT_TRUE(clean(s, {.sheets = CleanOptions::keep}).nothing);
+  EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
+}
+
+TEST(Clean, TwoTetrahedraOnOneEdgeStayClosed) {
+  std::vector<Vec3> p = tetra_points;
+  p.push_back({0, -1, 0});
+  p.push_back({0, 0, -1});
+  std::vector<Tri> tris = tetra_tris;  // the second one is the first, rotated by 180 degrees about edge 0-1
+  for (Tri t : {Tri{0, 4, 1}, Tri{0, 1, 5}, Tri{1, 4, 5}, Tri{4, 0, 5}}) tris.push_back(t);
+  Surface s = surface(p, tris);
+  EXPECT_EQ(clean(s).nonmanifold_edges, 1);
+  EXPECT_EQ(s.points.size(), 8u);
+  Topology t = topology_of(s);
+  EXPECT_EQ(t.components, 2);
+  EXPECT_EQ(t.loops, 0);
+  EXPECT_NEAR(volume(s), 2.0 / 6, 1e-15);
+}
+
+TEST(Clean, RefusesAMoebiusBand) {
+  // a strip of five triangles whose ends are joined after half a turn
+  Surface s = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                      {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  try {
+    clean(s);
+    FAIL();
+  } catch (const NotAdmissible& e) {
+    EXPECT_NE(std::string(e.what()).find("not orientable: triangles"), std::string::npos);
+  }
+}
+
+TEST(Clean, RefusesWhatHasNoTriangleLeftAndTellsWhy) {
+  auto why = [](Surface s, const CleanOptions& options) {
+    try {
+      clean(s, options);
+    } catch (const NotAdmissible& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(why(surface(tetra_points, {{0, 0, 1}}), {}), "no triangle is left of 1: 1 degenerate");
+  EXPECT_EQ(why(surface(tetra_points, {}), {}), "the input has no triangle");
+  const Surface band = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                               {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  EXPECT_EQ(why(band, {.drop_nonorientable = true}), "no triangle is left of 5: 5 not orientable");
+}
+
+//  3-------2       triangle 1 = (0, 1, 4) is a cap: 4 lies on the edge 0-1; without it, and with nothing else
+//  done,
+//   \  0  / \      the surface would have a crack between (0, 1, 2) and the triangles below
+//    0-4-1
+//     \|/          .
+//      5
+TEST(Clean, FlipsACapIntoItsNeighbour) {
+  Surface s = surface({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {-1, 2, 0}, {1, 0, 0}, {1, -1, 0}},
+                      {{0, 1, 2}, {0, 4, 1}, {0, 5, 4}, {4, 5, 1}, {0, 2, 3}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.degenerate, 1);
+  EXPECT_EQ(r.flat, 0);
+  EXPECT_EQ(s.tris.size(), 5u);
+  EXPECT_DOUBLE_EQ(total_area(s), 2 + 2 + 1);
+  for (const Tri& t : s.tris) EXPECT_GT(kappa(s.points[t[0]], s.points[t[1]], s.points[t[2]]), 0.1);
+  Topology t = topology_of(s);
+  EXPECT_EQ(t.components, 1);
+  EXPECT_EQ(t.loops, 1);
+  EXPECT_EQ(t.genus, 0);
+  // both pieces of the neighbor are of its patch
+  std::vector<int> patch = s.face.get<int>("patch");
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 10), 2);
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 11), 0);
+}
+
+TEST(Clean, DropsACapOnTheBorder) {
+  Surface s = surface({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}}, {{0, 2, 1}, {0, 3, 2}, {2, 3, 1}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.degenerate, 1);
+  EXPECT_EQ(s.tris.size(), 2u);
+  expect_manifold(s);
+}
+
+//      3           triangle (0, 1, 2) is a needle: 0 and 1 nearly coincide
+//    / | \\         .
+//   4--01--2
+//    \ || /
+//      5
+TEST(Clean, CollapsesANeedle) {
+  const double e = 1e-14;
+  Surface s = surface({{0, 0, 0}, {e, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
+                      {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 5, 2}});
+  CleanReport r = clean(s, {.weld = 0});
+  EXPECT_EQ(r.degenerate, 1);  // the other one goes with it
+  EXPECT_EQ(r.flat, 0);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_EQ(s.points.size(), 5u);
+  EXPECT_NEAR(total_area(s), 2, 1e-12);
+  expect_manifold(s);
+  EXPECT_EQ(topology_of(s).loops, 1);
+}
+
+TEST(Clean, WeldsWithinATolerance) {
+  std::vector<Vec3> p = tetra_points;
+  Surface s = soup(p, tetra_tris);
+  std::mt19937 random(1);
+  for (Vec3& q : s.points) q.x += 1e-6 * (random() % 1000) / 1000;
+  Surface apart = s;
+  clean(apart);
+  EXPECT_EQ(apart.points.size(), 12u);
+  CleanReport r = clean(s, {.weld = 1e-6});
+  EXPECT_EQ(r.welded_near, 8);
+  EXPECT_EQ(s.points.size(), 4u);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_TRUE(clean(s, {.weld = 1e-6}).nothing);
+}
+
+TEST(Clean, ChainsOfCloseVerticesDoNotRunTogether) {
+  std::vector<Vec3> p;
+  for (int i = 0; i <= 10; ++i) p.push_back({0.75 * i, 0, 0});
+  std::vector<int> same(p.size());
+  for (int i = 0; i <= 10; ++i) same[i] = i;
+  EXPECT_EQ(merge_near(p, std::vector<char>(p.size(), 1), 1, same), 5);
+  EXPECT_EQ(same, (std::vector<int>{0, 0, 2, 2, 4, 4, 6, 6, 8, 8, 10}));
+}
+
+TEST(Clean, DropsANonorientableComponentAndNamesIt) {
+  Surface s = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                      {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  for (Tri t : tetra_tris) s.tris.push_back({t[0] + 5, t[1] + 5, t[2] + 5});
+  for (Vec3 p : tetra_points) s.points.push_back(p);
+  s.face = {"face", 0, {}};
+  CleanReport r;
+  Surface refused = s;
+  EXPECT_THROW(clean(refused, {}, r), NotAdmissible);
+  EXPECT_EQ(r.offending.size(), 5u);
+  EXPECT_EQ(refused.tris, s.tris);
+  clean(s, {.drop_nonorientable = true}, r);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  ASSERT_EQ(r.nonorientable.size(), 1u);
+  EXPECT_EQ(r.nonorientable[0].triangle, 0);
+  EXPECT_EQ(r.nonorientable[0].triangles, 5);
+  EXPECT_EQ(r.components, 1);
+}
+
+TEST(Clean, KeepsTheLargestComponents) {
+  Surface s;
+  for (double size : {1.0, 3.0, 2.0}) {
+    const int n = (int)s.points.size();
+    for (Vec3 p : tetra_points) s.points.push_back(size * p + Vec3{10 * size, 0, 0});
+    for (Tri t : tetra_tris) s.tris.push_back({t[0] + n, t[1] + n, t[2] + n});
+  }
+  CleanReport r = clean(s, {.keep_components = 2});
+  EXPECT_EQ(r.dropped_components, 1);
+  EXPECT_EQ(r.dropped_triangles, 4);
+  ASSERT_EQ(s.points.size(), 8u);
+  EXPECT_EQ(s.points[0].x, 30);
+  EXPECT_EQ(r.offending.size(), 4u);
+  EXPECT_TRUE(clean(s, {.keep_components = 2}).nothing);
+}
+
+TEST(Clean, FillsHolesOfAtMostThatManyEdges) {
+  // a cube without its top: the hole has 4 edges; of the two diagonals one is there already, below it
+  Surface s = surface(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {{0, 2, 1},
+                                                                                                 {0, 3, 2},
+                                                                                                 {0, 1, 5},
+                                                                                                 {0, 5, 4},
+                                                                                                 {1, 2, 6},
+                                                                                                 {1, 6, 5},
+                                                                                                 {2, 3, 7},
+                                                                                                 {2, 7, 6},
+                                                                                                 {3, 0, 4},
+                                                                                                 {3, 4, 7}});
+  Surface open = s;
+  EXPECT_TRUE(clean(open, {.fill_holes = 3}).nothing);
+  CleanReport r = clean(s, {.fill_holes = 4});
+  EXPECT_EQ(r.holes.filled, 1);
+  EXPECT_EQ(r.holes.triangles, 2);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_NEAR(volume(s), 1, 1e-15);
+  EXPECT_EQ(s.face.get<int>("patch").size(), 12u);
+
+  Surface lone = surface(tetra_points, {{0, 1, 2}});
+  EXPECT_EQ(clean(lone, {.fill_holes = 3}).holes.left, 1);
+  // all but one triangle of a tetrahedron; all but two
+  for (int n : {3, 2}) {
+    Surface t = surface(tetra_points, std::vector<Tri>(tetra_tris.begin(), tetra_tris.begin() + n));
+    EXPECT_EQ(clean(t, {.fill_holes = 4}).holes.filled, 1);
+    EXPECT_EQ(topology_of(t).loops, 0);
+    EXPECT_EQ(t.tris.size(), 4u);
+  }
+}
+
+//      2            a tetrahedron whose edge 0-1 has a vertex in its middle on one side only: the hole
+//     / \           (0, 1, 4), whose corners are in line, is filled and flipped away
+//    0---1
+//    0-4-1
+//     \|/           .
+//      3
+TEST(Clean, FillsASlitWithoutATriangleOfNoArea) {
+  Surface s = surface(tetra_points, {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+  s.points.push_back({0.5, 0, 0});
+  const CleanReport r = clean(s, {.fill_holes = 3});
+  EXPECT_EQ(r.holes.filled, 1);
+  EXPECT_EQ(r.degenerate, 0);
+  EXPECT_TRUE(r.offending.empty());
+  EXPECT_EQ(s.tris.size(), 6u);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  for (const Tri& t : s.tris) EXPECT_GT(kappa(s.points[t[0]], s.points[t[1]], s.points[t[2]]), 0.1);
+  const std::vector<int>& patch = s.face.get<int>("patch");
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 10), 2);
+  EXPECT_TRUE(clean(s, {.fill_holes = 3}).nothing);
+}
+
+// points on a grid much coarser than the tolerance needs, so that triangles fall together, lose their area
+// and meet in edges of many
+TEST(Clean, WeldedCoarselyItIsCleanTheSecondTime) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 200; ++round) {
+    Surface s;
+    for (int v = 0; v < 40; ++v)
+      s.points.push_back({0.25 * (random() % 13), 0.25 * (random() % 5), 0.5 * (random() % 2)});
+    for (int t = 0; t < 60; ++t)
+      s.tris.push_back({(int)(random() % 40), (int)(random() % 40), (int)(random() % 40)});
+    CleanOptions options{.weld = 0.1 * (round % 8), .drop_nonorientable = true};
+    options.fill_holes = round % 3 ? 0 : 6;
+    options.sheets = round % 5 == 0 ? CleanOptions::keep : CleanOptions::pair;
+    try {
+      clean(s, options);
+    } catch (const NotAdmissible&) {
+      continue;  // nothing is left
+    }
+    const CleanReport again = clean(s, options);
+    EXPECT_TRUE(again.nothing) << "round " << round;
+  }
+}
+
+TEST(Clean, RefusesSizesThatCannotBeMeasured) {
+  for (double size : {1e-200, 1e200}) {
+    Surface s = surface(tetra_points, tetra_tris);
+    for (Vec3& p : s.points) p = size * p;
+    EXPECT_THROW(clean(s), NotAdmissible);
+  }
+  for (double size : {1e-40, 1e40}) {
+    Surface s = surface(tetra_points, tetra_tris);
+    for (Vec3& p : s.points) p = size * p;
+    EXPECT_TRUE(clean(s).nothing);
+  }
+}
+
+TEST(Clean, AnySoupBecomesAnOrientedManifoldAndStaysIt) {
+  // triangles drawn among few points: duplicates, edges of many triangles, pinched vertices in numbers
+  int admitted = 0;
+  for (int seed = 0; seed < 300; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<Vec3> p;
+    for (int v = 0; v < 9; ++v)  // some twice
+      p.push_back(v > 5 && random() % 2 ? p[v - 5] : Vec3{random() * 1e-9, random() * 1e-9, random() * 1e-9});
+    std::vector<Tri> tris;
+    for (int t = 0; t < 4 + (int)(random() % 12); ++t)
+      tris.push_back({(int)(random() % 9), (int)(random() % 9), (int)(random() % 9)});
+    Surface s = surface(p, tris);
+    CleanOptions options;
+    if (seed % 3 == 1) options = {.weld = 1, .drop_nonorientable = true};
+    if (seed % 3 == 2) options = {.keep_components = 1, .fill_holes = 6};
+    try {
+      clean(s, options);
+    } catch (const NotAdmissible&) {
+      continue;
+    }
+    ++admitted;
+    expect_manifold(s);
+    Surface kept = surface(p, tris);
+    options.sheets = CleanOptions::keep;
+    clean(kept, options);
+    EXPECT_TRUE(clean(kept, {.sheets = CleanOptions::keep}).nothing) << "seed " << seed;
+    const std::vector<Tri> before = s.tris;
+    EXPECT_TRUE(clean(s).nothing) << "seed " << seed;
+    EXPECT_EQ(s.tris, before);
+  }
+  EXPECT_GT(admitted, 150);
+}
+
+/// The boundary of unit cubes at integer places; vertices are shared, also where cubes touch.
+static Surface cubes(const std::vector<std::array<int, 3>>& places) {
+  std::set<std::array<int, 3>> solid(places.begin(), places.end());
+  std::map<std::array<int, 3>, int> number;
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (const auto& cube : solid)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side : {0, 1}) {
+        auto next = cube;
+        next[axis] += side ? 1 : -1;
+        if (solid.count(next)) continue;
+        int corner[4];
+        const int step[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        for (int k = 0; k < 4; ++k) {
+          auto p = cube;
+          p[axis] += side;
+          p[(axis + 1) % 3] += step[k][0];
+          p[(axis + 2) % 3] += step[k][1];
+          const auto [at, is_new] = number.insert({p, (int)points.size()});
+          if (is_new) points.push_back({(double)p[0], (double)p[1], (double)p[2]});
+          corner[side ? k : 3 - k] = at->second;
+        }
+        tris.push_back({corner[0], corner[1], corner[2]});
+        tris.push_back({corner[0], corner[2], corner[3]});
+      }
+  return surface(points, tris);
+}
+
+TEST(Clean, CubesThatTouchAlongEdgesStayClosed) {
+  // a U of five cubes whose ends touch along an edge: both pairs of triangles there are in one fan at one end
+  Surface s = cubes({{0, 0, 0}, {1, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}});
+  const CleanReport r = clean(s);
+  EXPECT_EQ(r.nonmanifold_edges, 1);
+  EXPECT_EQ(r.paired_edges, 1);
+  EXPECT_EQ(r.opened_edges, 0);
+  expect_manifold(s);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_EQ(topology_of(s).genus, 0);
+  EXPECT_NEAR(volume(s), 5, 1e-12);
+  // two cubes are two solids
+  Surface two = cubes({{0, 0, 0}, {1, 1, 0}});
+  EXPECT_EQ(clean(two).components, 2);
+  EXPECT_EQ(topology_of(two).loops, 0);
+}
+
+TEST(Clean, RandomCubesStayClosed) {
+  for (int seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::array<int, 3>> places;
+    for (int i = 0; i < 6 * 6 * 6; ++i)
+      if (random() % 10 < 3u + seed % 4) places.push_back({i % 6, i / 6 % 6, i / 36});
+    Surface s = cubes(places);
+    for (Vec3& p : s.points) p = {p.x - 0.3 * p.y, p.y + 0.2 * p.z, p.z + 0.1 * p.x};
+    const CleanReport r = clean(s);
+    EXPECT_GT(r.paired_edges, 0);
+    EXPECT_EQ(r.opened_edges, 0) << "seed " << seed;
+    EXPECT_EQ(r.flipped, 0);
+    expect_manifold(s);
+    EXPECT_EQ(topology_of(s).loops, 0) << "seed " << seed;
+    const std::vector<Tri> before = s.tris;
+    EXPECT_TRUE(clean(s).nothing) << "seed " << seed;
+    EXPECT_EQ(s.tris, before);
+    // what is inside out is reversed and paired again
+    Surface inward = cubes(places);
+    for (Tri& t : inward.tris) std::swap(t[1], t[2]);
+    clean(inward);
+    EXPECT_EQ(topology_of(inward).loops, 0);
+    EXPECT_NEAR(volume(inward), (double)places.size(), 1e-9);
+    EXPECT_TRUE(clean(inward).nothing) << "seed " << seed;
+  }
+}
+
+/// Two boxes of n x n x n cubes that touch, each with its own triangles there: the same ones in reverse, or
+/// along the other diagonals.
+static Surface two_boxes(int n, bool same_triangles) {
+  Surface whole;
+  std::vector<int> patch;
+  for (int k : {0, 1}) {
+    Surface s = cubes([&] {
+      std::vector<std::array<int, 3>> places;
+      for (int i = 0; i < n * n * n; ++i) places.push_back({i % n + k * n, i / n % n, i / n / n});
+      return places;
+    }());
+    for (std::size_t t = 0; same_triangles && k && t < s.tris.size(); t += 2) {
+      const int a = s.tris[t][0], b = s.tris[t][1], c = s.tris[t][2], d = s.tris[t + 1][2];
+      s.tris[t] = {b, c, d};
+      s.tris[t + 1] = {b, d, a};
+    }
+    const int first = (int)whole.points.size();
+    whole.points.insert(whole.points.end(), s.points.begin(), s.points.end());
+    for (const Tri& t : s.tris) {
+      whole.tris.push_back({first + t[0], first + t[1], first + t[2]});
+      patch.push_back(k);
+    }
+  }
+  for (Vec3& p : whole.points) p = {0.1 * p.x - 0.03 * p.y, 0.1 * p.y, 0.1 * p.z + 0.01 * p.x};
+  whole.face.set("patch", patch);
+  return whole;
+}
+
+TEST(Clean, SolidsThatTouchStayClosedEach) {
+  for (bool same : {false, true}) {
+    Surface s = two_boxes(3, same);
+    const double before = volume(s);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.contacts, 18);
+    EXPECT_EQ(r.duplicate, 0);
+    EXPECT_EQ(r.opened_edges, 0);
+    EXPECT_EQ(r.components, 2);
+    expect_manifold(s);
+    EXPECT_EQ(topology_of(s).loops, 0);
+    EXPECT_NEAR(volume(s), before, 1e-12);
+    EXPECT_TRUE(clean(s).nothing);
+    // sheets that are kept share the triangles
+    Surface kept = two_boxes(3, true);
+    EXPECT_EQ(clean(kept, {.sheets = CleanOptions::keep}).duplicate, 18);
+  }
+}
+
+TEST(Clean, SecondCopiesOfASheetAreDropped) {
+  for (bool reversed : {false, true})
+    for (bool other : {false, true}) {
+      Surface s = cubes({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
+      std::vector<Tri> top;
+      for (std::size_t t = 0; t < s.tris.size(); t += 2) {
+        const int a = s.tris[t][0], b = s.tris[t][1], c = s.tris[t][2], d = s.tris[t + 1][2];
+        if (s.points[a].z + s.points[b].z + s.points[c].z + s.points[d].z < 4) continue;
+        top.push_back(other ? Tri{b, c, d} : Tri{a, b, c});
+        top.push_back(other ? Tri{b, d, a} : Tri{a, c, d});
+      }
+      ASSERT_EQ(top.size(), 8u);
+      if (reversed)
+        for (Tri& t : top) std::swap(t[1], t[2]);
+      std::vector<Tri> tris = s.tris;
+      tris.insert(tris.end(), top.begin(), top.end());
+      Surface doubled = surface(s.points, tris);
+      const CleanReport r = clean(doubled);
+      EXPECT_EQ(r.duplicate, 8) << reversed << other;
+      EXPECT_EQ(r.contacts, 0);
+      EXPECT_EQ(topology_of(doubled).loops, 0);
+      EXPECT_EQ(doubled.tris.size(), s.tris.size());
+    }
+}
+
+/// A sphere of rows and columns; the rows at the poles are circles of this radius.
+static Surface sphere_with_poles(int rows, int columns, double radius) {
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double theta = M_PI * i / rows, phi = 2 * M_PI * j / columns;
+      const double r = i == 0 || i == rows ? radius : std::sin(theta);
+      points.push_back({r * std::cos(phi), r * std::sin(phi), std::cos(theta)});
+    }
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const int a = i * columns + j, b = a + columns, d = i * columns + (j + 1) % columns, c = d + columns;
+      tris.push_back({a, b, c});
+      tris.push_back({a, c, d});
+    }
+  return surface(points, tris);
+}
+
+TEST(Clean, PolesThatRoundingSpreadsAreOnePoint) {
+  for (double radius : {1.2e-16, 1e-15, 1e-14}) {
+    Surface s = sphere_with_poles(20, 24, radius);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.welded + r.welded_near, 46) << radius;
+    EXPECT_LT(r.tolerance, 1e-13);
+    EXPECT_EQ(s.points.size(), 19u * 24 + 2);
+    expect_manifold(s);
+    EXPECT_EQ(topology_of(s).loops, 0);
+    EXPECT_TRUE(clean(s).nothing);
+  }
+}
+
+TEST(Clean, SeamsThatRoundingOpensAreClosed) {
+  Surface s = sphere_with_poles(20, 24, 0);
+  for (std::size_t v = 0; v < s.points.size(); ++v)  // the last column ends in a copy of the first
+    if (v % 24 == 0) s.points.push_back(s.points[v] + Vec3{0, -2.4e-16, 0});
+  for (int i = 0; i < 20; ++i)
+    for (int t : {48 * i + 46, 48 * i + 47})
+      for (int& v : s.tris[t])
+        if (v % 24 == 0) v = 24 * 21 + v / 24;
+  EXPECT_EQ(topology_of(surface(s.points, s.tris)).loops, 1);
+  const CleanReport r = clean(s);
+  EXPECT_GT(r.welded_near, 15);
+  EXPECT_EQ(topology_of(s).loops, 0);
+}
+
+TEST(Clean, DetailIsNotWelded) {
+  // holes of a radius that the coordinates resolve
+  for (double radius : {1e-12, 1e-9, 1e-6}) {
+    Surface s = sphere_with_poles(20, 24, radius);
+    EXPECT_TRUE(clean(s).nothing) << radius;
+  }
+  // a cube in single precision, a few spacings high: its height is all that it has
+  Surface plate = cubes({{0, 0, 0}});
+  for (Vec3& p : plate.points) p.z *= 0x1p-21;
+  EXPECT_TRUE(clean(plate).nothing);
+  // far away all edges are as short as the precision
+  Surface far = sphere_with_poles(20, 24, 0.01);
+  for (Vec3& p : far.points) p = p + Vec3{1e14, 1e14, 0};
+  EXPECT_EQ(clean(far).welded_near, 0);
+  // small next to large: a component of 1e-13, whole
+  Surface s = surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, tetra_tris);
+  for (const Vec3& p : tetra_points) s.points.push_back(Vec3{2, 2, 2} + 1e-14 * p);
+  for (Tri t : tetra_tris) s.tris.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
+  Surface both = surface(s.points, s.tris);
+  EXPECT_EQ(clean(both).welded_near, 0);
+}

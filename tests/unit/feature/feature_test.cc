@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/feature/feature.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+using namespace meshpipe;
+
+/// Squares i, j of a grid over [0, nx] x [0, ny], of which z(i, j) gives the heights.
+template <class Height>
+static Surface terrain(int nx, int ny, Height z) {
+  Surface s;
+  for (int j = 0; j <= ny; ++j)
+    for (int i = 0; i <= nx; ++i) s.points.push_back({(double)i, (double)j, z(i, j)});
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      int a = j * (nx + 1) + i, b = a + 1, d = a + nx + 1, c = d + 1;
+      s.tris.push_back({a, b, c});
+      s.tris.push_back({a, c, d});
+    }
+  s.face.rows = s.tris.size();
+  return s;
+}
+
+//  the unit cube, 12 triangles
+//     7---6
+//    /|  /|
+//   4---5 |
+//   | 3-|-2
+//   |/  |/
+//   0---1
+static Surface cube() {
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (std::array<int, 4> q :
+       {std::array{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}) {
+    s.tris.push_back({q[0], q[1], q[2]});
+    s.tris.push_back({q[0], q[2], q[3]});
+  }
+  s.face.rows = s.tris.size();
+  return s;
+}
+
+static const FeatureOptions automatic;
+static const FeatureOptions none{FeatureOptions::none, 40, 20, 0};
+static FeatureOptions angles(double strong, double weak) { return {FeatureOptions::angles, strong, weak, 0}; }
+
+TEST(Feature, ACubeHasTwelveCreasesAndEightCorners) {
+  Surface s = cube();
+  FeatureReport r = mark_features(s, automatic);
+  EXPECT_EQ(r.crease_edges, 12);
+  EXPECT_EQ(r.corners, 8);
+  int bits = 0;
+  for (int t = 0; t < 12; ++t) {
+    bits += std::popcount(s.face.get<std::uint8_t>("model")[t]);
+    EXPECT_EQ(s.face.get<std::uint8_t>("model")[t] & (t % 2 ? 1 : 4), 0);  // the diagonal of the square
+  }
+  EXPECT_EQ(bits, 24);  // on both sides
+  EXPECT_EQ(mark_features(s, none).model_edges, 0);
+  EXPECT_EQ(mark_features(s, angles(91, 90.5)).model_edges, 0);
+}
+
+TEST(Feature, PatchBordersAreModelEdgesInEveryMode) {
+  Surface s = terrain(4, 4, [](int, int) { return 0.0; });
+  std::vector<int> patch(32, 1);
+  for (int t = 16; t < 32; ++t) patch[t] = 2;
+  s.face.set("patch", patch);
+  for (const FeatureOptions& o : {automatic, none, angles(40, 20)}) {
+    FeatureReport r = mark_features(s, o);
+    EXPECT_EQ(r.patch_edges, 4);
+    EXPECT_EQ(r.crease_edges, 0);
+    EXPECT_EQ(r.corners, 2);
+  }
+}
+
+TEST(Feature, ARidgeFromBorderToBorderIsDesignAndNoiseIsNot) {
+  auto ridge = [](int i, int) { return -std::abs(i - 10.0); };
+  Surface s = terrain(20, 20, ridge);
+  EXPECT_EQ(mark_features(s, automatic).crease_edges, 20);
+
+  std::mt19937 random(1);
+  s = terrain(40, 40, [&](int, int) { return random() * 2e-10; });
+  EXPECT_GT(mark_features(s, angles(40, 20)).crease_edges, 200);
+  EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
+}
+
+TEST(Feature, AStaircaseOfVoxelsIsNoDesign) {
+  // heights in whole steps along a slanted plane: all edges sharp, all chains short
+  Surface s = terrain(40, 40, [](int i, int j) { return 1.5 * ((i + 2 * j) / 4); });
+  EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
+}
+
+//  pits in a plate: every crease is short, but there is nothing between smooth and sharp
+//   ___   ___   _
+//      \_/   \_/
+TEST(Feature, ShortCreasesAreDesignIfTheyAreFarApartAndNothingIsBetweenSmoothAndSharp) {
+  auto pits = [](int i, int j) { return i % 8 % 7 && j % 8 % 7 && i % 8 < 5 && j % 8 < 5 ? -2.0 : 0.0; };
+  Surface s = terrain(40, 40, pits);
+  EXPECT_GT(mark_features(s, automatic).crease_edges, 500);
+  FeatureOptions coarse;
+  coarse.size = 3;
+  EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
+  //  the same with dunes between: every angle is there
+  Surface dunes = terrain(40, 40, [&](int i, int j) { return pits(i, j) + 0.6 * std::abs(i % 8 - 6.0); });
+  EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
+}
+
+TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyOnRequest) {
+  // a ridge whose slopes flatten along j: sharp at j = 0, 30 degrees in the middle, none at the end
+  auto fading = [](int i, int j) { return -std::abs(i - 10.0) * std::max(0.0, 1 - j / 20.0); };
+  Surface s = terrain(20, 20, fading);
+  EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
+  const int strong = mark_features(s, angles(40, 40)).crease_edges,
+            weak = mark_features(s, angles(40, 20)).crease_edges;
+  EXPECT_GT(strong, 8);
+  EXPECT_GT(weak, strong + 2);
+  EXPECT_LT(weak, 20);
+}
+
+TEST(Feature, AShortPieceThatEndsFreelyIsDropped) {
+  Surface s = terrain(
+      20, 20, [](int i, int j) { return i == 10 && (j == 10 || j == 11) ? 0.6 : 0.0; });  // a small fold
+  FeatureOptions o = angles(40, 40);
+  o.size = 0.1;
+  EXPECT_EQ(mark_features(s, o).crease_edges, 5);
+  o.size = 3;
+  EXPECT_EQ(mark_features(s, o).crease_edges, 3);  // a closed ring of three is no free end
+}
+
+TEST(Feature, TheNormalOfAFlatTriangleIsThatOfItsNeighbour) {
+  // the cube with a point on an edge: a cap of no height between two faces must not break or double the
+  // crease
+  Surface s = cube();
+  s.points.push_back({0.5, 1e-9, 1e-9});  // next to edge 0-1
+  s.tris[1] = {0, 2, 8};                  // bottom: (0, 2, 1) becomes two, and a cap (0, 8, 1) of the front
+  s.tris.push_back({8, 2, 1});
+  s.tris[0] = {0, 3, 2};
+  s.tris.push_back({0, 8, 1});
+  s.face.rows = s.tris.size();
+  FeatureReport r = mark_features(s, automatic);
+  EXPECT_EQ(r.crease_edges, 13);
+  EXPECT_EQ(r.corners, 8);
+}
+
+//  a flat plate of 12 triangles: its rim is a thousandth of the size, so top and bottom meet in one crease
+//  instead of two; where the mesh is as fine as the rim is high, in two
+TEST(Feature, TheRimOfAThinPlateIsOneCrease) {
+  Surface s = cube();
+  for (Vec3& p : s.points) p = {10 * p.x, 10 * p.y, 0.005 * p.z};
+  FeatureOptions options;
+  options.size = 5;
+  FeatureReport r = mark_features(s, options);
+  EXPECT_GT(r.slivers, 0);
+  EXPECT_LE(r.crease_edges, 8);  // four sides, and at most a short one at each corner
+  EXPECT_GE(r.crease_edges, 4);
+  options.size = 0.005;
+  r = mark_features(s, options);
+  EXPECT_EQ(r.slivers, 0);
+  EXPECT_EQ(r.crease_edges, 12);
+}

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/multiscale/balance.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <string>
+
+#include "lib/core/error.h"
+#include "lib/core/random.h"
+#include "lib/core/topology.h"
+#include "lib/multiscale/multiscale.h"
+#include "lib/partition/partition.h"
+#include "lib/plan/plan.h"
+#include "lib/shape/shape.h"
+
+using namespace meshpipe;
+
+namespace {
+
+/// A square of n x n vertices, two triangles a square, numbered row by row.
+///
+///   2  6---7---8
+///      | / | / |
+///   1  3---4---5
+///      | / | / |
+///   0  0---1---2
+Mesh square(int n) {
+  Mesh m;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) m.points.push_back({(double)i, (double)j, 0});
+  for (int j = 0; j + 1 < n; ++j)
+    for (int i = 0; i + 1 < n; ++i) {
+      const int a = j * n + i;
+      m.tris.push_back({a, a + 1, a + n + 1});
+      m.tris.push_back({a, a + n + 1, a + n});
+    }
+  return m;
+}
+
+int corner_of(const Mesh& m, int v) {
+  for (int h = 0; h < (int)(3 * m.tris.size()); ++h)
+    if (origin(m.tris, h) == v) return h;
+  return -1;
+}
+
+TEST(Balance, AVertexIsSimpleIfNeitherSideIsTornOrPierced) {
+  const Mesh m = square(3);
+  const auto opposite = opposite_halfedges(m.tris, 9);
+  auto simple = [&](std::vector<double> field, int v) {
+    return is_simple({m, opposite}, field, corner_of(m, v));
+  };
+  //  + + +        + + +        + - +        + + -
+  //  - . +        + . +        + . +        + + -    the corner 8 alone among its like
+  //  - - +        + + +        + - +        + + -
+  EXPECT_TRUE(simple({-1, -1, 1, -1, 1, 1, 1, 1, 1}, 4));
+  EXPECT_FALSE(simple({1, 1, 1, 1, 1, 1, 1, 1, 1}, 4));
+  EXPECT_FALSE(simple({1, -1, 1, 1, 1, 1, 1, -1, 1}, 4));
+  EXPECT_TRUE(simple({1, 1, -1, 1, 1, -1, 1, 1, -1}, 1));
+  EXPECT_FALSE(simple({1, 1, -1, 1, 1, -1, 1, 1, -1}, 0));
+}
+
+TEST(Balance, AThinStripGrowsToHalfTheTube) {
+  const Mesh mesh = tube(12, 24, false);
+  const FilledDisk disk = fill_holes(mesh);
+  const auto opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const Branches branches = find_branches(disk, laplace_levels(disk));
+  std::vector<double> field;
+  for (Vec3 p : mesh.points) field.push_back(p.x > 0.47 ? 1 : -1);
+  balance_sides(disk, {disk, opposite}, branches, {}, field, 20);
+  double positive = 0;
+  for (double f : field) positive += f > 0;
+  EXPECT_NEAR(positive / (double)field.size(), 0.5, 0.05);
+  // half way along, where ends do not matter, the radius is that of the tube
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (std::abs(mesh.points[v].z - 6) < 0.5) {
+      EXPECT_NEAR(branches.radius[v], 0.5, 0.1);
+    }
+}
+
+TEST(Balance, ThePathOpensAHoleThatLiesInOneSide) {
+  const Mesh mesh = branching_tree(0, 5, 0.8, 4000, 1);
+  const FilledDisk disk = fill_holes(mesh);
+  const auto opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  std::vector<double> field(mesh.points.size(), 1);
+  for (int v : disk.rim) field[v] = mesh.points[v].x > 0 ? 1 : -1;
+  reach_holes(disk, {disk, opposite}, field);
+  for (std::size_t f = 0; f + 1 < disk.fan_begin.size(); ++f) {
+    int positive = 0, negative = 0;
+    for (int t = disk.fan_begin[f]; t < disk.fan_begin[f + 1]; ++t)
+      ++(field[disk.tris[t][0]] > 0 ? positive : negative);
+    EXPECT_GT(positive, 0);
+    EXPECT_GT(negative, 0);
+  }
+}
+
+TEST(Multiscale, HalvesOfATreeAreDisksOfLikeSize) {
+  Surface s = surface_of(branching_tree(0, 13, 0.8, 12000, 1));
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  ASSERT_EQ(multiscale_cut(s), 2);
+  const auto halves = topology_of_parts(s, s.face.get<int>("part"), 2);
+  for (const Topology& t : halves) EXPECT_EQ(t.loops, 1);
+  EXPECT_NEAR(halves[0].area / (halves[0].area + halves[1].area), 0.5, 0.05);
+  EXPECT_LT(measure_interfaces(s).turning_angle, 25);
+}
+
+/// A long box without ends, 40 x 1 x 1, its four long edges marked, 8 squares a side: corners at j = 0, 8,
+/// 16, 24.
+Surface open_box() {
+  constexpr int side = 8, around = 4 * side, rows = 40 * side;
+  Surface s;
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double t = (double)(j % side) / side;
+      const double x[] = {t, 1, 1 - t, 0}, y[] = {0, t, 1, 1 - t};
+      s.points.push_back({x[j / side], y[j / side], (double)i / side});
+    }
+  std::vector<std::uint8_t> model;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < around; ++j) {
+      const int a = i * around + j, b = i * around + (j + 1) % around;
+      s.tris.push_back({a, b, b + around});
+      model.push_back((j + 1) % side == 0 ? 2 : 0);  // the edge from b up
+      s.tris.push_back({a, b + around, a + around});
+      model.push_back(j % side == 0 ? 4 : 0);  // the edge down to a
+    }
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  s.face.set("model", std::move(model));
+  s.face.set("part", std::vector<int>(s.tris.size(), 0));
+  return s;
+}
+
+TEST(Multiscale, CreasesAttractTheCut) {
+  Surface s = open_box();
+  ASSERT_EQ(multiscale_cut(s), 2);
+  EXPECT_EQ(part_fault(s), "");
+  const auto opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const auto& part = s.face.get<int>("part");
+  const auto& model = s.face.get<std::uint8_t>("model");
+  double on_crease = 0, total = 0;
+  for (std::size_t h = 0; h < opposite.size(); ++h) {
+    if (opposite[h] < 0 || part[h / 3] == part[opposite[h] / 3]) continue;
+    const double length = norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]);
+    total += length;
+    if (model[h / 3] >> h % 3 & 1) on_crease += length;
+  }
+  EXPECT_GT(on_crease / total, 0.9);
+  EXPECT_LT(total / 2, 82);
+}
+
+TEST(Multiscale, AThinRingIsCutIntoTwoFlatRings) {
+  Surface s = surface_of(torus(0.2, 4000));
+  const int n_parts = partition_to_disks(s);
+  ASSERT_EQ(multiscale_cut(s), 2) << n_parts;
+  EXPECT_EQ(part_fault(s), "");
+  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
+    EXPECT_EQ(t.loops, 2);
+    EXPECT_LT(t.eta_geo, 4);
+  }
+}
+
+TEST(Multiscale, RandomSurfacesFallIntoAdmissibleParts) {
+  constexpr int n = 200;
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);  // surfaces this small only wait for each other's threads
+  for (int i = 0; i < n; ++i) {
+    Random random(1000 + i);
+    Mesh mesh;
+    int most = 2;
+    std::string what;
+    if (i % 3 == 0) {
+      const int outlets = 3 + random.below(10);
+      mesh = branching_tree(0, outlets, 0.75 + 0.1 * random.uniform(), 1500 + random.below(2500), i);
+      what = "tree of " + std::to_string(outlets);
+    } else if (i % 3 == 1) {
+      const double aspect = 1 + 40 * random.uniform();
+      mesh = tube(aspect, 10 + random.below(10), random.below(2));
+      what = "tube of " + std::to_string(aspect);
+    } else {
+      const int genus = 1 + random.below(5);
+      mesh = genus_surface(genus, 1500 + random.below(1500));
+      most = genus + 2;
+      what = "genus " + std::to_string(genus);
+    }
+    add_noise(mesh, 0.2 * random.uniform(), i);
+    Surface s = surface_of(std::move(mesh));
+    if (random.below(2)) add_slivers(s, 0.05 * random.uniform(), i);
+    partition_to_disks(s);
+    const int parts = multiscale_cut(s);
+    EXPECT_LE(parts, most) << i << ' ' << what;
+    EXPECT_EQ(part_fault(s), "") << i << ' ' << what;
+    for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), parts))
+      EXPECT_TRUE(admissible(t)) << i << ' ' << what << ": aspect ratio " << t.eta_geo;
+  }
+  omp_set_num_threads(threads);
+}
+
+}  // namespace

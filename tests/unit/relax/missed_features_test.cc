@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "lib/relax/repair.h"
+#include "tests/unit/relax/drawn.h"
+
+using namespace meshpipe;
+
+namespace {
+
+// a hexagon whose middle g is a peak of height 2
+Surface peak() {
+  Surface s = drawn_surface({"  e   d  ",  //
+                             "         ",  //
+                             "f   g   c",  //
+                             "         ",  //
+                             "  a   b  "},
+                            "abg bcg cdg deg efg fag");
+  s.points['g' - 'a'].z = 2;
+  return s;
+}
+
+TEST(MissedFeatures, SamplesAreVerticesAndPointsOfBentEdges) {
+  const Surface s = peak();
+  const Reference reference(s);
+  EXPECT_EQ(feature_samples(reference, 1000).size(), 7u);
+  // six edges to the peak and six of the rim, each of two pieces or more
+  EXPECT_GE(feature_samples(reference, 7).size(), 7u + 6u);
+}
+
+TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
+  const Surface reference = peak();
+  Surface flat = drawn_surface({"  e   d  ",  //
+                                "         ",  //
+                                "f       c",  //
+                                "         ",  //
+                                "  a   b  "},
+                               "abc acd ade aef");
+  Drawn m(reference, &flat);
+  // the rim of the flat mesh lies on the rim of the reference
+  for (int t = 0; t < 6; ++t)
+    for (int i = 0; i < 2; ++i) {
+      const int v = reference.tris[t][i];
+      m.s.place[v] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, 0.0};
+      m.s.normal[v] = m.reference.normal(m.s.place[v]);
+      m.s.hold[v] = fixed;
+    }
+  std::vector<Sample> samples = feature_samples(m.reference, 1000);
+  EXPECT_TRUE(reach_features(m.s, samples));
+  ASSERT_EQ(m.s.points.size(), 7u);
+  EXPECT_LT(norm(m.s.points[6] - Vec3{4, 4, 2}), 1e-9);
+  EXPECT_EQ(m.s.hold[6], anchored);
+  EXPECT_FALSE(reach_features(m.s, samples));
+}
+
+}  // namespace

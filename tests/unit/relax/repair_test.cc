@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/repair.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/unit/relax/drawn.h"
+
+using namespace meshpipe;
+
+namespace {
+
+// a hexagon with two vertices, g and h, where one would do
+const std::vector<std::string> two_centers{"  e   d  ",  //
+                                           "         ",  //
+                                           "f   gh  c",  //
+                                           "         ",  //
+                                           "  a   b  "};
+const char* const eight = "fag efg abg bhg bch cdh deg dgh";
+
+void hold_rim(State& s) {
+  for (int v = 0; v < 6; ++v) s.hold[v] = fixed;
+}
+
+TEST(Repair, TheBestEditIsFoundAndAdopted) {
+  Drawn m(drawn_surface(two_centers, eight));
+  hold_rim(m.s);
+  const double before = objective(m.s);
+  const std::vector<int> all = triangles_around(m.s.mesh, worst(m.s), 2);
+  ASSERT_EQ(all.size(), 8u);
+  const std::optional<State> best = repaired(m.s, all, false);
+  ASSERT_TRUE(best);
+  EXPECT_LT(objective(*best), before);
+  EXPECT_EQ(objective(m.s), before);  // only tried
+  adopt(m.s, *best, all);
+  EXPECT_NEAR(objective(m.s), objective(*best), 1e-12);
+  EXPECT_EQ(m.s.mesh.live, 6);
+  EXPECT_NEAR(m.area(), 48, 1e-12);
+}
+
+TEST(Repair, NoBadTriangleIsLeft) {
+  Drawn m(drawn_surface(two_centers, eight));
+  hold_rim(m.s);
+  EXPECT_LT(quality(m.s, worst(m.s)), 1);
+  Repairs memory;
+  repair_worst(m.s, memory);
+  EXPECT_GE(quality(m.s, worst(m.s)), 1);
+  EXPECT_NEAR(m.area(), 48, 1e-12);
+}
+
+TEST(Repair, WhatIsGoodStays) {
+  Drawn m(drawn_surface({"  e   d  ",  //
+                         "         ",  //
+                         "f   g   c",  //
+                         "         ",  //
+                         "  a   b  "},
+                        "abg bcg cdg deg efg fag"));
+  Repairs memory;
+  repair_worst(m.s, memory);
+  EXPECT_EQ(m.s.counts.splits + m.s.counts.collapses + m.s.counts.flips, 0);
+  EXPECT_TRUE(m.s.points == m.surface.points);
+}
+
+// a fan of more triangles than a patch may have
+TEST(Repair, HugeNeighborhoodsAreNotTried) {
+  constexpr int n = rules::largest_patch + 1;
+  Mesh fan;
+  fan.points.push_back({0, 0, 0});
+  for (int i = 0; i < n; ++i) {
+    const double turn = 2 * 3.14159265358979 * i / n;
+    fan.points.push_back({std::cos(turn), std::sin(turn), 0});
+    fan.tris.push_back({0, 1 + i, 1 + (i + 1) % n});
+  }
+  Surface s = surface_of(fan);
+  s.vertex.set("size", std::vector<double>(n + 1, 1));
+  Drawn m(s);
+  Repairs memory;
+  repair_worst(m.s, memory);
+  EXPECT_EQ(m.s.counts.splits + m.s.counts.collapses + m.s.counts.flips, 0);
+}
+
+TEST(Patch, ItsRimIsFrozen) {
+  Drawn m(drawn_surface(two_centers, eight));
+  const int t = m.edge('b', 'h') / 3;  // b h g
+  const State patch = extract(m.s, {t});
+  ASSERT_EQ(patch.points.size(), 3u);  // b, g, h
+  for (Hold hold : patch.hold) EXPECT_EQ(hold, frozen);
+  EXPECT_TRUE(patch.recording);
+  EXPECT_EQ(patch.points[0], m.s.points['b' - 'a']);
+}
+
+TEST(Patch, TrianglesAroundComeRingByRing) {
+  Drawn m(drawn_surface(two_centers, eight));
+  const int t = m.edge('f', 'a') / 3;
+  EXPECT_EQ(triangles_around(m.s.mesh, t, 0), std::vector<int>{t});
+  const std::vector<int> one = triangles_around(m.s.mesh, t, 1);
+  EXPECT_EQ(one.front(), t);
+  EXPECT_EQ(one.size(), 6u);  // all but those of c
+  EXPECT_EQ(triangles_around(m.s.mesh, t, 2).size(), 8u);
+}
+
+// neighborhoods that overlap and cannot be changed: each is looked at once, and tried until the bound
+TEST(Patch, AttemptsHaveABound) {
+  Drawn m(drawn_surface(two_centers, eight));
+  std::vector<int> items(100);
+  std::iota(items.begin(), items.end(), 0);
+  int looked = 0, tried = 0, failed = 0;
+  auto around = [&](int, std::vector<int> before) {
+    looked += before.empty();
+    return before.empty() ? std::vector<int>{0, 1} : before;
+  };
+  auto attempt = [&](int, const std::vector<int>&) {
+    ++tried;
+    return std::optional<State>();
+  };
+  EXPECT_EQ(
+      change_neighborhoods(m.s, items, 5, 7, around, attempt, [&](const std::vector<int>&) { ++failed; }), 0);
+  EXPECT_EQ(looked, 100);
+  EXPECT_EQ(tried, 7);
+  EXPECT_EQ(failed, 7);
+}
+
+}  // namespace

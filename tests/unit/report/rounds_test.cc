@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/rounds.h"
+
+#include <gtest/gtest.h>
+
+namespace meshpipe {
+namespace {
+
+Outcome missed(const std::string& requirement, double value) {
+  Outcome o;
+  o.status = 6;
+  o.program = "mcheck";
+  o.message = "contract missed";
+  o.failures = {{requirement, "fact", value, 0.1, 12, {0, 1, 2}}};
+  o.refined = true;
+  return o;
+}
+
+/// The verdict after rounds that fail with these figures.
+std::string verdict_of(const std::vector<std::pair<const char*, double>>& rounds) {
+  std::string text;
+  for (const auto& [requirement, value] : rounds) text += verdict_block(text, missed(requirement, value));
+  return text;
+}
+
+bool asks_for_another(const std::string& verdict) { return verdict.ends_with("next=refine\n"); }
+
+TEST(rounds, a_block_has_one_line_per_fact) {
+  EXPECT_EQ(verdict_block("", missed("kappa", 0.03)),
+            "round=1\nstatus=6\nprogram=mcheck\nmessage=contract missed\nfailure=kappa 0.03 0.1 12 0 1 2\n"
+            "score=kappa 0.03\ncount=kept\nnext=refine\n");
+  EXPECT_EQ(verdict_block("", Outcome{}), "round=1\nstatus=0\nprogram=\nmessage=\ncount=kept\nnext=stop\n");
+  Outcome upstream;
+  upstream.status = 5, upstream.program = "mrelax", upstream.message = "mrelax failed before this";
+  EXPECT_EQ(verdict_block("round=1\nscore=kappa 0.03\n", upstream),
+            "round=2\nstatus=5\nprogram=mrelax\nmessage=mrelax failed before this\ncount=kept\nnext=stop\n");
+}
+
+TEST(rounds, two_in_a_row_without_progress_are_the_last) {
+  EXPECT_TRUE(asks_for_another(verdict_of({{"kappa", 0.01}, {"kappa", 0.02}, {"kappa", 0.015}})));
+  EXPECT_FALSE(
+      asks_for_another(verdict_of({{"kappa", 0.01}, {"kappa", 0.02}, {"kappa", 0.015}, {"kappa", 2e-2}})));
+  EXPECT_TRUE(asks_for_another(
+      verdict_of({{"kappa", 0.01}, {"kappa", 0.02}, {"kappa", 0.015}, {"kappa", 0.021}, {"kappa", 0.02}})));
+}
+
+TEST(rounds, fewer_pairs_are_progress_and_requirements_are_compared_with_themselves) {
+  const std::vector<std::pair<const char*, double>> rounds{
+      {"intersections", 5}, {"folds", 6}, {"intersections", 1}, {"intersections", 15}};
+  EXPECT_TRUE(asks_for_another(verdict_of(rounds)));
+  auto more = rounds;
+  more.push_back({"folds", 7});
+  EXPECT_FALSE(asks_for_another(verdict_of(more)));
+}
+
+TEST(rounds, a_difference_beyond_six_digits_is_no_progress) {
+  EXPECT_FALSE(
+      asks_for_another(verdict_of({{"kappa", 0.01}, {"kappa", 0.01 + 1e-9}, {"kappa", 0.01 + 2e-9}})));
+}
+
+TEST(rounds, requirements_without_a_score_go_on_until_the_rounds_are_over) {
+  std::vector<std::pair<const char*, double>> rounds(most_rounds - 1, {"vertices", 0.5});
+  EXPECT_TRUE(asks_for_another(verdict_of(rounds)));
+  rounds.push_back({"vertices", 0.1});
+  EXPECT_FALSE(asks_for_another(verdict_of(rounds)));
+}
+
+TEST(rounds, without_refined_sizes_there_is_no_other) {
+  Outcome o = missed("kappa", 0.01);
+  o.refined = false;
+  EXPECT_FALSE(is_repeated("", o));
+}
+
+TEST(rounds, the_count_is_given_up_after_two_rounds_or_for_a_distance) {
+  EXPECT_NE(verdict_block("", missed("kappa", 0.01)).find("count=kept"), std::string::npos);
+  const std::string two = verdict_of({{"kappa", 0.01}, {"kappa", 0.02}});
+  EXPECT_EQ(two.find("count=free"), std::string::npos);
+  EXPECT_NE(verdict_block(two, missed("kappa", 0.03)).find("count=free"), std::string::npos);
+  Outcome o = missed("hausdorff", 0.01);
+  o.bounded_distance = true;
+  EXPECT_NE(verdict_block("", o).find("count=free"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meshpipe

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/size/size.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "formats/foreign/size_table.h"
+#include "lib/core/chart.h"
+#include "lib/core/error.h"
+#include "lib/core/split_edges.h"
+#include "lib/core/topology.h"
+#include "lib/feature/feature.h"
+#include "lib/numeric/expression.h"
+#include "lib/shape/shape.h"
+#include "lib/size/local_feature_size.h"
+
+using namespace meshpipe;
+
+namespace {
+
+//   3---2    a unit square, one part, with its chart
+//   |  /|
+//   | / |
+//   |/  |
+//   0---1
+Surface square() {
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  s.tris = {{0, 1, 2}, {0, 2, 3}};
+  s.vertex.set("size", std::vector<double>{1, 2, 3, 4});
+  s.vertex.set("ref", std::vector<int>{10, 11, 12, 13});
+  s.face.set("part", std::vector<int>{0, 1});
+  s.face.set("model", std::vector<std::uint8_t>{1, 0});  // 0-1
+  return s;
+}
+
+/// Both triangles are charts of their own, the second shifted by 5.
+Table charts_of_square() {
+  Table t{"chart_vertex", 0, {}};
+  t.set("part", std::vector<int>{0, 0, 0, 1, 1, 1});
+  t.set("vertex", std::vector<int>{0, 1, 2, 0, 2, 3});
+  t.set("u", std::vector<double>{0, 1, 1, 5, 6, 5});
+  t.set("v", std::vector<double>{0, 0, 1, 0, 1, 1});
+  return t;
+}
+
+std::vector<double> curvature_of(const Mesh& m) {
+  const std::vector<int> opposite = opposite_halfedges(m.tris, (int)m.points.size());
+  return face_curvature({m, opposite});
+}
+
+void expect_graded(const Mesh& m, const std::vector<double>& h, double slope) {
+  for (const Tri& t : m.tris)
+    for (int i = 0; i < 3; ++i) {
+      const double l = norm(m.points[t[i]] - m.points[t[(i + 1) % 3]]);
+      ASSERT_LE(h[t[i]], h[t[(i + 1) % 3]] + slope * l * (1 + 1e-12));
+    }
+}
+
+}  // namespace
+
+TEST(SplitEdges, SplitsAnEdgeOnBothSides) {
+  Surface s = square();
+  Table charts = charts_of_square();
+  auto opposite = opposite_halfedges(s.tris, 4);
+  std::vector<char> mark(6, 0);
+  mark[2] = 1;  // 2-0
+  const std::vector<int> parent = split_edges({s, opposite}, mark, &charts);
+  EXPECT_EQ(parent, (std::vector<int>{0, 0, 1, 1}));
+  ASSERT_EQ(s.points.size(), 5u);
+  EXPECT_EQ(s.points[4], (Vec3{0.5, 0.5, 0}));
+  EXPECT_EQ(s.vertex.get<double>("size")[4], 2);
+  EXPECT_EQ(s.vertex.get<int>("ref")[4], 10);
+  EXPECT_EQ(s.face.get<int>("part"), (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_DOUBLE_EQ(total_area(s), 1);
+  ASSERT_EQ(charts.rows, 8u);  // the new vertex is in both charts
+  EXPECT_EQ(make_charts(s, charts, 2).size(), 2u);
+  int bits = 0;
+  for (std::size_t t = 0; t < 4; ++t)
+    for (int i = 0; i < 3; ++i)
+      if (s.face.get<std::uint8_t>("model")[t] >> i & 1) {
+        ++bits;
+        EXPECT_EQ(s.tris[t][i] + s.tris[t][(i + 1) % 3], 1);  // still the edge 0-1
+      }
+  EXPECT_EQ(bits, 1);
+}
+
+// every set of marks leaves the same area, the same orientation and a manifold
+TEST(SplitEdges, EveryPattern) {
+  for (int marks = 1; marks < 32; ++marks) {
+    Surface s = square();
+    Table charts = charts_of_square();
+    auto opposite = opposite_halfedges(s.tris, 4);
+    const int edges[5] = {0, 1, 2, 4, 5};
+    std::vector<char> mark(6, 0);
+    int n = 0;
+    for (int k = 0; k < 5; ++k)
+      if (marks >> k & 1) mark[edges[k]] = 1, ++n;
+    split_edges({s, opposite}, mark, &charts);
+    EXPECT_EQ(s.points.size(), 4u + n);
+    double area = 0;
+    for (const Tri& t : s.tris) {
+      const double a = area_vector(s.points[t[0]], s.points[t[1]], s.points[t[2]]).z;
+      EXPECT_GT(a, 0);
+      area += a / 2;
+    }
+    EXPECT_DOUBLE_EQ(area, 1);
+    const Topology t = topology_of(s);
+    EXPECT_EQ(t.loops, 1);
+    EXPECT_EQ(make_charts(s, charts, 2).size(), 2u);
+    int border = 0;  // the model edge is split with its edge
+    for (std::uint8_t m : s.face.get<std::uint8_t>("model")) border += m != 0;
+    EXPECT_EQ(border, marks & 1 ? 2 : 1);
+  }
+}
+
+TEST(Curvature, SphereTubeAndPlane) {
+  for (double k : curvature_of(sphere(3000))) EXPECT_NEAR(k, 1, 0.04);
+  for (double k : curvature_of(tube(3, 40, false))) EXPECT_NEAR(k, 2, 0.05);
+  Surface s = square();
+  for (double k : curvature_of(s)) EXPECT_EQ(k, 0);
+}
+
+TEST(Curvature, IgnoresNoiseAndSlivers) {
+  Mesh m = sphere(3000);
+  add_noise(m, 0.1, 1);
+  for (double k : curvature_of(m)) EXPECT_NEAR(k, 1, 0.12);
+  Surface s = surface_of(sphere(3000));
+  add_slivers(s, 0.3, 1);
+  for (double k : curvature_of(s)) EXPECT_NEAR(k, 1, 0.12);
+}
+
+// full-length slivers on the bores, fans on the plate: no triangle alone shows the curvature
+TEST(Curvature, OfABodyWithModelEdges) {
+  const Body body = cad_body(1, 1, 48);
+  const auto opposite = opposite_halfedges(body.tris, (int)body.points.size());
+  std::vector<std::uint8_t> model(body.tris.size(), 0);
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (body.patch[h / 3] != body.patch[opposite[h] / 3]) model[h / 3] |= 1 << h % 3;
+  const auto k = face_curvature({body, opposite, model});
+  std::vector<double> patch_least(body.names.size(), 1e300), patch_most(body.names.size(), 0);
+  for (std::size_t t = 0; t < k.size(); ++t) {
+    patch_least[body.patch[t]] = std::min(patch_least[body.patch[t]], k[t]);
+    patch_most[body.patch[t]] = std::max(patch_most[body.patch[t]], k[t]);
+  }
+  for (std::size_t p = 0; p < body.names.size(); ++p)  // a plane or a cylinder, all over
+    EXPECT_LE(patch_most[p], patch_least[p] * 1.001 + 1e-9) << body.names[p];
+}
+
+TEST(Size, GradationIsTheLargestFieldBelow) {
+  const Mesh m = sphere(2000);
+  std::vector<double> h(m.points.size(), 5);
+  h[17] = 0.1;
+  limit_gradation(m, 0.3, h);
+  expect_graded(m, h, 0.3);
+  EXPECT_EQ(h[17], 0.1);
+  double largest = 0;
+  for (double x : h) largest = std::max(largest, x);
+  EXPECT_GT(largest, 0.1 + 0.3 * 2);  // the far side of a unit sphere is pi away, over edges more
+  EXPECT_LT(largest, 0.1 + 0.3 * 3.15 * 1.2);
+}
+
+TEST(Size, CountIsMetWithEverySource) {
+  SizeOptions o;
+  o.triangles = 5000;
+  o.at = [](Vec3 p, double) { return 0.05 + 0.2 * std::abs(p.z); };
+  Surface s = surface_of(sphere(3000));
+  SizeReport r = set_size(s, nullptr, o);
+  EXPECT_NEAR(count_for_size(s, s.vertex.get<double>("size")), 5000, 25);
+  EXPECT_EQ(r.scale, 1);
+  expect_graded(s, s.vertex.get<double>("size"), 0.3);
+  o.triangles = 2000;  // fewer than the formula alone asks for
+  s = surface_of(sphere(3000));
+  r = set_size(s, nullptr, o);
+  EXPECT_NEAR(r.triangles, 2000, 10);
+  EXPECT_GT(r.scale, 1);
+  o = {};
+  o.triangles = 7000;
+  o.per_turn = 30;
+  s = surface_of(torus(0.3, 3000));
+  EXPECT_NEAR(set_size(s, nullptr, o).triangles, 7000, 35);
+}
+
+TEST(Size, CurvatureAndChord) {
+  Surface s = surface_of(sphere(3000));
+  SizeOptions o;
+  o.per_turn = 20;
+  o.max = 10;
+  set_size(s, nullptr, o);
+  for (double h : s.vertex.get<double>("size")) EXPECT_NEAR(h, 2 * std::acos(-1) / 20, 0.01);
+  o = {};
+  o.chord = 0.01;
+  set_size(s, nullptr, o);
+  for (double h : s.vertex.get<double>("size")) EXPECT_NEAR(h, 2 * std::sqrt(0.02 - 0.0001), 0.01);
+}
+
+TEST(Size, SourcesAreBoundedAndTheSmallestCounts) {
+  Surface s = surface_of(sphere(1000));
+  std::vector<double> data(s.points.size(), 0.5);
+  data[3] = 0.01;
+  s.vertex.set("wanted", data);
+  SizeOptions o;
+  o.data = "wanted";
+  o.size = 0.4;
+  o.min = 0.05;
+  o.gradation = 10;
+  set_size(s, nullptr, o, false);
+  const auto& h = s.vertex.get<double>("size");
+  EXPECT_EQ(h[3], 0.05);
+  EXPECT_EQ(h[400], 0.4);
+  s.vertex.get<double>("wanted")[5] = 0;
+  EXPECT_THROW(set_size(s, nullptr, o), BadInput);
+}
+
+// a cube of twelve triangles has no vertex where the formula is small: edges are split until it is seen
+TEST(Size, CoarseSurfacesFollowTheField) {
+  const Body c = cube(12);
+  Surface s = surface_of(c);
+  s.face.set("part", std::vector<int>(c.tris.size(), 0));
+  SizeOptions o;
+  const Vec3 q{0.3, 0.4, 1};
+  o.at = [&](Vec3 p, double) { return 0.01 + 0.1 * norm(p - q); };
+  const SizeReport r = set_size(s, nullptr, o);
+  EXPECT_GT(r.added, 100);
+  EXPECT_LT(r.smallest, 0.013);
+  EXPECT_DOUBLE_EQ(total_area(s), 6);
+  const auto& h = s.vertex.get<double>("size");
+  for (const Tri& t : s.tris) {
+    const Vec3 m = (1. / 3) * (s.points[t[0]] + s.points[t[1]] + s.points[t[2]]);
+    const double linear = (h[t[0]] + h[t[1]] + h[t[2]]) / 3;
+    EXPECT_NEAR(linear, o.at(m, 0), 0.35 * linear);
+  }
+}
+
+TEST(Size, RefusesTooManyTriangles) {
+  Surface s = surface_of(sphere(100));
+  SizeOptions o;
+  o.size = 1e-6;
+  EXPECT_THROW(set_size(s, nullptr, o), GoalMissed);
+  o.size = 0.1;
+  o.most_triangles = 2000;  // the unit sphere has 2900 triangles of this size
+  EXPECT_THROW(set_size(s, nullptr, o), GoalMissed);
+  o.most_triangles = 4000;
+  EXPECT_NO_THROW(set_size(s, nullptr, o));
+}
+
+std::vector<double> permitted(const Mesh& m, double size) {
+  const std::vector<int> opposite = opposite_halfedges(m.tris, (int)m.points.size());
+  return local_feature_size({m, opposite}, face_curvature({m, opposite}),
+                            std::vector<double>(m.points.size(), size));
+}
+
+double least(const std::vector<double>& x) { return *std::min_element(x.begin(), x.end()); }
+double largest(const std::vector<double>& x) { return *std::max_element(x.begin(), x.end()); }
+
+TEST(LocalFeatureSize, AQuarterOfATubesCircumference) {
+  const double quarter = 0.25 * 3.14159265358979324;  // of a diameter of 1
+  for (bool closed : {false, true}) {
+    const Mesh m = tube(6, 24, closed);
+    const std::vector<double> size = permitted(m, 1.2);
+    const double ends = closed ? 1.5 : -1;  // ends are curved the other way as well
+    for (std::size_t v = 0; v < size.size(); ++v) {
+      if (m.points[v].z < ends || m.points[v].z > 6 - ends) continue;
+      ASSERT_GT(size[v], 0.98 * quarter);
+      ASSERT_LT(size[v], 1.15 * quarter);
+    }
+  }
+  EXPECT_EQ(least(permitted(tube(6, 24, true), 0.6)), INFINITY);
+}
+
+TEST(LocalFeatureSize, BoundsNothingOnBallsBodiesAndRims) {
+  EXPECT_EQ(least(permitted(sphere(2000), 0.9)), INFINITY);
+  EXPECT_EQ(least(permitted(cube(3000), 0.4)), INFINITY);
+}
+
+TEST(Size, IsLoweredOnTubesAndReported) {
+  Surface s;
+  static_cast<Mesh&>(s) = tube(20, 24, false);
+  SizeOptions o;
+  o.at = [](Vec3 p, double) { return 0.1 + 0.2 * p.z; };
+  const SizeReport r = set_size(s, nullptr, o);
+  const std::vector<double>& h = s.vertex.get<double>("size");
+  EXPECT_GT(r.lowered, 0);
+  EXPECT_GT(r.lowered_from, 1.9);
+  EXPECT_NEAR(r.lowered_to, 0.25 * 3.14159, 0.1);
+  EXPECT_GT(r.lowered_at.z, 9);
+  EXPECT_LT(largest(h), 0.95);
+  for (std::size_t v = 0; v < h.size(); ++v)
+    if (s.points[v].z < 2) {
+      EXPECT_NEAR(h[v], 0.1 + 0.2 * s.points[v].z, 0.02);
+    }
+}
+
+TEST(Expression, ValuesAndFailures) {
+  Expression e("0.1 + x^2 * max(y, 2) + (z > 0 ? pi : 0)", {"x", "y", "z"});
+  EXPECT_DOUBLE_EQ(e({3, 1, 0}), 18.1);
+  EXPECT_DOUBLE_EQ(e({3, 1, 1}), 18.1 + std::acos(-1));
+  EXPECT_EQ(Expression("x == 1 || x != 2 && x <= 3 ? 4 : 5", {"x"})({1}), 4);
+  EXPECT_TRUE(e.uses("x"));
+  EXPECT_FALSE(Expression("x", {"x", "y"}).uses("y"));
+  for (const char* bad : {"", "x +", "w", "1, 2", "(x", "system(1)", "x = 0.1", "0.1 = x"})
+    EXPECT_THROW(Expression(bad, {"x"}), BadUsage) << bad;
+}
+
+TEST(SizeField, Tables) {
+  EXPECT_TRUE(is_size_table("# sizes\n0 0 0 1\n"));
+  EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
+  EXPECT_FALSE(is_size_table("solid a\nfacet normal 0 0 1\n"));
+  EXPECT_FALSE(is_size_table("OFF\n3 1 0\n0 0 0\n"));
+  const SizeField f = read_size_table("x;y;z;h\n0;0;0;1\n\n# more\n1;2;3;0.5\n", "t");
+  ASSERT_EQ(f.points.size(), 2u);
+  EXPECT_EQ(f.points[1], (Vec3{1, 2, 3}));
+  EXPECT_EQ(f.size[1], 0.5);
+  EXPECT_EQ(f.tris.size(), 2u);  // points alone
+  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 0\n", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 a 1\n", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 -1\n", "t"), BadInput);
+  for (const char* first : {"0 0 0", "0 0 0 1 5", "0 0 0 nan"})  // is no line of names
+    EXPECT_THROW(read_size_table(std::string(first) + "\n1 1 1 0.4\n", "t"), BadInput) << first;
+}

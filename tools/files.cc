@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/files.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+#include "lib/core/error.h"
+#include "tools/progress_line.h"
+
+namespace meshpipe {
+namespace {
+
+/// The file that is being written and does not have its final name yet. While it is created its name is not
+/// known: a signal then waits in `creating`, whichever thread received it.
+char partial_file[4096];
+std::atomic<bool> partial_file_exists = false;
+constexpr int not_creating = -1, no_signal = 0;
+std::atomic<int> creating = not_creating;
+
+extern "C" void end_on_signal(int signal) {
+  int none = no_signal;
+  if (creating.compare_exchange_strong(none, signal)) return;
+  if (partial_file_exists) ::unlink(partial_file);
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);  // ends the program when this handler has returned
+}
+
+/// Creates a file whose name ends in XXXXXX; the signal handler knows it from the moment it exists.
+int create_partial_file(std::string& name) {
+  if (name.size() >= sizeof partial_file) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
+  creating = no_signal;
+  const int fd = ::mkstemp(name.data());
+  if (fd >= 0) {
+    std::strcpy(partial_file, name.c_str());
+    partial_file_exists = true;
+  }
+  if (const int signal = creating.exchange(not_creating); signal != no_signal) end_on_signal(signal);
+  return fd;
+}
+
+std::string last_error() { return std::strerror(errno); }
+
+/// Returns whether a path is written to directly: devices, pipes, and the names of open descriptors
+/// (/dev/stderr is a link, possibly to a regular file).
+bool is_written_in_place(const std::string& path, const struct stat& info) {
+  return !S_ISREG(info.st_mode) || path.starts_with("/dev/std") || path.starts_with("/dev/fd/") ||
+         path.starts_with("/proc/");
+}
+
+}  // namespace
+
+void FileBytes::reserve(std::size_t more) {
+  if (size_ + more <= capacity_) return;
+  capacity_ = std::max(size_ + more, 2 * capacity_);
+  char* larger = static_cast<char*>(std::realloc(data_.get(), capacity_));
+  if (!larger) throw std::bad_alloc();
+  (void)data_.release();
+  data_.reset(larger);
+  // large pages are filled much faster by a file of hundreds of megabytes
+  constexpr std::size_t page = 4096, large = std::size_t{1} << 22;
+  if (capacity_ > large)
+    ::madvise(larger + (page - reinterpret_cast<std::uintptr_t>(larger) % page), capacity_ - page,
+              MADV_HUGEPAGE);
+}
+
+FileBytes read_file(const std::string& path) {
+  const bool standard = path == "-";
+  const std::string where = standard ? "stdin" : path;
+  const int fd = standard ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY);
+  if (fd < 0) throw BadInput(where + ": " + last_error());
+  FileBytes bytes;
+  std::size_t size = 0;
+  struct stat info {};
+  // one byte more than the file has, so that its end is seen without growing
+  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
+  constexpr std::size_t pipe_block = 1 << 18;
+  for (;;) {
+    if (bytes.space() == 0) bytes.reserve(pipe_block);
+    const ssize_t n = ::read(fd, bytes.end(), bytes.space());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const std::string why = last_error();
+      if (!standard) ::close(fd);
+      throw BadInput(where + ": " + why);
+    }
+    if (n == 0) break;
+    if (size == 0) note_input_begins();
+    bytes.add(n);
+    size += n;
+  }
+  if (!standard) ::close(fd);
+  if (size == 0) throw BadInput(where + ": the input is empty");
+  return bytes;
+}
+
+void write_all(int fd, std::string_view bytes, const std::string& where) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0)
+      throw CannotWrite(where + ": " + last_error() + " with " + std::to_string(bytes.size()) +
+                        " bytes left to write");
+    bytes.remove_prefix(n);
+  }
+}
+
+void write_atomically(const std::string& path, const std::function<void(const Sink&)>& produce) {
+  if (path == "-" || path == "/dev/stdout") {
+    produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
+    return;
+  }
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  std::string partial = exists && is_written_in_place(path, info) ? "" : path + ".XXXXXX";
+  int fd = partial.empty() ? ::open(path.c_str(), O_WRONLY) : create_partial_file(partial);
+  if (fd < 0) throw CannotWrite(path + ": " + last_error());
+  try {
+    produce([&](std::string_view bytes) { write_all(fd, bytes, path); });
+    if (!partial.empty()) {
+      const mode_t mask = ::umask(0);
+      ::umask(mask);
+      ::fchmod(fd, exists ? info.st_mode & 0777 : 0666 & ~mask);
+    }
+    const int closed = ::close(fd);
+    fd = -1;
+    if (closed != 0) throw CannotWrite(path + ": " + last_error());
+    if (!partial.empty() && ::rename(partial.c_str(), path.c_str()) != 0)
+      throw CannotWrite(path + ": " + last_error());
+    partial_file_exists = false;
+  } catch (...) {
+    if (fd >= 0) ::close(fd);
+    if (!partial.empty()) ::unlink(partial.c_str());
+    partial_file_exists = false;
+    throw;
+  }
+}
+
+void expect_writable(const std::string& path) {
+  if (path == "-") return;
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
+  const std::size_t slash = path.rfind('/');
+  const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
+  const std::string& target = exists && is_written_in_place(path, info) ? path : directory;
+  if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + last_error());
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  if (a == "-" || b == "-") return a == b;
+  std::error_code error;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+  };
+  return place(a) == place(b) &&
+         (!std::filesystem::exists(a, error) || std::filesystem::is_regular_file(a, error));
+}
+
+void remove_file(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && !is_written_in_place(path, info)) ::unlink(path.c_str());
+}
+
+void remove_partial_file_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = end_on_signal;
+  action.sa_flags = SA_RESTART;
+  ::sigfillset(&action.sa_mask);  // a second signal must not end the program before the file is gone
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL)
+      ::sigaction(signal, &action, nullptr);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A program's input, output, messages and report.
+#pragma once
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/formats.h"
+#include "tools/options.h"
+
+namespace meshpipe {
+
+/// Reads and writes as the common options ask.
+class Io : public CommonOptions {
+ public:
+  /// Reads FILE or standard input, in any format.
+  /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size.
+  Stream read();
+  /// Reads a second file of the user's, such as a reference.
+  Stream read(const std::string& path) const;
+  /// Returns the bytes of another file of the user's, or of standard input for "-".
+  static std::string read_bytes(const std::string& path);
+  /// Adds this program to the history and writes the stream to -o FILE or standard output.
+  void write(Stream& stream);
+  /// Returns whether -o FILE has to be text; reports what its format cannot hold.
+  /// Throws: CannotWrite for --binary STL whose single precision does not hold the surface.
+  bool text_for(const Stream& stream) const;
+  /// Writes another stream to a file, or standard output for "-", in the format of its extension.
+  void write_to(const std::string& path, const Stream& stream) const;
+  /// Writes bytes to -o FILE or standard output.
+  void write_bytes(std::string_view bytes) const;
+  /// Writes bytes to another file, or standard output for "-".
+  static void write_file(const std::string& path, std::string_view bytes);
+  /// Checks before the work that a further file can be written; `option` is for the message.
+  /// Throws: CannotWrite, or BadUsage if a `mesh` has an unknown extension or another option has the same
+  /// file.
+  void expect_report(const std::string& option, const std::string& path, bool mesh = false);
+  /// Prints a line after the program's name on standard error, unless -q.
+  void say(const std::string& line) const;
+  /// The same, only with -v.
+  void detail(const std::string& line) const;
+
+  std::string program;
+  std::string arguments;  ///< that change the result, for the stream's history
+  bool any_size = false;
+  nlohmann::ordered_json report;  ///< --json FILE gets it on success and on status 4 (if not empty), 5, 6
+  /// Takes a failure in place of the line on standard error: status, message, and the program that failed.
+  /// Returns whether the next program in the pipe learns of it.
+  std::function<bool(int, const std::string&, const std::string&)> on_failure;
+  mutable bool wrote_to_stdout = false;
+  mutable std::string finished_file;  ///< the complete -o FILE: removed by a later failure
+
+ private:
+  bool needs_text(const std::string& path, const Stream& stream) const;
+  std::vector<std::pair<std::string, std::string>> expected_files_;  ///< option, path
+};
+
+}  // namespace meshpipe

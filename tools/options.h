@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options that every program has, and how options are shown and recorded.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace meshpipe {
+
+struct CommonOptions {
+  std::string input = "-", output = "-";
+  std::string json;  ///< file of the report; empty: none
+  bool ascii = false, binary = false, quiet = false, verbose = false;
+  int threads = 0;  ///< 0: as OpenMP chooses
+};
+
+/// Adds the options; FILE only if the program reads one. Those that `app` already has get a better --help.
+void add_common_options(CLI::App& app, CommonOptions& options, const std::string& program, bool reads_file);
+
+/// Returns the options of the command line that change the result, as the stream records them. Left out: the
+/// common ones, those of the group "Reports", and names of files, which depend on where the program ran.
+std::string recorded_options(const CLI::App& app);
+
+/// Sets the --help formatter, which leaves out what only a programmer wants to know: types, checks,
+/// exclusions.
+void use_plain_help(CLI::App& app);
+
+/// Returns a check of an option's value: finite and above 0.
+CLI::Validator positive_number();
+
+}  // namespace meshpipe

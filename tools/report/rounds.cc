@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "lib/core/number.h"
+
+namespace meshpipe {
+namespace {
+
+std::string shown_or_dash(double x) { return std::isnan(x) ? "-" : shown(x); }
+
+/// "kappa 0.03 0.1 12 0 1 2": requirement, value, limit, triangle, place; - for what there is not.
+std::string failure_line(const Failure& f) {
+  return f.requirement + ' ' + shown_or_dash(f.value) + ' ' + shown_or_dash(f.limit) + ' ' +
+         (f.triangle < 0 ? "-" : std::to_string(f.triangle)) + ' ' + shown_or_dash(f.place.x) + ' ' +
+         shown_or_dash(f.place.y) + ' ' + shown_or_dash(f.place.z);
+}
+
+}  // namespace
+
+std::optional<Score> score_of(const Failure& failure) {
+  if (std::isnan(failure.value)) return {};
+  // rounded as shown: a difference that nobody sees is no progress
+  const double value = std::strtod(shown(failure.value).c_str(), nullptr);
+  if (failure.requirement == "kappa") return Score{failure.requirement, value};
+  for (const char* less : {"intersections", "folds", "hausdorff"})
+    if (failure.requirement == less) return Score{failure.requirement, -value};
+  return {};
+}
+
+std::vector<Score> scores_in(std::string_view verdict) {
+  std::vector<Score> rounds;
+  while (!verdict.empty()) {
+    const std::string_view line = verdict.substr(0, verdict.find('\n'));
+    verdict.remove_prefix(std::min(line.size() + 1, verdict.size()));
+    if (line.starts_with("round=")) rounds.emplace_back();
+    if (!line.starts_with("score=") || rounds.empty()) continue;
+    const std::size_t blank = line.find(' ');
+    if (blank == line.npos) continue;
+    rounds.back() = {std::string(line.substr(6, blank - 6)),
+                     std::strtod(std::string(line.substr(blank + 1)).c_str(), nullptr)};
+  }
+  return rounds;
+}
+
+bool another_round(const std::vector<Score>& rounds) {
+  if ((int)rounds.size() >= most_rounds) return false;
+  std::map<std::string, double> best;
+  int vain = 0;
+  for (const Score& s : rounds) {
+    const auto [at, first] = best.try_emplace(s.requirement, s.value);
+    if (s.requirement.empty() || first || s.value > at->second) {
+      vain = 0;
+      at->second = s.value;
+    } else if (++vain == most_vain_rounds) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_repeated(std::string_view verdict, const Outcome& outcome) {
+  if (!outcome.refined || outcome.failures.empty()) return false;
+  std::vector<Score> rounds = scores_in(verdict);
+  rounds.push_back(score_of(outcome.failures[0]).value_or(Score{}));
+  return another_round(rounds);
+}
+
+std::string verdict_block(std::string_view verdict, const Outcome& outcome) {
+  std::optional<Score> score;
+  if (!outcome.failures.empty()) score = score_of(outcome.failures[0]);
+  const int round = (int)scores_in(verdict).size() + 1;
+  const bool free = outcome.bounded_distance || round > rounds_of_count;
+  std::string block = "round=" + std::to_string(round) + "\nstatus=" + std::to_string(outcome.status) +
+                      "\nprogram=" + outcome.program + "\nmessage=" + outcome.message + '\n';
+  for (const Failure& f : outcome.failures) block += "failure=" + failure_line(f) + '\n';
+  if (score) block += "score=" + score->requirement + ' ' + shown(score->value) + '\n';
+  block += std::string("count=") + (free ? "free" : "kept") + '\n';
+  return block + "next=" + (is_repeated(verdict, outcome) ? "refine" : "stop") + '\n';
+}
+
+}  // namespace meshpipe

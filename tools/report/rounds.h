@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The machine-readable outcome of mcheck: what failed, where, by how much, and whether refined sizes may
+// help. One block of lines `key=value` per round, appended, so that the scores of earlier rounds are known.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lib/check/check.h"
+
+namespace meshpipe {
+
+/// How well a round met its first failed requirement: larger is better.
+struct Score {
+  std::string requirement;
+  double value = 0;
+};
+
+/// The outcome of one run of mcheck.
+struct Outcome {
+  int status = 0;
+  std::string program, message;   ///< the program that failed, and its error
+  std::vector<Failure> failures;  ///< in the order of the contract
+  bool refined = false;           ///< were sizes written that may meet the contract?
+  bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
+};
+
+/// The number of rounds of a chain at most: what is not met by then never was, in all surfaces tried.
+constexpr int most_rounds = 8;
+/// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
+/// sizes.
+constexpr int rounds_of_count = 2;
+/// After this many rounds in a row that are no better than an earlier one, there is no further round.
+constexpr int most_vain_rounds = 2;
+
+/// Returns the score of a failure. None for requirements without an order (topology, patches) or never seen
+/// to stall.
+std::optional<Score> score_of(const Failure& failure);
+
+/// Returns the scores of the rounds in a verdict's text, an empty requirement where a round has none.
+std::vector<Score> scores_in(std::string_view verdict);
+
+/// Returns whether the last of these rounds is worth another.
+bool another_round(const std::vector<Score>& rounds);
+
+/// Returns whether the chain is to be repeated after this round, with refined sizes. `verdict` as below.
+bool is_repeated(std::string_view verdict, const Outcome& outcome);
+
+/// Returns the block of a round to append to the verdict, see mcheck(1). `verdict`: the text of the rounds
+/// before it.
+std::string verdict_block(std::string_view verdict, const Outcome& outcome);
+
+}  // namespace meshpipe
