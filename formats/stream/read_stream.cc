@@ -412,8 +412,9 @@ void IndexCheck::row_numbers(const char* table, const char* name) const {
 
 void IndexCheck::parts_have_faces() const {
   const Element* parts = find("part");
+  if (!parts) return;  // without parts the column may be data of a foreign file
   const auto [element, v] = values("face", "part");
-  if (!parts || !v) return;
+  if (!v) return;
   std::vector<char> has_face(parts->rows, 0);
   for (int p : *v) has_face[p] = 1;
   for (std::size_t p = 0; p < has_face.size(); ++p)
