@@ -55,7 +55,7 @@ std::string lost_lines(const Stream& stream) {
   std::erase(tags, 0);
   std::sort(tags.begin(), tags.end());
   const auto n = std::unique(tags.begin(), tags.end()) - tags.begin();
-  return n ? count_of(static_cast<std::size_t>(n), "labelled line", "labelled lines") : "";
+  return n ? count_of(static_cast<std::size_t>(n), "labeled line", "labeled lines") : "";
 }
 
 std::string lost_nodes(const Stream& stream) {

@@ -403,7 +403,7 @@ def main():
         subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
         if vtk:
             colors = vtk_read(colored).GetCellData().GetArray("RGB")
-            check("VTK, colours", colors and [colors.GetTuple(0) == colors.GetTuple(i) for i in range(FACES)],
+            check("VTK, colors", colors and [colors.GetTuple(0) == colors.GetTuple(i) for i in range(FACES)],
                   [True, True, False, False])
         streams = streams + intermediates(programs, scratch)
         streams += [os.path.join(scratch, f"{encoding}.{kind}") for encoding in ("ascii", "binary")

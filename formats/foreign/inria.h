@@ -7,7 +7,7 @@ namespace meshpipe {
 
 bool is_inria(std::string_view bytes);
 /// Reads triangles and quadrilaterals. References become patches, and column `ref` of vertices; edges become
-/// model edges, labelled by their references (set_model_lines); corners, required vertices and triangles
+/// model edges, labeled by their references (set_model_lines); corners, required vertices and triangles
 /// become columns `corner` and `required`; SolAtVertices becomes `size` if it is one positive number each,
 /// else `sol`. Volumes, normals and tangents are left out.
 Stream read_inria(std::string_view bytes, const std::string& where);

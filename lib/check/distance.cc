@@ -408,7 +408,7 @@ std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& si
     if (errors[t] <= 0.6 * limit) continue;  // well within, since the next mesh is another
     for (int v : mesh.tris[t]) factor[v] = std::min(factor[v], std::max(0.25, 0.6 * limit / errors[t]));
   }
-  // the neighbours too, or a dip as narrow as a triangle would be lost in the next mesh
+  // the neighbors too, or a dip as narrow as a triangle would be lost in the next mesh
   std::vector<double> refined = size;
   for (const Tri& t : mesh.tris) {
     const double least = std::min({factor[t[0]], factor[t[1]], factor[t[2]]});

@@ -23,7 +23,7 @@ class Flat {
     std::vector<int> flat;
     for (int t = 0; t < (int)r_.tris.size(); ++t)
       if (is_flat(r_.tris[t])) flat.push_back(t);
-    // What is done may free neighbours, which are tried next, or others by the edges it takes away: as long
+    // What is done may free neighbors, which are tried next, or others by the edges it takes away: as long
     // as something is done, which lowers their number, all are tried again.
     std::vector<char> waits(r_.tris.size(), 0);
     std::vector<int> queue, close;

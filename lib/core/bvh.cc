@@ -86,7 +86,7 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 
 /// A triangle and its center in own units.
 struct Bvh::Item {
-  std::array<float, 3> centre;
+  std::array<float, 3> center;
   int tri;
 };
 
@@ -95,8 +95,8 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   if (n == 0) throw std::logic_error("a bvh needs a triangle");
   Box all = box_of(mesh, 0);
   for (int t = 0; t < n; ++t) all = join(all, box_of(mesh, t));
-  centre_ = 0.5 * (all.lo + all.hi);
-  const Vec3 half = all.hi - centre_;
+  center_ = 0.5 * (all.lo + all.hi);
+  const Vec3 half = all.hi - center_;
   const double extent = std::max({half.x, half.y, half.z});
   if (extent > 0) scale_ = 1 / extent;
   std::vector<Item> items(n);
@@ -111,7 +111,7 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
 }
 
 std::array<float, 3> Bvh::own_units(Vec3 p) const {
-  const Vec3 q = scale_ * (p - centre_);
+  const Vec3 q = scale_ * (p - center_);
   auto within = [](double x) { return (float)std::clamp(x, -1e16, 1e16); };
   return {within(q.x), within(q.y), within(q.z)};
 }
@@ -134,7 +134,7 @@ void Bvh::set_child(int node, int k, int child, const Box& box) {
 /// as fast.
 template <class Item>
 static void select(Item* items, int n, int nth, int axis) {
-  auto key = [&](int i) { return items[i].centre[axis]; };
+  auto key = [&](int i) { return items[i].center[axis]; };
   auto median = [](float a, float b, float c) {
     return std::max(std::min(a, b), std::min(std::max(a, b), c));
   };
@@ -145,7 +145,7 @@ static void select(Item* items, int n, int nth, int axis) {
       const Item x = items[i];
       items[i] = items[m];
       items[m] = x;
-      m += below(x.centre[axis]);
+      m += below(x.center[axis]);
     }
     return m;
   };
@@ -169,17 +169,17 @@ static void select(Item* items, int n, int nth, int axis) {
     }
   }
   std::nth_element(items, items + nth, items + n,
-                   [axis](const Item& x, const Item& y) { return x.centre[axis] < y.centre[axis]; });
+                   [axis](const Item& x, const Item& y) { return x.center[axis] < y.center[axis]; });
 }
 
 /// Splits items at place `half` along the longest side of their centers' box.
 template <class Item>
 static void halve(Item* items, int count, int half) {
-  std::array<float, 3> lo = items[0].centre, hi = lo;
+  std::array<float, 3> lo = items[0].center, hi = lo;
   for (int i = 1; i < count; ++i)
     for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], items[i].centre[k]);
-      hi[k] = std::max(hi[k], items[i].centre[k]);
+      lo[k] = std::min(lo[k], items[i].center[k]);
+      hi[k] = std::max(hi[k], items[i].center[k]);
     }
   int axis = 0;
   for (int k = 1; k < 3; ++k)

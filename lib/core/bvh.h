@@ -66,7 +66,7 @@ class Bvh {
   static constexpr float slack = 1e-6f;
 
   const Mesh& mesh_;
-  Vec3 centre_;
+  Vec3 center_;
   double scale_ = 1;  ///< own units of a length
   std::vector<Node> nodes_;
   std::vector<int> order_;

@@ -109,14 +109,14 @@ bool EditMesh::can_collapse(int h, int gone, bool merge) const {
   // the only neighbors of both ends are the apexes
   bool ok = true;
   if (valence(kept) > max_collapse_valence) {
-    neighbours(gone, [&](int v) { ok = ok && (v == kept || v == c || v == d || !joined(kept, v)); });
+    neighbors(gone, [&](int v) { ok = ok && (v == kept || v == c || v == d || !joined(kept, v)); });
     return ok;
   }
   int near[max_collapse_valence], n = 0;
-  neighbours(kept, [&](int v) {
+  neighbors(kept, [&](int v) {
     if (v != gone && v != c && v != d) near[n++] = v;
   });
-  neighbours(gone, [&](int v) {
+  neighbors(gone, [&](int v) {
     for (int i = 0; i < n; ++i) ok = ok && near[i] != v;
   });
   return ok;

@@ -40,7 +40,7 @@ struct EditMesh {
   }
   /// Calls f(w) for every vertex joined to v, counterclockwise.
   template <class F>
-  void neighbours(int v, F&& f) const {
+  void neighbors(int v, F&& f) const {
     int last = 0;
     star(v, [&](int h) { f(to(h)), last = h; });
     if (opp[prev(last)] < 0) f(apex(last));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Topology of the regions of a labelled surface, and of the union of two of them without counting again.
+// Topology of the regions of a labeled surface, and of the union of two of them without counting again.
 #pragma once
 #include <vector>
 
@@ -25,7 +25,7 @@ struct Region {
   }
 };
 
-/// The regions of a labelled surface: row l of both is label l.
+/// The regions of a labeled surface: row l of both is label l.
 struct Regions {
   std::vector<Region> region;
   std::vector<std::vector<int>> border;  ///< border half-edges

@@ -25,7 +25,7 @@ struct View {
 };
 
 /// The mesh fitted into width x height pixels. `color` is per triangle; `strong` (empty, or per triangle: bit
-/// i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and grey, so that
+/// i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and gray, so that
 /// flipped triangles show.
 Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
                 const View& view, int width, int height);

@@ -214,7 +214,7 @@ namespace {
 
 /// M / r^2 + K: around a tube it leaves, applied twice, a third of the first harmonic and a fifteenth of the
 /// second. `mass` receives the diagonal of M / r^2.
-Factorisation<double> make_smoother(const FilledDisk& disk, const Branches& branches,
+Factorization<double> make_smoother(const FilledDisk& disk, const Branches& branches,
                                     const std::vector<char>& crease, std::vector<double>& mass) {
   constexpr double conductance = 0.7, across_crease = 0.1;
   const int n = disk.part_vertices;
@@ -235,7 +235,7 @@ Factorisation<double> make_smoother(const FilledDisk& disk, const Branches& bran
     const bool leaves_crease = on_crease[a] + on_crease[b] == 1;
     matrix.add_edge(a, b, conductance * disk.weights[h] * (leaves_crease ? across_crease : 1));
   }
-  return matrix.factorise();
+  return matrix.factorize();
 }
 
 /// Subtracts from each vertex the mean over its ring.
@@ -291,7 +291,7 @@ void balance_sides(const FilledDisk& disk, const Connectivity& part, const Branc
   const int n = disk.part_vertices;
   const std::vector<int> corner = corners_of(disk);
   std::vector<double> mass, level(n);
-  const Factorisation<double> smoother = make_smoother(disk, branches, crease, mass);
+  const Factorization<double> smoother = make_smoother(disk, branches, crease, mass);
   auto smooth = [&] {
     for (int v = 0; v < n; ++v) level[v] *= mass[v];
     smoother.solve(level);

@@ -49,16 +49,16 @@ FilledDisk fill_holes(const Mesh& part) {
     }
     const int first = disk.tris.size(), n = loops[l].size();
     disk.fan_begin.push_back(first);
-    Vec3 centre;
-    for (int h : loops[l]) centre = centre + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
+    Vec3 center;
+    for (int h : loops[l]) center = center + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
     for (int i = 0; i < n; i++) {
       const int h = loops[l][i], t = first + i;
       disk.tris.push_back({target(part.tris, h), origin(part.tris, h), static_cast<int>(disk.points.size())});
-      disk.opposite[h] = 3 * t;  // and its neighbours in the fan: the half-edge before on the loop, the next
+      disk.opposite[h] = 3 * t;  // and its neighbors in the fan: the half-edge before on the loop, the next
       disk.opposite.insert(disk.opposite.end(),
                            {h, 3 * (first + (i + n - 1) % n) + 2, 3 * (first + (i + 1) % n) + 1});
     }
-    disk.points.push_back(centre);
+    disk.points.push_back(center);
   }
   disk.fan_begin.push_back(disk.tris.size());
   disk.weights.resize(3 * disk.tris.size());

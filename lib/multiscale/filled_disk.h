@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 /// A part of genus 0 made a topological disk: all its loops but the longest are filled by fans around virtual
-/// centres. The part's own vertices and triangles come first, then the centres and the fans.
+/// centers. The part's own vertices and triangles come first, then the centers and the fans.
 struct FilledDisk : Mesh {
   std::vector<int> opposite;
   std::vector<double> weights;  ///< of the Laplacian, per half-edge; positive

@@ -65,7 +65,7 @@ void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vec
     if (i >= 0 && j < 0) hold(i, c, weights[h]);
     if (j >= 0 && i < 0) hold(j, a, weights[h]);
   }
-  laplacian.factorise(MatrixKind::laplacian, time).solve(b);
+  laplacian.factorize(MatrixKind::laplacian, time).solve(b);
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) uv[v] = {b[unknown[v]], b[n + unknown[v]]};
 }

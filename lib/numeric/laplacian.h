@@ -41,10 +41,10 @@ class Laplacian {
   int rows() const { return (int)diagonal_.size(); }
   /// Returns the entries of the lower triangle, and leaves none.
   std::vector<Entry<double>> lower_triangle();
-  /// Factorises the matrix, and leaves none.
-  Factorisation<double> factorise(MatrixKind kind = MatrixKind::any, SolveTime* time = nullptr) {
+  /// Factorizes the matrix, and leaves none.
+  Factorization<double> factorize(MatrixKind kind = MatrixKind::any, SolveTime* time = nullptr) {
     const int n = rows();
-    return Factorisation<double>(n, lower_triangle(), time, kind);
+    return Factorization<double>(n, lower_triangle(), time, kind);
   }
 
  private:
@@ -52,7 +52,7 @@ class Laplacian {
   std::vector<Entry<double>> entries_;
 };
 
-/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimises sum w_ij |u_i - u_j|^2 with the
+/// Dirichlet problem for the graph Laplacian of a triangle mesh: minimizes sum w_ij |u_i - u_j|^2 with the
 /// values at `fixed` vertices (fixed[v] != 0) held. `uv` holds the fixed values on entry and all values on
 /// return. weights[h] is the weight of half-edge h's triangle on its edge (summed over the triangles of an
 /// edge); one factorization, both coordinates solved with it. Vertices of no triangle stay. Throws GoalMissed

@@ -39,7 +39,7 @@ class Multigrid {
   void cycle(std::size_t level, const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
 
   std::vector<Level> levels_;
-  std::optional<Factorisation<double>> coarsest_;
+  std::optional<Factorization<double>> coarsest_;
 };
 
 }  // namespace meshpipe

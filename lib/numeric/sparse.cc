@@ -90,15 +90,15 @@ constexpr double cost_of_multigrid = 3000;
 }  // namespace
 
 template <class Scalar>
-struct Factorisation<Scalar>::Impl {
+struct Factorization<Scalar>::Impl {
   Ldlt<Scalar> ldlt;
   int n;
   SolveTime* time;
   std::unique_ptr<Multigrid> multigrid;  ///< takes the place of the numeric factorization
 
-  void factorise(const Eigen::SparseMatrix<Scalar>& m) {
+  void factorize(const Eigen::SparseMatrix<Scalar>& m) {
     {
-      Stopwatch watch(time ? &time->factorisation : nullptr);
+      Stopwatch watch(time ? &time->factorization : nullptr);
       ldlt.factorize(m);
     }
     // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
@@ -117,7 +117,7 @@ struct Factorisation<Scalar>::Impl {
 };
 
 template <class Scalar>
-Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time,
+Factorization<Scalar>::Factorization(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time,
                                      MatrixKind kind)
     : impl_(std::make_unique<Impl>()) {
   impl_->n = n;
@@ -129,7 +129,7 @@ Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_tri
   }
   if constexpr (std::is_same_v<Scalar, double>) {
     if (kind == MatrixKind::laplacian && impl_->ldlt.cost() > cost_of_multigrid * n) {
-      Stopwatch watch(time ? &time->factorisation : nullptr);
+      Stopwatch watch(time ? &time->factorization : nullptr);
       try {
         impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
         return;
@@ -137,28 +137,28 @@ Factorisation<Scalar>::Factorisation(int n, std::vector<Entry<Scalar>> lower_tri
       }
     }
   }
-  impl_->factorise(m);
+  impl_->factorize(m);
 }
 
 template <class Scalar>
-Factorisation<Scalar>::~Factorisation() = default;
+Factorization<Scalar>::~Factorization() = default;
 template <class Scalar>
-Factorisation<Scalar>::Factorisation(Factorisation&&) noexcept = default;
+Factorization<Scalar>::Factorization(Factorization&&) noexcept = default;
 
 template <class Scalar>
-void Factorisation<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
-  impl_->factorise(compress(impl_->n, lower_triangle));
+void Factorization<Scalar>::refactor(const std::vector<Entry<Scalar>>& lower_triangle) {
+  impl_->factorize(compress(impl_->n, lower_triangle));
 }
 
 template <class Scalar>
-void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
+void Factorization<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
   if (right_hand_side.empty()) return;
   if constexpr (std::is_same_v<Scalar, double>) {
     if (impl_->multigrid) {
       Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
       if (impl_->multigrid->solve(right_hand_side)) return;
     }
-    if (impl_->multigrid) impl_->factorise(std::exchange(impl_->multigrid, nullptr)->matrix());
+    if (impl_->multigrid) impl_->factorize(std::exchange(impl_->multigrid, nullptr)->matrix());
   }
   Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
   Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
@@ -167,8 +167,8 @@ void Factorisation<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
   require_finite(x);
 }
 
-template class Factorisation<double>;
-template class Factorisation<std::complex<double>>;
+template class Factorization<double>;
+template class Factorization<std::complex<double>>;
 
 void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::vector<double>& right_hand_side,
                        SolveTime* time) {
@@ -180,7 +180,7 @@ void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::ve
     lu.analyzePattern(m);
   }
   {
-    Stopwatch watch(time ? &time->factorisation : nullptr);
+    Stopwatch watch(time ? &time->factorization : nullptr);
     lu.factorize(m);
   }
   if (lu.info() != Eigen::Success) throw GoalMissed("singular matrix of " + std::to_string(n) + " rows");

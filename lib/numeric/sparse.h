@@ -17,7 +17,7 @@ struct Entry {
 /// Where the wall time of sparse solves goes, in seconds.
 struct SolveTime {
   double ordering = 0;                  ///< with the symbolic factorization
-  double factorisation = 0, solve = 0;  ///< multigrid: its levels, its steps
+  double factorization = 0, solve = 0;  ///< multigrid: its levels, its steps
 };
 
 /// What is known of a matrix: a Laplacian, with some values held or masses added, can be solved by multigrid.
@@ -30,12 +30,12 @@ enum class MatrixKind { any, laplacian };
 /// it is for large round charts and not for long or branched ones, is factored only if that does not
 /// converge.
 template <class Scalar>
-class Factorisation {
+class Factorization {
  public:
-  Factorisation(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr,
+  Factorization(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time = nullptr,
                 MatrixKind kind = MatrixKind::any);
-  ~Factorisation();
-  Factorisation(Factorisation&&) noexcept;
+  ~Factorization();
+  Factorization(Factorization&&) noexcept;
   /// Another matrix in the order of the first, whose places have to be the same. Throws like the constructor.
   /// Requires: kind `any`.
   void refactor(const std::vector<Entry<Scalar>>& lower_triangle);

@@ -188,7 +188,7 @@ std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const
   }
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) matrix.push_back({unknown[v], unknown[v], diagonal[v]});
-  if (n > 0) Factorisation<Complex>(n, std::move(matrix), time).solve(b);
+  if (n > 0) Factorization<Complex>(n, std::move(matrix), time).solve(b);
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) z[v] = b[unknown[v]];
   return plane_points(part, z);
@@ -209,7 +209,7 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
   // eigenvector, makes the matrix definite
   constexpr double shift = 1e-6;
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v] + shift * moment[v]});
-  Factorisation<Complex> factorisation(n, std::move(matrix), time);
+  Factorization<Complex> factorization(n, std::move(matrix), time);
 
   std::vector<Complex> z(n, 0), before;
   double at = 0;
@@ -240,7 +240,7 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
     if (change <= 1e-8) break;
     before = z;
     for (int v = 0; v < n; ++v) z[v] *= moment[v];
-    factorisation.solve(z);
+    factorization.solve(z);
   }
   if (!(change < 1e-4))
     throw GoalMissed("the spectral conformal map did not converge: change " + std::to_string(change) +

@@ -37,7 +37,7 @@ class BoundaryFirst {
   int n_ = 0;
   std::vector<double> weights_, angle_sum_;
   std::vector<int> unknown_;
-  Factorisation<double> factorization_;
+  Factorization<double> factorization_;
   double area_distortion_;
   std::vector<double> turn_;   ///< at bend 0
   std::vector<double> scale_;  ///< of the lengths, log, at bend 1; empty until asked for

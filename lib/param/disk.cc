@@ -149,13 +149,13 @@ std::vector<double> angle_sums(const Filled& filled, const std::vector<double>& 
   return sum;
 }
 
-Factorisation<double> laplacian(const Filled& filled, const std::vector<double>& weights,
+Factorization<double> laplacian(const Filled& filled, const std::vector<double>& weights,
                                 const std::vector<int>& unknown, int n, SolveTime* time) {
   Laplacian matrix(n);
   matrix.reserve(weights.size());
   for_each_spring(filled, weights,
                   [&](int a, int b, double w) { matrix.add_edge(unknown[a], unknown[b], w); });
-  return matrix.factorise(MatrixKind::laplacian, time);
+  return matrix.factorize(MatrixKind::laplacian, time);
 }
 
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,

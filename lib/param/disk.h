@@ -50,7 +50,7 @@ std::vector<double> cotangents(const Shapes& shapes, double floor = -1e30, doubl
 std::vector<double> angle_sums(const Filled& filled, const std::vector<double>& cotangents);
 
 /// Factorizes the Laplacian of the unknowns 0..n-1; unknown[v] < 0: v is held; vertices may share an unknown.
-Factorisation<double> laplacian(const Filled& filled, const std::vector<double>& weights,
+Factorization<double> laplacian(const Filled& filled, const std::vector<double>& weights,
                                 const std::vector<int>& unknown, int n, SolveTime* time);
 
 /// Returns the angle by which the border turns at each of its vertices once the metric is scaled by

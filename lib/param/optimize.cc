@@ -185,7 +185,7 @@ int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vect
   int n = (int)uv.size();
   scale_to_area(part, uv);
   Proxy proxy;
-  std::unique_ptr<Factorisation<double>> factorisation;
+  std::unique_ptr<Factorization<double>> factorization;
   std::vector<Vec2> move(n), trial(n);
   for (int taken = 0; taken < steps; ++taken) {
     bool bounded;
@@ -193,14 +193,14 @@ int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vect
     double before = energy(part.tris, rest, uv);
     set_proxy(part.tris, rest, uv, proxy);
     try {
-      if (factorisation)
-        factorisation->refactor(proxy.matrix);
+      if (factorization)
+        factorization->refactor(proxy.matrix);
       else
-        factorisation = std::make_unique<Factorisation<double>>(2 * n, proxy.matrix, time);
+        factorization = std::make_unique<Factorization<double>>(2 * n, proxy.matrix, time);
     } catch (const GoalMissed&) {  // distortion beyond what doubles hold: the map stays as it is
       return taken;
     }
-    factorisation->solve(proxy.b);
+    factorization->solve(proxy.b);
     for (int v = 0; v < n; ++v) move[v] = Vec2{proxy.b[2 * v], proxy.b[2 * v + 1]} - uv[v];
     double slope = 0, after = 0, step = longest_step(part.tris, uv, move);
     for (std::size_t t = 0; t < part.tris.size(); ++t) {

@@ -239,7 +239,7 @@ void DistortionModel::solve_scale(const std::vector<Contact>& with_rim, Inside i
     matrix.add_edge(r.unknown[c], r.unknown[d], w);
   }
   for (int g : r.members) r.scale.push_back(r.charge[g]);
-  matrix.factorise().solve(r.scale);
+  matrix.factorize().solve(r.scale);
 }
 
 DistortionEstimate DistortionModel::of(const std::vector<int>& label, int a, int b,

@@ -7,7 +7,7 @@
 
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
-#include "lib/partition/labelling.h"
+#include "lib/partition/labeling.h"
 
 namespace meshpipe {
 Interfaces measure_interfaces(const Surface& surface) {

@@ -7,7 +7,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/mesh.h"
-#include "lib/partition/labelling.h"
+#include "lib/partition/labeling.h"
 #include "lib/partition/merge.h"
 
 namespace meshpipe {

@@ -28,7 +28,7 @@ std::vector<double> lumped_area(const Mesh& mesh) {
 /// L + s M with free borders, s M far below the first eigenvalue of L that is not zero, (pi / length)^2, and
 /// enough to make the matrix definite. Positive weights: its fields have no extremes but where they are
 /// driven. `even`: of the graph, with the same weight for all triangles, whatever their shapes.
-Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass, bool even) {
+Factorization<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass, bool even) {
   int n = (int)mesh.points.size();
   std::vector<double> diagonal(n);
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
@@ -39,12 +39,12 @@ Factorisation<double> free_laplacian(const Mesh& mesh, const std::vector<double>
     if (!even) w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
     for (int i = 0; i < 3; ++i) matrix.add_edge(t[i], t[(i + 1) % 3], w[i]);
   }
-  return matrix.factorise();
+  return matrix.factorize();
 }
 
 /// By inverse iteration. Both sides of its zero level are connected (Fiedler 1975).
 std::vector<double> fiedler_vector(const Mesh& mesh, const std::vector<double>& mass,
-                                   const Factorisation<double>& laplacian) {
+                                   const Factorization<double>& laplacian) {
   int n = (int)mesh.points.size();
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
   // from the distance to a far vertex; the constant vector is taken out each time
@@ -108,7 +108,7 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
   std::vector<double> mass = even ? std::vector<double>(mesh.points.size(), 1) : lumped_area(mesh);
   if (!(std::accumulate(mass.begin(), mass.end(), 0.0) > 0)) return false;
-  Factorisation<double> laplacian = free_laplacian(mesh, mass, even);
+  Factorization<double> laplacian = free_laplacian(mesh, mass, even);
   std::vector<std::vector<double>> fields;
   // the part's own numbers follow its triangles, which cuts of its neighbors split
   auto own = [&](int v) {

@@ -19,18 +19,18 @@ int bound_of(int faces, const PartitionOptions& options) {
                                           : 0;
 }
 
-/// The best labelling of a component, within the bound on triangles. No parts if there is none.
-Labelling label_component(Component& c, const PartitionOptions& options) {
-  Labelling l;
+/// The best labeling of a component, within the bound on triangles. No parts if there is none.
+Labeling label_component(Component& c, const PartitionOptions& options) {
+  Labeling l;
   if (c.whole.maps_to_the_plane()) {
     l.label.assign(c.mesh.tris.size(), 0);
     l.parts = 1;
   } else {
-    l = best_labelling(c, options.homology, options.seed);
+    l = best_labeling(c, options.homology, options.seed);
   }
   const int bound = bound_of((int)c.mesh.tris.size(), options);
   if (l.parts == 0 || bound == 0) return l;
-  Labelling bounded = l;
+  Labeling bounded = l;
   bound_faces(c, bounded, bound, options.seed);
   return bounded.parts > 0 || options.max_faces > 0 ? bounded : l;
 }
@@ -67,7 +67,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options, std::v
       for (int t : face) sub.model.push_back(surface.face.get<std::uint8_t>("model")[t]);
     Component c = make_component(std::move(sub), whole.region[i]);
     c.share = searching * (double)face.size() / (double)part.size();
-    const Labelling l = label_component(c, options);
+    const Labeling l = label_component(c, options);
     if (l.parts == 0)
       throw GoalMissed("component " + std::to_string(i) + " of " + std::to_string(c.mesh.tris.size()) +
                        " triangles and genus " + std::to_string(c.whole.genus()) +

@@ -78,7 +78,7 @@ void remove_vertex(State& s, int h, int gone) {
   if (s.recording) s.edits.push_back({Edit::collapse, h, gone});
   s.mesh.collapse(h, gone);
   mark_edited(s, kept);
-  s.mesh.neighbours(kept, [&](int v) { mark_edited(s, v); });
+  s.mesh.neighbors(kept, [&](int v) { mark_edited(s, v); });
   ++s.counts.collapses;
 }
 

@@ -133,7 +133,7 @@ bool settled(const State& s, int v) {
   const std::vector<int>&tried = s.clocks.tried, &changed = s.clocks.changed;
   if (tried[v] <= changed[v]) return false;
   bool quiet = true;
-  s.mesh.neighbours(v, [&](int w) { quiet &= changed[w] < tried[v]; });
+  s.mesh.neighbors(v, [&](int w) { quiet &= changed[w] < tried[v]; });
   return quiet;
 }
 

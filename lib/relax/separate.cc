@@ -31,7 +31,7 @@ void refine_at(State& s, const std::vector<std::pair<int, int>>& pairs) {
   for (int t : offending)
     for (int v : m.tris[t]) {
       around.push_back(v);
-      m.neighbours(v, [&](int w) { around.push_back(w); });
+      m.neighbors(v, [&](int w) { around.push_back(w); });
     }
   sort_unique(around);
   for (int v : around) {

@@ -9,7 +9,7 @@ namespace {
 /// The first color that no neighbor of v has, or -1.
 signed char free_color(const State& s, int v) {
   std::uint64_t taken = 0;
-  s.mesh.neighbours(v, [&](int w) {
+  s.mesh.neighbors(v, [&](int w) {
     if (const int c = s.coloring.color[w]; c >= 0) taken |= std::uint64_t(1) << c;
   });
   for (int c = 0; c < 63; ++c)
@@ -138,7 +138,7 @@ void mark_edited(State& s, int v) {
   s.clocks.edited[v] = s.clocks.now;
   std::vector<signed char>& color = s.coloring.color;
   bool clash = color[v] < 0;
-  s.mesh.neighbours(v, [&](int w) { clash |= color[w] == color[v]; });
+  s.mesh.neighbors(v, [&](int w) { clash |= color[w] == color[v]; });
   if (clash) color[v] = free_color(s, v);
   s.coloring.listed = false;
 }

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "lib/core/neighbours.h"
+#include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
@@ -58,7 +58,7 @@ void lower_on_lines(const Connectivity& surface, std::vector<double>& size) {
 /// Finds the rings around tubes, from one vertex after the other.
 class TubeFinder {
  public:
-  TubeFinder(const Mesh& mesh, const Neighbours& next)
+  TubeFinder(const Mesh& mesh, const Neighbors& next)
       : mesh_(mesh),
         next_(next),
         normal_(vertex_area_vectors(mesh)),
@@ -117,7 +117,7 @@ class TubeFinder {
   }
 
   const Mesh& mesh_;
-  const Neighbours& next_;
+  const Neighbors& next_;
   std::vector<Vec3> normal_;
   std::vector<double> distance_;
   std::vector<int> from_, branch_, reached_, near_;
@@ -131,7 +131,7 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const std::size_t n = mesh.points.size();
   std::vector<double> feature(n, infinite), bend(n, 0);
   lower_on_lines(surface, feature);
-  const Neighbours next(mesh);
+  const Neighbors next(mesh);
 
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)
     for (int v : mesh.tris[t]) bend[v] = std::max(bend[v], curvature[t]);

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "lib/core/error.h"
-#include "lib/core/neighbours.h"
+#include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/split_edges.h"
@@ -269,7 +269,7 @@ void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, do
 }
 
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
-  const Neighbours next(mesh);
+  const Neighbors next(mesh);
   auto each_lower = [&](int v, const auto& lower) {
     for (int k = next.start[v]; k < next.start[v + 1]; ++k)
       if (const int u = next.vertex[k]; size[u] > size[v])

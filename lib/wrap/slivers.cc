@@ -111,7 +111,7 @@ std::vector<Operation> independent(const EditMesh& m, const std::vector<Vec3>& p
     around.clear();
     for (int v : {m.from(o->h), m.to(o->h), m.apex(o->h), m.apex(m.opp[o->h])}) {
       around.push_back(v);
-      m.neighbours(v, [&](int w) { around.push_back(w); });
+      m.neighbors(v, [&](int w) { around.push_back(w); });
     }
     if (std::any_of(around.begin(), around.end(), [&](int v) { return taken[v]; })) continue;
     for (int v : around) taken[v] = 1;

@@ -7,7 +7,7 @@ Without files, surfaces made by mshape are used. A row holds the surface's genus
 ratio (0: closed); the parts after mpartition, after mmultiscale and after mparam; the interfaces' length over the diagonal
 and their turning angle on the surface, away from creases (90 % quantile and largest), after mmultiscale; the CPU seconds
 of mpartition and mmultiscale together, on one thread, best of --runs. Next to it, where Gmsh is there and succeeds: the
-patches that it makes of the surface so that they can be parametrised, by its log, and its CPU seconds of splitting and of
+patches that it makes of the surface so that they can be parametrized, by its log, and its CPU seconds of splitting and of
 creating the geometry.
 
   --runs N                 runs of mpartition and mmultiscale (default 3)

@@ -69,7 +69,7 @@ def report_of(parts, options, work):
         return json.load(f)
 
 
-def seconds(report, which=("ordering", "factorisation", "solve")):
+def seconds(report, which=("ordering", "factorization", "solve")):
     return sum(c["seconds_" + k] for c in report["charts"] for k in which)
 
 
@@ -126,7 +126,7 @@ def share(name, path, count, work, times):
 
 def growth(work, largest, times):
     rows = []
-    row = common.table(["triangles", "mparam s", "ordering s", "factorisation s", "solve s", "us a triangle"])
+    row = common.table(["triangles", "mparam s", "ordering s", "factorization s", "solve s", "us a triangle"])
     n = 10000
     while n <= largest:
         parts = f"{work}/growth.ply"
@@ -141,9 +141,9 @@ def growth(work, largest, times):
                 report = json.load(f)
             if best is None or run.cpu < best["cpu"]:
                 best = {"triangles": sum(c["triangles"] for c in report["charts"]), "cpu": run.cpu}
-                best.update({k: seconds(report, (k,)) for k in ("ordering", "factorisation", "solve")})
+                best.update({k: seconds(report, (k,)) for k in ("ordering", "factorization", "solve")})
         rows.append(best)
-        row(best["triangles"], f"{best['cpu']:.3f}", f"{best['ordering']:.3f}", f"{best['factorisation']:.3f}",
+        row(best["triangles"], f"{best['cpu']:.3f}", f"{best['ordering']:.3f}", f"{best['factorization']:.3f}",
             f"{best['solve']:.3f}", f"{1e6 * best['cpu'] / best['triangles']:.2f}")
         n = 3 * n if str(n)[0] == "1" else 10 * n // 3
     if len(rows) > 1:

@@ -36,6 +36,7 @@ WORDS = {
     "rooms?": "local feature size", "embeds?": "noncrossing refinement", "turned": "inconsistently oriented",
     "culprits?": "offending faces", "walls?": "feature edges", "wedges?": "sharp feature corner",
     "uncut": "recover the original triangles",
+    r"(?:neighbour|colour|labell|factoris|optimis|normalis|minimis)\w*|centres?|grey": "the American spelling",
 }
 
 # (word, files, what the line must hold, reason)

@@ -57,9 +57,9 @@ std::string chart_line(const ParamReport& r, std::size_t triangles) {
   char text[400];
   std::snprintf(text, sizeof text,
                 "%zu triangles, map %s, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, area scale %.3g, "
-                "smallest area %.2e, order %.4f s, factorise %.4f s, solve %.4f s",
+                "smallest area %.2e, order %.4f s, factorize %.4f s, solve %.4f s",
                 triangles, name_of(r).c_str(), r.anisotropy_median, r.anisotropy_p99, r.anisotropy_max,
-                r.area_scale, r.smallest_area, r.time.ordering, r.time.factorisation, r.time.solve);
+                r.area_scale, r.smallest_area, r.time.ordering, r.time.factorization, r.time.solve);
   std::string line = text;
   if (r.bend > 0) line += ", border bent " + std::to_string((int)std::lround(100 * r.bend)) + " %";
   if (!r.border_was_simple) line += ", border crossed itself before";
@@ -87,7 +87,7 @@ nlohmann::ordered_json chart_record(const ParamReport& r, int part, std::size_t 
           {"area_scale", r.area_scale},
           {"smallest_area", r.smallest_area},
           {"seconds_ordering", r.time.ordering},
-          {"seconds_factorisation", r.time.factorisation},
+          {"seconds_factorization", r.time.factorization},
           {"seconds_solve", r.time.solve}};
 }
 

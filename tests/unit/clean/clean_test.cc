@@ -293,7 +293,7 @@ TEST(Clean, RefusesWhatHasNoTriangleLeftAndTellsWhy) {
 //    0-4-1
 //     \|/          .
 //      5
-TEST(Clean, FlipsACapIntoItsNeighbour) {
+TEST(Clean, FlipsACapIntoItsNeighbor) {
   Surface s = surface({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {-1, 2, 0}, {1, 0, 0}, {1, -1, 0}},
                       {{0, 1, 2}, {0, 4, 1}, {0, 5, 4}, {4, 5, 1}, {0, 2, 3}});
   CleanReport r = clean(s);

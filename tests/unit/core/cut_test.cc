@@ -177,7 +177,7 @@ TEST(Cut, NeverPutsAWholeTriangleOnTheLevel) {
 }
 
 //  the inactive triangle 1 is split along with the edge 0-2 that it shares, and has no side
-TEST(Cut, SplitsInactiveNeighboursConformingly) {
+TEST(Cut, SplitsInactiveNeighborsConformingly) {
   Surface s = square();
   std::vector<int> side;
   EXPECT_EQ(cut_by_scalar_field(s, {-0.5, 0.5, 0.5, -0.5}, {1, 0}, side), 2);
@@ -205,8 +205,8 @@ TEST(Cut, InterpolatesVertexColumnsAndCopiesFaceColumns) {
   for (std::size_t t = 0; t < 6; ++t) {
     int o = s.face.get<int>("origin")[t];
     EXPECT_EQ(s.face.get<int>("patch")[t], o == 40 ? 5 : 6);
-    Vec3 centre = (1.0 / 3) * (s.points[s.tris[t][0]] + s.points[s.tris[t][1]] + s.points[s.tris[t][2]]);
-    EXPECT_EQ(o, centre.y < centre.x ? 40 : 30);
+    Vec3 center = (1.0 / 3) * (s.points[s.tris[t][0]] + s.points[s.tris[t][1]] + s.points[s.tris[t][2]]);
+    EXPECT_EQ(o, center.y < center.x ? 40 : 30);
   }
 }
 

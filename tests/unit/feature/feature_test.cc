@@ -129,7 +129,7 @@ TEST(Feature, AShortPieceThatEndsFreelyIsDropped) {
   EXPECT_EQ(mark_features(s, o).crease_edges, 3);  // a closed ring of three is no free end
 }
 
-TEST(Feature, TheNormalOfAFlatTriangleIsThatOfItsNeighbour) {
+TEST(Feature, TheNormalOfAFlatTriangleIsThatOfItsNeighbor) {
   // the cube with a point on an edge: a cap of no height between two faces must not break or double the
   // crease
   Surface s = cube();

@@ -446,7 +446,7 @@ TEST(Matrix, EveryFormatGivesTheSameTrianglesNamesAndData) {
       for (bool ascii : {true, false}) {
         const Stream first = read_any(write_as(scaled, from, ascii), from);
         EXPECT_EQ(soup(first), soup(scaled)) << from << ascii;
-        // MSH has one number type, and no colours
+        // MSH has one number type, and no colors
         if (!std::string(from).starts_with("a.msh"))
           EXPECT_EQ(columns(first), columns(scaled)) << from << ascii;
         else

@@ -60,12 +60,12 @@ TEST(Laplacian, HeldEndsOnlyCountOnTheDiagonal) {
   EXPECT_EQ(sum[1][1], 7);
 }
 
-TEST(Laplacian, FactorisesWhatWasAdded) {
+TEST(Laplacian, FactorizesWhatWasAdded) {
   Laplacian l(2);
   l.add_edge(0, 1, 1);
   l.add_edge(0, -1, 1);
   std::vector<double> b{0, 1};
-  l.factorise().solve(b);
+  l.factorize().solve(b);
   EXPECT_NEAR(b[0], 1, 1e-15);
   EXPECT_NEAR(b[1], 2, 1e-15);
 }

@@ -50,12 +50,12 @@ std::vector<double> two_columns(int n) {
 
 }  // namespace
 
-TEST(Multigrid, SolvesWhatAFactorisationSolves) {
+TEST(Multigrid, SolvesWhatAFactorizationSolves) {
   const int side = 120, n = side * side;
   for (double most : {1.0, 10.0, 1e4}) {
     const auto lower = grid(side, side, most);
     std::vector<double> direct = two_columns(n), b = direct;
-    Factorisation<double>(n, lower).solve(direct);
+    Factorization<double>(n, lower).solve(direct);
     ASSERT_TRUE(Multigrid(matrix_of(n, lower)).solve(b)) << most;
     for (int c = 0; c < 2; ++c) {
       double largest = 0, off = 0;
@@ -81,7 +81,7 @@ TEST(Multigrid, EveryColumnIsSolvedAsIfAlone) {
 }
 
 // The bending of a beam is no Laplacian: large entries of both signs off the diagonal.
-TEST(Multigrid, WhatDoesNotConvergeIsGivenBackAndFactorised) {
+TEST(Multigrid, WhatDoesNotConvergeIsGivenBackAndFactorized) {
   const int n = 4000;
   std::vector<Entry<double>> lower;
   for (int i = 0; i < n; ++i) {
@@ -94,13 +94,13 @@ TEST(Multigrid, WhatDoesNotConvergeIsGivenBackAndFactorised) {
   EXPECT_EQ(b, given);
 }
 
-TEST(Multigrid, FactorisationTakesItWhereItIsFaster) {
+TEST(Multigrid, FactorizationTakesItWhereItIsFaster) {
   const int n = 40000;
   for (int high : {2, 200}) {
     const auto lower = grid(n / high, high, 2);
     std::vector<double> direct = two_columns(n), x = direct;
-    Factorisation<double>(n, lower).solve(direct);
-    Factorisation<double>(n, lower, nullptr, MatrixKind::laplacian).solve(x);
+    Factorization<double>(n, lower).solve(direct);
+    Factorization<double>(n, lower, nullptr, MatrixKind::laplacian).solve(x);
     if (high == 2)
       EXPECT_EQ(x, direct);
     else
@@ -110,7 +110,7 @@ TEST(Multigrid, FactorisationTakesItWhereItIsFaster) {
 }
 
 // The bending of a plate: the square of a Laplacian, no Laplacian itself.
-TEST(Multigrid, FactorisationIsThereWhereItDoesNotConverge) {
+TEST(Multigrid, FactorizationIsThereWhereItDoesNotConverge) {
   const int side = 120, n = side * side;
   const Multigrid::Matrix laplacian = matrix_of(n, grid(side, side, 10)), plate = laplacian * laplacian;
   std::vector<Entry<double>> lower;
@@ -119,7 +119,7 @@ TEST(Multigrid, FactorisationIsThereWhereItDoesNotConverge) {
       if (e.col() <= i) lower.push_back({i, (int)e.col(), e.value()});
   std::vector<double> direct = two_columns(n), x = direct;
   EXPECT_FALSE(Multigrid(plate).solve(x));
-  Factorisation<double>(n, lower).solve(direct);
-  Factorisation<double>(n, lower, nullptr, MatrixKind::laplacian).solve(x);
+  Factorization<double>(n, lower).solve(direct);
+  Factorization<double>(n, lower, nullptr, MatrixKind::laplacian).solve(x);
   EXPECT_EQ(x, direct);
 }

@@ -10,7 +10,7 @@ using Complex = std::complex<double>;
 
 TEST(Sparse, EntriesAtOnePlaceAddUp) {
   // [4 1; 1 3] with the 4 and the 1 given in pieces
-  Factorisation<double> f(2, {{1, 0, 0.25}, {0, 0, 1}, {1, 1, 3}, {1, 0, 0.75}, {0, 0, 3}});
+  Factorization<double> f(2, {{1, 0, 0.25}, {0, 0, 1}, {1, 1, 3}, {1, 0, 0.75}, {0, 0, 3}});
   std::vector<double> b{6, 7};
   f.solve(b);
   EXPECT_NEAR(b[0], 1, 1e-15);
@@ -38,16 +38,16 @@ TEST(Sparse, ComplexMatricesAreHermitianNotSymmetric) {
   for (int i = 0; i < n; ++i) x[i] = Complex(i, 1 - 0.5 * i);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) b[i] += a[i][j] * x[j];
-  Factorisation<Complex>(n, lower).solve(b);
+  Factorization<Complex>(n, lower).solve(b);
   for (int i = 0; i < n; ++i) EXPECT_LT(std::abs(b[i] - x[i]), 1e-12);
 }
 
 TEST(Sparse, SingularMatricesAreRefused) {
-  EXPECT_THROW(Factorisation<double>(2, {{0, 0, 1}, {1, 0, -1}, {1, 1, 1}}), GoalMissed);
-  EXPECT_THROW(Factorisation<double>(1, {{0, 0, -1}}), GoalMissed);
-  EXPECT_THROW(Factorisation<double>(1, {{0, 0, std::nan("")}}), GoalMissed);
+  EXPECT_THROW(Factorization<double>(2, {{0, 0, 1}, {1, 0, -1}, {1, 1, 1}}), GoalMissed);
+  EXPECT_THROW(Factorization<double>(1, {{0, 0, -1}}), GoalMissed);
+  EXPECT_THROW(Factorization<double>(1, {{0, 0, std::nan("")}}), GoalMissed);
   // a path of three with nothing held: its last pivot is rounding only
-  EXPECT_THROW(Factorisation<double>(3, {{0, 0, .1}, {1, 0, -.1}, {1, 1, .4}, {2, 1, -.3}, {2, 2, .3}}),
+  EXPECT_THROW(Factorization<double>(3, {{0, 0, .1}, {1, 0, -.1}, {1, 1, .4}, {2, 1, -.3}, {2, 2, .3}}),
                GoalMissed);
 }
 
@@ -78,12 +78,12 @@ TEST(Sparse, UnsymmetricSystems) {
   EXPECT_NEAR(b[1], 2, 1e-14);
   EXPECT_NEAR(b[2], 1, 1e-14);
   EXPECT_NEAR(b[3], 0, 1e-14);
-  EXPECT_GT(time.ordering + time.factorisation + time.solve, 0);
+  EXPECT_GT(time.ordering + time.factorization + time.solve, 0);
   EXPECT_THROW(solve_unsymmetric(2, {{0, 0, 1}, {0, 1, 2}, {1, 0, 2}, {1, 1, 4}}, b), GoalMissed);
 }
 
 TEST(Sparse, AnotherMatrixOfTheSamePlaces) {
-  Factorisation<double> f(2, {{0, 0, 2}, {1, 0, 1}, {1, 1, 2}});
+  Factorization<double> f(2, {{0, 0, 2}, {1, 0, 1}, {1, 1, 2}});
   f.refactor({{0, 0, 4}, {1, 0, 0}, {1, 1, 5}});
   std::vector<double> b{4, 10, 8, 5};
   f.solve(b);

@@ -13,7 +13,7 @@ using namespace meshpipe;
 //  | /   \ |
 //  0-------1
 static const std::vector<Tri> star{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
-static std::vector<Vec2> square(Vec2 centre) { return {{0, 0}, {1, 0}, {1, 1}, {0, 1}, centre}; }
+static std::vector<Vec2> square(Vec2 center) { return {{0, 0}, {1, 0}, {1, 1}, {0, 1}, center}; }
 
 TEST(Injective, CountsInvertedAndFlatTriangles) {
   EXPECT_EQ(count_inverted(star, square({0.2, 0.7})), 0);

@@ -154,7 +154,7 @@ TEST(Param, IntrinsicDelaunayFlipsNeedles) {
   EXPECT_NEAR(distortion(strip, uv).anisotropy_max, 1, 1e-6);
 }
 
-TEST(Param, OptimisationLowersDistortionAndStaysOneToOne) {
+TEST(Param, OptimizationLowersDistortionAndStaysOneToOne) {
   auto cap = grid(
       20, 20, false,
       [](double s, double t) {

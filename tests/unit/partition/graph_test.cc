@@ -11,7 +11,7 @@ using namespace meshpipe;
 
 namespace {
 
-// w x h squares, neighbours across edges; the edges between columns `weak` - 1 and `weak` weigh 1, all others
+// w x h squares, neighbors across edges; the edges between columns `weak` - 1 and `weak` weigh 1, all others
 // 100
 Graph grid(int w, int h, int weak = -1) {
   Graph g;

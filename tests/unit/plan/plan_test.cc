@@ -273,7 +273,7 @@ TEST(Plan, ALimbWithFewEdgesRoundIsCutAlong) {
 }
 
 // The same tube with a ring of its own at one end: the cut ends on the ring's border, whose map stays.
-TEST(Plan, TheMapOfANeighbourOfACutStays) {
+TEST(Plan, TheMapOfANeighborOfACutStays) {
   constexpr int n = 24, m = 27, rows = 24;
   Surface s = surface_of(round_tube(n, m, 2.3 * pi));
   std::vector<int> part(s.tris.size(), 0);

@@ -26,22 +26,22 @@ struct Component {
 /// Without weights and aggregates, which are made when they are needed.
 Component make_component(ConnectedPart part, const Region& whole);
 
-/// How a labelling compares: fewer charts in the end first, then the cheaper cut.
-struct Labelling {
+/// How a labeling compares: fewer charts in the end first, then the cheaper cut.
+struct Labeling {
   std::vector<int> label;  ///< 0..parts-1
   int parts = 0;
   int charts = 0;  ///< that the parts will come to, as predicted
   std::int64_t cost = 0;
-  bool operator<(const Labelling& o) const;
+  bool operator<(const Labeling& o) const;
 };
 
 /// Tries several numbers of parts, balances and seeds; those of a large component on a coarse model of it.
-/// With `homology`, cuts along handles (lib/partition/handles.h) too; else only if METIS's labellings come to
+/// With `homology`, cuts along handles (lib/partition/handles.h) too; else only if METIS's labelings come to
 /// more than genus + 2 charts. Every label is edge-connected, pinched nowhere, and has genus 0 and a border.
 /// No parts if none is found.
-Labelling best_labelling(Component& c, bool homology, int seed);
+Labeling best_labeling(Component& c, bool homology, int seed);
 
 /// Cuts parts of too many triangles, with a margin for those that smoothing adds. No parts if it cannot.
-void bound_faces(Component& c, Labelling& l, int max_faces, int seed);
+void bound_faces(Component& c, Labeling& l, int max_faces, int seed);
 
 }  // namespace meshpipe

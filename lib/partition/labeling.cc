@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/partition/labelling.h"
+#include "lib/partition/labeling.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -192,7 +192,7 @@ void bisect(const Component& c, std::vector<int>& label, int mine, int new_label
     if (l == mine && 2 * seen++ < all) l = new_label;
 }
 
-/// Turns any labelling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
+/// Turns any labeling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
 /// parts of the wrong topology bisected. `fragment`: the share of the area that a part has to have at first.
 /// Returns the parts, or 0 regions if it does not get there.
 Regions make_admissible(const Component& c, std::vector<int>& label, int seed, double fragment = 0.01) {
@@ -269,8 +269,8 @@ bool halve_tangled(const Component& c, const DistortionModel& model, std::vector
   return n > (int)regions.region.size();
 }
 
-Labelling finish(const Component& c, const DistortionModel& model, std::vector<int> label, int seed) {
-  Labelling l;
+Labeling finish(const Component& c, const DistortionModel& model, std::vector<int> label, int seed) {
+  Labeling l;
   Regions r = make_admissible(c, label, seed);
   for (int round = 0; round < 4 && halve_tangled(c, model, label, r, seed); ++round)
     r = make_admissible(c, label, seed);
@@ -312,11 +312,11 @@ std::vector<int> two_sides(const Component& c, Vec3 axis) {
   return label;
 }
 
-/// Tries several numbers of parts, balances and seeds, and keeps the best labelling.
-Labelling search(const Component& c, bool homology, int seed) {
+/// Tries several numbers of parts, balances and seeds, and keeps the best labeling.
+Labeling search(const Component& c, bool homology, int seed) {
   const int n = (int)c.mesh.tris.size();
   // Joining neighbors afterwards makes the number of parts asked for uncritical: about G + 2 does best. On
-  // a large surface the trials end with a labelling that is good enough
+  // a large surface the trials end with a labeling that is good enough
   const int genus = c.whole.genus();
   const int most_trials = std::clamp(500000 / (n * (1 + genus / 16)), 3, 12),
             enough = c.of_fine > 0 ? 2 + genus / 2
@@ -339,30 +339,30 @@ Labelling search(const Component& c, bool homology, int seed) {
     cut_label(c, label, 0, ks[trial % ks.size()], balances[trial / ks.size() % 3], seed + trial, 1);
     return label;
   };
-  Labelling best;
+  Labeling best;
   for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.charts > enough);
        tried += batch) {
-    Labelling found[batch];
+    Labeling found[batch];
     auto try_one = [&](int i) { found[i] = finish(c, model, candidate(tried + i), seed + tried + i); };
     if (n > worth_threads)
       parallel_for(batch, try_one);
     else
       for (int i = 0; i < batch; ++i) try_one(i);
-    for (Labelling& l : found)
+    for (Labeling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     add_progress(c.share * batch / (most_trials + sides));
   }
   if (genus > 0 && (homology || best.charts > genus + 2)) {
     const auto loops = handle_loops({c.mesh, c.opposite}, genus);
     if ((int)loops.size() == genus) {
-      Labelling l = finish(c, model, label_by_sides({c.mesh, c.opposite}, loops), seed);
+      Labeling l = finish(c, model, label_by_sides({c.mesh, c.opposite}, loops), seed);
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     }
   }
   return best;
 }
 
-/// What all but the labelling of a component needs; once.
+/// What all but the labeling of a component needs; once.
 void weigh(Component& c) {
   if (!c.weight.empty()) return;
   c.weight = cut_weights({c.mesh, c.opposite, c.model});
@@ -389,7 +389,7 @@ std::vector<int> refine_labels(const Component& c, const Coarse& coarse, const s
 
 }  // namespace
 
-bool Labelling::operator<(const Labelling& o) const {
+bool Labeling::operator<(const Labeling& o) const {
   return std::tie(charts, cost) < std::tie(o.charts, o.cost);
 }
 
@@ -403,7 +403,7 @@ Component make_component(ConnectedPart part, const Region& whole) {
   return c;
 }
 
-Labelling best_labelling(Component& c, bool homology, int seed) {
+Labeling best_labeling(Component& c, bool homology, int seed) {
   constexpr int enough = 8000, a_handle = 600, most = 30000, at_most = 8;  // triangles; of them for one
   constexpr double worth = 2;
   constexpr double most_turn = 60 * 3.14159265358979 / 180;
@@ -411,7 +411,7 @@ Labelling best_labelling(Component& c, bool homology, int seed) {
   Coarse coarse;
   if (n > 2 * least)
     coarse = coarsen({c.mesh, c.opposite, c.model}, std::clamp(n / at_most, least, most), most_turn);
-  Labelling l;
+  Labeling l;
   if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
     ConnectedPart part;
     static_cast<Mesh&>(part) = coarse;
@@ -439,7 +439,7 @@ Labelling best_labelling(Component& c, bool homology, int seed) {
                      : search(c, homology, seed);
 }
 
-void bound_faces(Component& c, Labelling& l, int max_faces, int seed) {
+void bound_faces(Component& c, Labeling& l, int max_faces, int seed) {
   weigh(c);
   const int limit = std::max(1, (int)(0.9 * max_faces));
   for (int round = 0; round < 60; ++round) {

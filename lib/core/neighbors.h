@@ -9,9 +9,9 @@
 namespace meshpipe {
 
 /// The vertices at the other ends of the edges at each vertex. Linear.
-struct Neighbours {
+struct Neighbors {
   std::vector<int> start, vertex;  ///< vertex[start[v]..start[v+1]): inner ones twice
-  explicit Neighbours(const Mesh& mesh) : start(mesh.points.size() + 1, 0), vertex(6 * mesh.tris.size()) {
+  explicit Neighbors(const Mesh& mesh) : start(mesh.points.size() + 1, 0), vertex(6 * mesh.tris.size()) {
     for (const Tri& t : mesh.tris)
       for (int v : t) start[v + 1] += 2;
     std::partial_sum(start.begin(), start.end(), start.begin());
