@@ -48,13 +48,13 @@ void lower_to_curved(const Surface& result, const Surface& reference, std::vecto
 }
 
 /// Finds the triangles that sharp corners of the reference force to be needles.
-void find_needles(Findings& f, const Surface& result, const Surface& reference) {
+void find_needles(Findings& f, const Connectivity& result, const Surface& reference) {
   f.worst_unforced = f.quality.worst;
   if (!(f.quality.kappa_min <= 0.1) || !f.mesh.sound() || !f.reference.sound()) return;
   const std::vector<int> opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
   const std::vector<std::uint8_t> none;
   const auto& model = reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : none;
-  f.forced = forced_needles(result, f.quality.kappas, needle_corners({reference, opposite, model}));
+  f.forced = forced_needles(result, f.quality.kappas, {reference, opposite, model});
   f.worst_unforced = -1;
   for (int t = 0; t < (int)f.forced.size(); ++t)
     if (!f.forced[t] && (f.worst_unforced < 0 || f.quality.kappas[t] < f.quality.kappas[f.worst_unforced]))
@@ -185,7 +185,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
   add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
   f.boundary = curve_distance(reference_curves, curves) / unit;
-  find_needles(f, result, given);
+  find_needles(f, mesh, given);
   f.kappa_off_corners = f.quality.kappa_min;
   f.worst_off_corners = f.quality.worst;
   if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);

@@ -2,6 +2,8 @@
 #include "lib/check/needles.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lib/core/bvh.h"
@@ -15,7 +17,10 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double needle_angle = 3 * degree;
 constexpr double sharp_angle = 40 * degree;  ///< below it no good triangle fits between two feature edges
 constexpr float needle_kappa = 0.1F;         ///< the default limit of the contract
-constexpr double touching = 0.1;  ///< of a triangle's longest edge: a corner this close touches the triangle
+constexpr double touching = 0.1;  ///< of a triangle's longest edge: a vertex this close stands for the corner
+/// Of the isosceles triangle's kappa, what a needle needs. kappa falls as the sine of the base angles, so the
+/// base may lean by 60 degrees; and no triangle of a sector that two share is worse.
+constexpr double lean = 0.5;
 
 bool is_feature(const Connectivity& s, int h) { return s.is_border(h) || s.is_model(h); }
 
@@ -25,75 +30,84 @@ double corner_angle(const Connectivity& s, int h) {
   return angle(s.point(s.to(h)) - p, s.point(s.apex(h)) - p);
 }
 
+double longest_edge(const Mesh& mesh, int t) {
+  return std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
+}
+
+/// The corners of a surface as a tree: a degenerate triangle for each.
+Mesh corner_points(const Connectivity& surface, const std::vector<Sector>& sectors) {
+  Mesh points;
+  for (const Sector& s : sectors) {
+    const int n = (int)points.points.size();
+    points.points.push_back(surface.point(surface.from(s.first)));
+    points.tris.push_back({n, n, n});
+  }
+  return points;
+}
+
+/// Pairs each sector of the result with the nearest corner of the reference of its kind; of those that have
+/// the same corner only the nearest stays. Returns the corner's angle per sector, negative: none.
+std::vector<double> angles_of_corners(const Connectivity& result, const std::vector<Sector>& sectors,
+                                      const Connectivity& reference, bool whole) {
+  std::vector<double> angles(sectors.size(), -1), distance(sectors.size());
+  std::vector<Sector> corners = needle_sectors(reference);
+  std::erase_if(corners, [&](const Sector& s) { return s.whole != whole; });
+  if (corners.empty()) return angles;
+  const Mesh points = corner_points(reference, corners);
+  const Bvh tree(points);
+  std::vector<int> nearest(sectors.size(), -1);
+  std::vector<double> least(corners.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < sectors.size(); ++i) {
+    if (sectors[i].whole != whole) continue;
+    const auto hit = tree.nearest(result.point(result.from(sectors[i].first)));
+    if (hit.distance > touching * longest_edge(result.mesh, sectors[i].first / 3)) continue;
+    nearest[i] = hit.place.face;
+    distance[i] = hit.distance;
+    least[nearest[i]] = std::min(least[nearest[i]], hit.distance);
+  }
+  for (std::size_t i = 0; i < sectors.size(); ++i)
+    if (nearest[i] >= 0 && distance[i] <= least[nearest[i]]) angles[i] = corners[nearest[i]].apex();
+  return angles;
+}
+
 }  // namespace
 
-std::vector<NeedleCorner> needle_corners(const Connectivity& surface) {
-  std::vector<NeedleCorner> corners;
+std::vector<Sector> needle_sectors(const Connectivity& surface, double scale) {
+  std::vector<Sector> sectors;
   for (int h = 0; h < surface.n_half_edges(); ++h) {
     const bool bounded = is_feature(surface, h);
-    const double limit = bounded ? needle_angle : 3 * needle_angle;
-    double sum = corner_angle(surface, h);
+    const double limit = scale * (bounded ? needle_angle : 3 * needle_angle);
+    Sector s{h, 1, corner_angle(surface, h), !bounded};
     int first = h;
     bool closed = false;
-    for (int g = h; sum < limit && !is_feature(surface, prev(g)) && !closed;) {
+    for (int g = h; s.angle < limit && !is_feature(surface, prev(g)) && !closed;) {
       g = surface.opposite[prev(g)];
       first = std::min(first, g);
       closed = g == h;
-      if (!closed) sum += corner_angle(surface, g);
+      if (!closed) s.angle += corner_angle(surface, g), ++s.triangles;
     }
-    // a fan between feature edges is found from its first edge, a closed one from its smallest half-edge
-    if (sum < limit && (bounded || (closed && first == h)))
-      corners.push_back({surface.point(surface.from(h)), bounded ? sum : sum / 3});
+    // a sector is found from its first edge, a whole one from its smallest half-edge
+    if (s.angle < limit && (bounded || (closed && first == h))) sectors.push_back(s);
   }
-  return corners;
+  return sectors;
 }
 
-std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kappas,
-                                 const std::vector<NeedleCorner>& corners) {
-  std::vector<char> forced(mesh.tris.size(), 0);
-  std::vector<int> bad;
-  for (int t = 0; t < (int)kappas.size(); ++t)
-    if (!(kappas[t] > needle_kappa)) bad.push_back(t);
-  if (bad.empty() || corners.empty()) return forced;
-  auto point = [&](int t, int i) { return mesh.points[mesh.tris[t][i]]; };
-  std::vector<double> length(bad.size());
-  std::vector<std::pair<int, int>> uses;  // vertex, place in `bad`
-  Mesh boxes;  // the surroundings of each bad triangle, as a segment between opposite corners of its box
-  for (int i = 0; i < (int)bad.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      length[i] = std::max(length[i], norm(point(bad[i], (k + 1) % 3) - point(bad[i], k)));
-      uses.push_back({mesh.tris[bad[i]][k], i});
-    }
-    const Box box = box_of(mesh, bad[i]);
-    const double reach = touching * length[i];
-    boxes.points.push_back(box.lo - Vec3{reach, reach, reach});
-    boxes.points.push_back(box.hi + Vec3{reach, reach, reach});
-    boxes.tris.push_back({2 * i, 2 * i + 1, 2 * i + 1});
-  }
-  std::sort(uses.begin(), uses.end());
-  const Bvh tree(boxes);
-  std::vector<int> reached, seen(bad.size(), -1);
-  for (int corner = 0; corner < (int)corners.size(); ++corner) {
-    const Vec3 p = corners[corner].point;
-    reached.clear();
-    tree.overlapping({p, p}, [&](int i) {
-      const Vec3 a = point(bad[i], 0), b = point(bad[i], 1), c = point(bad[i], 2);
-      const auto w = closest_on_triangle(p, a, b, c);
-      if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= touching * length[i])
-        reached.push_back(i), seen[i] = corner;
-    });
-    for (std::size_t k = 0; k < reached.size(); ++k) {
-      const int t = bad[reached[k]];
-      forced[t] = 1;
-      for (int v : mesh.tris[t])
-        for (auto at = std::lower_bound(uses.begin(), uses.end(), std::pair{v, -1});
-             at != uses.end() && at->first == v; ++at) {
-          const int i = at->second;
-          const Vec3 center = 1.0 / 3 * (point(bad[i], 0) + point(bad[i], 1) + point(bad[i], 2));
-          if (seen[i] == corner || norm(center - p) * corners[corner].angle > length[i]) continue;
-          seen[i] = corner;
-          reached.push_back(i);
-        }
+std::vector<char> forced_needles(const Connectivity& result, const std::vector<float>& kappas,
+                                 const Connectivity& reference) {
+  std::vector<char> forced(kappas.size(), 0);
+  // at twice the angle, even a leaning triangle is better than a needle
+  const std::vector<Sector> sectors = needle_sectors(result, 1 / lean);
+  for (const bool whole : {false, true}) {
+    const std::vector<double> angles = angles_of_corners(result, sectors, reference, whole);
+    for (std::size_t i = 0; i < sectors.size(); ++i) {
+      if (angles[i] < 0) continue;
+      // half the sine of the wider angle: that of the corner, or of what the result has there
+      const double s = std::sin(0.5 * std::max(angles[i], sectors[i].apex()));
+      const double least = lean * 4 * s * (1 - s);
+      for (int g = sectors[i].first, k = 0; k < sectors[i].triangles; ++k) {
+        if (kappas[g / 3] <= needle_kappa && kappas[g / 3] >= least) forced[g / 3] = 1;
+        g = result.opposite[prev(g)];
+      }
     }
   }
   return forced;

@@ -7,20 +7,28 @@
 
 namespace meshpipe {
 
-/// A corner so sharp that kappa of a triangle there is 0.1 at best.
-struct NeedleCorner {
-  Vec3 point;
-  double angle;  ///< radians between the feature edges; without any, a third of the whole angle
+/// The triangles between two successive feature edges (borders and model edges) at a vertex; or all of a
+/// vertex without any.
+struct Sector {
+  int first;      ///< half-edge from the vertex, the first counter-clockwise
+  int triangles;  ///< their number
+  double angle;   ///< radians over the surface
+  bool whole;     ///< the vertex has no feature edges
+
+  /// The apex of the isosceles triangle that fills the sector; three of them where it is whole.
+  double apex() const { return whole ? angle / 3 : angle; }
 };
 
-/// Finds the vertices where feature edges (borders and model edges) meet at less than 3 degrees over the
-/// surface, or that have none and less than 9 degrees in all.
-std::vector<NeedleCorner> needle_corners(const Connectivity& surface);
+/// Finds the sectors in which kappa is 0.1 at best, times `scale` in their angle: those of less than 3
+/// degrees, or 9 where they are whole.
+std::vector<Sector> needle_sectors(const Connectivity& surface, double scale = 1);
 
-/// Flags the triangles with kappa up to 0.1 that sharp corners of the surface force to be so: connected to
-/// the corner by others like them, and where the two feature edges are closer than the triangle is long.
-std::vector<char> forced_needles(const Mesh& mesh, const std::vector<float>& kappas,
-                                 const std::vector<NeedleCorner>& corners);
+/// Flags the triangles with kappa up to 0.1 that corners of the reference force to be so: in a needle sector
+/// of the vertex that stands for the corner, and with at least half the kappa of the isosceles triangle of
+/// its angle. A strip beyond the corner is not forced: two triangles across it may be as small as it is
+/// narrow.
+std::vector<char> forced_needles(const Connectivity& result, const std::vector<float>& kappas,
+                                 const Connectivity& reference);
 
 /// Returns the smallest kappa of the triangles two rings away from every sharp feature corner (feature edges
 /// meet at less than 40 degrees over the surface); 1 if there are none. `worst` becomes the triangle, or -1.

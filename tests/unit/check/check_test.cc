@@ -127,7 +127,7 @@ TEST(check, sharp_corners_do_not_count) {
   EXPECT_GT(k, q.kappa_min);
 }
 
-//   3-------2    a needle 0 1 2 of 1 degree, whose other side is a large triangle, and the pyramid of a spike
+//   3-------2    a needle 0 1 2 of 1 degree, whose other side is a large triangle
 //    \    /|
 //     \ /  |
 //      0---1
@@ -136,24 +136,55 @@ TEST(check, needles_at_sharp_tips_are_forced) {
   const Mesh m{{{0, 0, 0}, {1, 0, 0}, {1, thin, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   const Soundness c = soundness_of(m);
   // without a mark the angle at 0 is right, with one on the edge 2-0 it is a degree
-  EXPECT_TRUE(needle_corners({m, c.opposite}).empty());
+  EXPECT_TRUE(needle_sectors({m, c.opposite}).empty());
   const std::vector<std::uint8_t> model{4, 1};
-  const std::vector<NeedleCorner> sharp = needle_corners({m, c.opposite, model});
+  const Connectivity marked{m, c.opposite, model};
+  const std::vector<Sector> sharp = needle_sectors(marked);
   ASSERT_EQ(sharp.size(), 1u);
   EXPECT_NEAR(sharp[0].angle, 1 / 57.2957795, 1e-6);
   const std::vector<float> kappas{0.03F, 0.8F};
-  EXPECT_EQ(forced_needles(m, kappas, sharp), (std::vector<char>{1, 0}));
-  EXPECT_EQ(forced_needles(m, kappas, {{{5, 5, 5}, 0.01}}), (std::vector<char>{0, 0}));
+  EXPECT_EQ(forced_needles(marked, kappas, marked), (std::vector<char>{1, 0}));
+  // the isosceles triangle of one degree has 0.0346: no corner forces this
+  EXPECT_EQ(forced_needles(marked, {0.016F, 0.8F}, marked), (std::vector<char>{0, 0}));
+  // nor does a corner elsewhere, or none
+  Mesh far = m;
+  for (Vec3& p : far.points) p.x += 0.3;
+  EXPECT_EQ(forced_needles(marked, kappas, {far, c.opposite, model}), (std::vector<char>{0, 0}));
+  EXPECT_EQ(forced_needles(marked, kappas, {m, c.opposite}), (std::vector<char>{0, 0}));
+}
 
+//  0 <: strip of 8 triangles that opens by a degree: only the first is forced to be as it is
+TEST(check, strips_beyond_a_sharp_tip_are_not_forced) {
+  Mesh m{{{0, 0, 0}}, {}};
+  const double opening = 1 / 57.29577951308232;
+  for (int i = 1; i <= 5; ++i) {
+    m.points.push_back({(double)i, 0, 0});
+    m.points.push_back({(double)i, i * opening, 0});
+  }
+  m.tris.push_back({0, 1, 2});
+  for (int i = 1; i < 5; ++i) {
+    const int a = 2 * i - 1;
+    m.tris.push_back({a, a + 2, a + 3});
+    m.tris.push_back({a, a + 3, a + 1});
+  }
+  const Soundness c = soundness_of(m);
+  const Quality q = quality_of({m, c.opposite}, {});
+  std::vector<char> first(m.tris.size(), 0);
+  first[0] = 1;
+  EXPECT_EQ(forced_needles({m, c.opposite}, q.kappas, {m, c.opposite}), first);
+}
+
+TEST(check, needles_of_a_spike_are_forced) {
   Mesh spike{{{0, 0, 100}}, {}};
   for (int i = 0; i < 6; ++i) spike.points.push_back({std::cos(i * 1.0472), std::sin(i * 1.0472), 0});
   for (int i = 0; i < 6; ++i) spike.tris.push_back({0, 1 + i, 1 + (i + 1) % 6});
-  const Soundness of_spike = soundness_of(spike);
-  const std::vector<NeedleCorner> top = needle_corners({spike, of_spike.opposite});
-  ASSERT_EQ(top.size(), 1u);
-  EXPECT_EQ(forced_needles(spike, std::vector<float>(6, 0.01F), top), std::vector<char>(6, 1));
+  const Soundness c = soundness_of(spike);
+  const Connectivity cone{spike, c.opposite};
+  ASSERT_EQ(needle_sectors(cone).size(), 1u);
+  EXPECT_EQ(forced_needles(cone, quality_of(cone, {}).kappas, cone), std::vector<char>(6, 1));
+  EXPECT_EQ(forced_needles(cone, std::vector<float>(6, 0.01F), cone), std::vector<char>(6, 0));
   spike.points[0].z = 3;
-  EXPECT_TRUE(needle_corners({spike, of_spike.opposite}).empty());
+  EXPECT_TRUE(needle_sectors(cone).empty());
 }
 
 TEST(check, weld_joins_what_is_at_one_place) {
