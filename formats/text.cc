@@ -26,6 +26,19 @@ std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
 
+bool is_utf8(std::string_view text) {
+  int following = 0;  // bytes that still belong to the current character
+  for (unsigned char c : text) {
+    if ((c & 0xC0) == 0x80) {
+      if (following-- == 0) return false;
+    } else {
+      if (following > 0 || c > 0xF4) return false;
+      following = c < 0x80 ? 0 : c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
+    }
+  }
+  return following == 0;
+}
+
 }  // namespace
 
 Text::Text(std::string_view bytes, std::string where, char comment)
@@ -268,6 +281,25 @@ void append_point(std::string& out, const char* before, Vec3 p) {
   out += ' ';
   append(out, p.z);
   out += '\n';
+}
+
+std::string xml_escaped(std::string_view text) {
+  const bool utf8 = is_utf8(text);
+  std::string out;
+  for (char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 127 && !utf8)  // then it can only be Latin 1
+      out += {static_cast<char>(0xC0 | byte >> 6), static_cast<char>(0x80 | (byte & 63))};
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
 }
 
 }  // namespace meshpipe

@@ -80,6 +80,8 @@ std::string percent_encode(std::string_view text);
 std::string percent_decode(std::string_view text);
 /// Returns a name for formats with one name per line: control characters become blanks, none at either end.
 std::string one_line(std::string_view name);
+/// Returns text for an attribute or element of XML, in UTF-8: what is not is taken for Latin 1.
+std::string xml_escaped(std::string_view text);
 
 /// Appends the shortest text that reads back as the same number.
 void append(std::string& out, double value);

@@ -59,6 +59,21 @@ bool is_written_in_place(const std::string& path, const struct stat& info) {
          path.starts_with("/proc/");
 }
 
+/// Returns where a path leads: links are followed, also to a file that is not there yet, so that writing
+/// keeps them. Paths that are written in place stay.
+std::string end_of_links(const std::string& path) {
+  constexpr int most_links = 40;  // as Linux follows
+  struct stat info {};
+  std::filesystem::path end = path;
+  std::error_code none;
+  for (int i = 0; i < most_links; ++i) {
+    if (::stat(end.c_str(), &info) == 0 && is_written_in_place(end, info)) return path;
+    if (!std::filesystem::is_symlink(end, none)) break;
+    end = end.parent_path() / std::filesystem::read_symlink(end, none);
+  }
+  return end.string();
+}
+
 }  // namespace
 
 void FileBytes::reserve(std::size_t more) {
@@ -116,11 +131,12 @@ void write_all(int fd, std::string_view bytes, const std::string& where) {
   }
 }
 
-void write_atomically(const std::string& path, const std::function<void(const Sink&)>& produce) {
-  if (path == "-" || path == "/dev/stdout") {
+void write_atomically(const std::string& name, const std::function<void(const Sink&)>& produce) {
+  if (name == "-" || name == "/dev/stdout") {
     produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
     return;
   }
+  const std::string path = end_of_links(name);
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
   std::string partial = exists && is_written_in_place(path, info) ? "" : path + ".XXXXXX";
@@ -147,15 +163,26 @@ void write_atomically(const std::string& path, const std::function<void(const Si
   }
 }
 
-void expect_writable(const std::string& path) {
-  if (path == "-") return;
+void expect_writable(const std::string& name) {
+  if (name == "-") return;
+  const std::string path = end_of_links(name);
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (!exists && errno == ELOOP) throw CannotWrite(path + ": " + last_error());
   if (exists && S_ISDIR(info.st_mode)) throw CannotWrite(path + ": " + std::strerror(EISDIR));
   const std::size_t slash = path.rfind('/');
   const std::string directory = slash == path.npos ? "." : path.substr(0, slash + 1);
   const std::string& target = exists && is_written_in_place(path, info) ? path : directory;
   if (::access(target.c_str(), W_OK) != 0) throw CannotWrite(path + ": " + last_error());
+}
+
+void expect_readable(const std::string& path) {
+  if (path != "-" && ::access(path.c_str(), R_OK) != 0) throw BadInput(path + ": " + last_error());
+}
+
+bool can_be_read_again(const std::string& path) {
+  struct stat info {};
+  return path != "-" && (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode));
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
@@ -168,7 +195,8 @@ bool is_same_file(const std::string& a, const std::string& b) {
          (!std::filesystem::exists(a, error) || std::filesystem::is_regular_file(a, error));
 }
 
-void remove_file(const std::string& path) {
+void remove_file(const std::string& name) {
+  const std::string path = end_of_links(name);
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && !is_written_in_place(path, info)) ::unlink(path.c_str());
 }

@@ -41,6 +41,12 @@ void write_atomically(const std::string& path, const std::function<void(const Si
 /// Checks before the work that write_atomically can write the file. Throws CannotWrite.
 void expect_writable(const std::string& path);
 
+/// Checks before the work that a file can be opened, without opening it: a pipe can be read only once.
+/// Throws: BadInput.
+void expect_readable(const std::string& path);
+/// Returns whether a path is no pipe or device, from which the same bytes cannot be read twice.
+bool can_be_read_again(const std::string& path);
+
 /// Returns whether writing to one path overwrites what was written to the other; devices may be named twice.
 bool is_same_file(const std::string& a, const std::string& b);
 

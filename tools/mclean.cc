@@ -4,6 +4,7 @@
 #include "formats/stream/model_edges.h"
 #include "lib/clean/clean.h"
 #include "lib/core/number.h"
+#include "lib/size/size.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -11,23 +12,18 @@ using namespace meshpipe;
 namespace {
 
 struct Options : CleanOptions {
-  std::string within = "auto", most = "all", how = "pair", offending;
+  std::string within = "auto", most = "all", how = "pair", data, offending;
 };
 
-template <class Number>
-bool parse(std::string_view text, Number& value) {
-  const auto [at, error] = meshpipe::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && at == text.data() + text.size();
-}
-
-/// Parses a length, or a percentage of the bounding box's diagonal; negative for "auto".
-double tolerance(std::string_view text, const Mesh& mesh) {
-  double value = -1;
-  if (text == "auto") return value;
-  const bool percent = text.ends_with('%');
-  if (!parse(text.substr(0, text.size() - percent), value) || !std::isfinite(value) || value < 0)
-    throw BadUsage("--weld: expected auto, a length or a percentage, found '" + std::string(text) + "'");
-  return percent ? value / 100 * diagonal(mesh) : value;
+/// Throws: BadUsage for values that no surface makes valid.
+void check(Options& o) {
+  if (o.within != "auto" && !parse_length(o.within, 1))
+    throw BadUsage("--weld: expected auto, a length or a percentage, found '" + o.within + "'");
+  if (o.most == "all") return;
+  const char* end = o.most.data() + o.most.size();
+  const auto [at, error] = meshpipe::from_chars(o.most.data(), end, o.keep_components);
+  if (error != std::errc() || at != end || o.keep_components <= 0)
+    throw BadUsage("--keep-components: expected a number or all, found '" + o.most + "'");
 }
 
 /// Fills the report of --json; of a surface that is refused, with what was found until then.
@@ -60,14 +56,16 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
   for (const Nonorientable& c : r.nonorientable) io.say("dropped: " + describe(c));
 }
 
-/// Gives a patch that became several its name on each of them.
-void name_sheets(Stream& stream, const CleanReport& report) {
+/// Names the patches that were added: one that became several has its name on each of them.
+void name_patches(Stream& stream, const CleanReport& report) {
   int number = 1, of = -1;
   for (const auto& [patch, was] : report.sheet_patches) {
     number = std::exchange(of, was) == was ? number + 1 : 2;
     if (const std::string name = stream.name_of(2, was); !name.empty())
       stream.names.push_back({2, patch, name + "-" + std::to_string(number)});
   }
+  for (std::size_t i = 0; i < report.cap_patches.size(); ++i)
+    stream.names.push_back({2, report.cap_patches[i], "cap-" + std::to_string(i + 1)});
 }
 
 void write_offending(const Io& io, const std::string& path, const CleanReport& report, const Mesh& input) {
@@ -94,26 +92,31 @@ int main(int argc, char** argv) {
             ->type_name("auto|TOL");
         app.add_option("--keep-components", o.most, "keep the N largest components by area (default all)")
             ->type_name("N|all");
-        app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges, 3 to 1000")
-            ->check(CLI::Range(3, 1000))
+        app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
+            ->check(CLI::Range(3, 100000))
             ->type_name("N");
+        app.add_flag("--cap-patches", o.cap_patches,
+                     "give each filled hole a patch of its own, named cap-1 ...");
         app.add_flag("--drop-nonorientable", o.drop_nonorientable,
                      "drop components that are not orientable, instead of failing with 4");
         app.add_option("--sheets", o.how,
                        "edges of more than two triangles: pair (default, by solids), split or keep")
             ->check(CLI::IsMember({"pair", "split", "keep"}));
+        app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
+            ->type_name("NAME")
+            ->group("Reports");
         app.add_option("--culprits", o.offending, "write the offending triangles to this file")
             ->type_name("FILE")
             ->group("Reports");
       },
       [&](Io& io) {
-        if (o.most != "all" && !(parse(o.most, o.keep_components) && o.keep_components > 0))
-          throw BadUsage("--keep-components: expected a number or all, found '" + o.most + "'");
+        check(o);
         o.sheets = o.how == "keep" ? o.keep : o.how == "split" ? o.split : o.pair;
         if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
         Stream stream = io.read();
         Surface& s = stream.surface;
-        o.weld = tolerance(o.within, s);
+        if (!o.data.empty()) expect_data(s, o.data);
+        o.weld = o.within == "auto" ? -1 : *parse_length(o.within, diagonal(s));
         const Mesh input = o.offending.empty() ? Mesh{} : s;
         // lines of a foreign file, by their place: vertices are about to be renumbered
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
@@ -129,7 +132,7 @@ int main(int argc, char** argv) {
           throw;
         }
         report_faults();
-        name_sheets(stream, report);
+        name_patches(stream, report);
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {

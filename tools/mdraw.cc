@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
     app.add_option("--color", color, "plain, part, patch or kappa (default plain)")
         ->check(CLI::IsMember({"plain", "part", "patch", "kappa"}))
         ->type_name("BY");
-    app.add_option("--beside", others, "more meshes, drawn to the right in the same way")->type_name("FILE");
+    app.add_option("--beside", others, "more meshes, drawn to the right at the same scale and place")
+        ->type_name("FILE");
     app.add_option("--azimuth", view.azimuth,
                    "direction of the viewer around the z axis, degrees (default 30)");
     app.add_option("--elevation", view.elevation, "height of the viewer, degrees (default 20)");
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
     app.add_option("--height", height, "pixels (default 800)")->check(CLI::Range(16, 8192));
     app.add_flag("--no-edges", smooth, "leave the mesh lines out");
   };
+  Frame frame;
   auto picture = [&](const Stream& s) {
     const Mesh& mesh = s.surface;
     std::vector<Color> colors(mesh.tris.size(), Color{235, 225, 205});
@@ -41,12 +43,16 @@ int main(int argc, char** argv) {
     }
     std::vector<std::uint8_t> strong;
     if (s.surface.face.has("model")) strong = s.surface.face.get<std::uint8_t>("model");
-    return draw_mesh(mesh, colors, strong, view, width, height);
+    return draw_mesh(mesh, colors, strong, view, frame, width, height);
   };
   auto body = [&](Io& io) {
     view.edges = !smooth;
-    std::vector<Image> images{picture(io.read())};
-    for (const std::string& path : others) images.push_back(picture(io.read(path)));
+    std::vector<Stream> meshes;
+    meshes.push_back(io.read());
+    for (const std::string& path : others) meshes.push_back(io.read(path));
+    for (const Stream& s : meshes) add_to_frame(frame, s.surface, view);
+    std::vector<Image> images;
+    for (const Stream& s : meshes) images.push_back(picture(s));
     io.write_bytes(write_png(side_by_side(images)));
   };
   return run_tool(argc, argv, "mdraw",

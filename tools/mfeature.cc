@@ -8,6 +8,7 @@
 #include "lib/core/triangle_count.h"
 #include "lib/feature/feature.h"
 #include "tools/common.h"
+#include "tools/files.h"
 
 using namespace meshpipe;
 
@@ -98,7 +99,7 @@ void add_options(CLI::App& app, Options& o) {
   auto* size =
       app.add_option("--size", o.size, "target edge length")->check(positive_number())->type_name("H");
   app.add_option("--triangles", o.triangles, "target number of triangles")
-      ->check(positive_number())
+      ->check(count_between(1, 715827882))
       ->excludes(size)
       ->type_name("N");
   app.add_option("--merge", o.group_file, "make one patch of each group of patches in this file")
@@ -112,6 +113,8 @@ void add_options(CLI::App& app, Options& o) {
 
 void mark(Io& io, Options& o) {
   parse_angles(o.angles, o);
+  if (!o.group_file.empty()) expect_readable(o.group_file);
+  if (!o.edge_file.empty() && o.edge_file != "none") expect_readable(o.edge_file);
   Stream stream = io.read();
   Surface& surface = stream.surface;
   const bool asked = o.size > 0 || o.triangles > 0;

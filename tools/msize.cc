@@ -11,6 +11,7 @@
 #include "lib/numeric/expression.h"
 #include "lib/size/size.h"
 #include "tools/common.h"
+#include "tools/files.h"
 
 using namespace meshpipe;
 
@@ -29,19 +30,24 @@ Stream read_with_mesh(const Io& io, const std::string& path) {
   throw BadInput(path + ": expected its mesh next to it, a .mesh or .meshb of the same name");
 }
 
-/// Reads FILE or FILE:COLUMN; the first if a file has that name.
-SizeField read_field(const Io& io, const std::string& text) {
-  std::string path = text, column;
-  if (const std::size_t colon = text.rfind(':');
-      colon != std::string::npos && !std::filesystem::exists(text)) {
-    path = text.substr(0, colon);
-    column = text.substr(colon + 1);
+/// Splits FILE:COLUMN; into the text and nothing if a file has that name.
+std::pair<std::string, std::string> file_and_column(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, ""};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+/// Reads FILE or FILE:COLUMN into `sizes`. Returns its search tree.
+std::unique_ptr<Bvh> read_field(const Io& io, const std::string& text, SizeField& sizes) {
+  const auto [path, column] = file_and_column(text);
+  if (path.ends_with(".sol") || path.ends_with(".solb")) {
+    sizes = size_field_of(read_with_mesh(io, path), column, path);
+  } else {
+    const std::string bytes = Io::read_bytes(path);
+    sizes = is_size_table(bytes) ? read_size_table(bytes, path)
+                                 : size_field_of(read_any(bytes, path), column, path);
   }
-  if (path.ends_with(".sol") || path.ends_with(".solb"))
-    return size_field_of(read_with_mesh(io, path), column, path);
-  const std::string bytes = Io::read_bytes(path);
-  return is_size_table(bytes) ? read_size_table(bytes, path)
-                              : size_field_of(read_any(bytes, path), column, path);
+  return std::make_unique<Bvh>(sizes);
 }
 
 void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
@@ -77,7 +83,7 @@ int main(int argc, char** argv) {
     app.add_option(
            "--triangles", o.triangles,
            "as many triangles as this, spread as the other options ask (default: as many as the input had)")
-        ->check(CLI::Range(1, 715827882))
+        ->check(count_between(1, 715827882))
         ->type_name("N")
         ->excludes(fixed);
     length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
@@ -105,12 +111,12 @@ int main(int argc, char** argv) {
     if (!formula.empty())
       expression =
           std::make_unique<Expression>(formula, std::vector<std::string>{"x", "y", "z", "curvature"});
+    // before the input, since mremesh checks the options without one; but a pipe can be read only once
+    if (!field.empty() && can_be_read_again(file_and_column(field).first))
+      tree = read_field(io, field, sizes);
     Stream stream = io.read();
     Surface& s = stream.surface;
-    if (!field.empty()) {
-      sizes = read_field(io, field);
-      tree = std::make_unique<Bvh>(sizes);
-    }
+    if (!field.empty() && !tree) tree = read_field(io, field, sizes);
     o.at_curvature = expression && expression->uses("curvature");
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {

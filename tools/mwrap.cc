@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mwrap: a closed surface around any triangle soup.
-#include <charconv>
-#include <cstdio>
-
 #include "lib/core/number.h"
 #include "lib/wrap/wrap.h"
 #include "tools/common.h"
@@ -17,20 +14,12 @@ constexpr double default_alpha = 1.0 / 50, default_offset = 1.0 / 5;
 
 /// Reads a length, or a part of the bounding box's diagonal in percent.
 double length(const std::string& option, const std::string& text, double diagonal) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = from_chars(text.data(), end, value);
-  const bool percent = at + 1 == end && *at == '%';
-  if (error != std::errc() || !(percent || at == end) || !(value >= 1e-50) || !(value <= 1e50))
+  const std::optional<double> value = parse_length(text, diagonal);
+  const double given = parse_length(text, 1).value_or(0);
+  if (!value || !(given >= 1e-50) || !(given <= 1e50))
     throw BadUsage(option + ": expected a positive length or a percentage of the diagonal, found '" + text +
                    "'");
-  return percent ? value / 100 * diagonal : value;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  return *value;
 }
 
 void report(Io& io, const Mesh& soup, const WrapOptions& o, const Mesh& mesh, const WrapReport& r) {
@@ -49,11 +38,10 @@ void report(Io& io, const Mesh& soup, const WrapOptions& o, const Mesh& mesh, co
   io.say(std::to_string(soup.tris.size()) + " triangles -> " + std::to_string(mesh.points.size()) +
          " vertices, " + std::to_string(mesh.tris.size()) + " triangles, " + std::to_string(r.components) +
          (r.components == 1 ? " component" : " components") + ", genus " + std::to_string(r.genus));
-  io.say("closed, no self-intersection, the input inside; alpha " + number(o.alpha) + ", offset " +
-         number(o.offset) + ", nowhere farther than " + number(r.farthest) + " from the input");
-  io.detail("grid spacing " + number(r.spacing) + ", predicted memory " +
-            number((double)r.bytes / (1 << 20)) + " MiB, smallest distance of a vertex " +
-            number(r.clearance));
+  io.say("closed, no self-intersection, the input inside; alpha " + shown(o.alpha) + ", offset " +
+         shown(o.offset) + ", nowhere farther than " + shown(r.farthest) + " from the input");
+  io.detail("grid spacing " + shown(r.spacing) + ", predicted memory " + shown((double)r.bytes / (1 << 20)) +
+            " MiB, smallest distance of a vertex " + shown(r.clearance));
   if (r.held)
     io.detail(std::to_string(r.held) + " vertices are farther out, where the surface would meet itself");
 }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
+
+#include "lib/core/number.h"
 
 namespace meshpipe {
 namespace {
@@ -85,6 +88,30 @@ CLI::Validator positive_number() {
             return good ? std::string() : "'" + text + "' is not a positive number";
           },
           ""};
+}
+
+CLI::Validator count_between(double least, double most) {
+  return {[=](std::string& text) -> std::string {
+            double x = 0;
+            if (!CLI::detail::lexical_cast(text, x) || x != std::floor(x))
+              return "'" + text + "' is not a whole number";
+            if (x < least || x > most) {
+              char limits[64];
+              std::snprintf(limits, sizeof limits, "%.0f to %.0f", least, most);
+              return "'" + text + "' is not in the range " + limits;
+            }
+            return {};
+          },
+          ""};
+}
+
+std::optional<double> parse_length(std::string_view text, double diagonal) {
+  double value = 0;
+  const bool percent = text.ends_with('%');
+  const char* end = text.data() + text.size() - percent;
+  const auto [at, error] = from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end || !(value >= 0) || !std::isfinite(value)) return {};
+  return percent ? value / 100 * diagonal : value;
 }
 
 }  // namespace meshpipe

@@ -2,7 +2,9 @@
 // The options that every program has, and how options are shown and recorded.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace meshpipe {
 
@@ -26,5 +28,9 @@ void use_plain_help(CLI::App& app);
 
 /// Returns a check of an option's value: finite and above 0.
 CLI::Validator positive_number();
+/// Accepts whole numbers from `least` to `most`, also as 1.5e4.
+CLI::Validator count_between(double least, double most);
+/// Parses a length, or with % a part of `diagonal`; none if the text is neither, negative or infinite.
+std::optional<double> parse_length(std::string_view text, double diagonal);
 
 }  // namespace meshpipe

@@ -19,45 +19,13 @@ constexpr const char* type_name = sizeof(T) == 1   ? "UInt8"
                                   : sizeof(T) == 4 ? "Int32"
                                                    : "Float64";
 
-bool is_utf8(std::string_view text) {
-  int following = 0;  // bytes that still belong to the current character
-  for (unsigned char c : text) {
-    if ((c & 0xC0) == 0x80) {
-      if (following-- == 0) return false;
-    } else {
-      if (following > 0 || c > 0xF4) return false;
-      following = c < 0x80 ? 0 : c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
-    }
-  }
-  return following == 0;
-}
-
-std::string escaped(std::string_view text) {
-  const bool utf8 = is_utf8(text);
-  std::string out;
-  for (char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte > 127 && !utf8)  // then it can only be Latin 1
-      out += {static_cast<char>(0xC0 | byte >> 6), static_cast<char>(0x80 | (byte & 63))};
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 class Xml {
  public:
   explicit Xml(bool ascii) : ascii_(ascii) {}
 
   template <class T>
   void array(std::string_view name, int components, const T* values, std::size_t n, const char* more = "") {
-    out += std::string("<DataArray type=\"") + type_name<T> + "\" Name=\"" + escaped(name) +
+    out += std::string("<DataArray type=\"") + type_name<T> + "\" Name=\"" + xml_escaped(name) +
            "\" NumberOfComponents=\"" + std::to_string(components) + "\"" + more +
            (ascii_ ? " format=\"ascii\">\n" : " format=\"binary\">\n");
     if (ascii_) {

@@ -236,6 +236,21 @@ void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanRe
   if (options.sheets == CleanOptions::keep) mark_sheets(surface, r, report);
 }
 
+/// Gives each filled hole the next free patch. `cap` is per triangle: which hole it fills, or -1.
+void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& report) {
+  const int holes = cap.empty() ? 0 : *std::max_element(cap.begin(), cap.end()) + 1;
+  if (holes == 0) return;
+  if (!surface.face.has("patch")) surface.face.set("patch", std::vector<int>(surface.tris.size(), 1));
+  std::vector<int>& patch = surface.face.get<int>("patch");
+  const int most = *std::max_element(patch.begin(), patch.end());
+  if (most > std::numeric_limits<int>::max() - holes)
+    throw NotAdmissible("patch " + std::to_string(most) + " leaves no numbers for " + std::to_string(holes) +
+                        " more patches");
+  for (int i = 1; i <= holes; ++i) report.cap_patches.push_back(most + i);
+  for (std::size_t t = 0; t < cap.size(); ++t)
+    if (cap[t] >= 0) patch[t] = report.cap_patches[cap[t]];
+}
+
 }  // namespace
 
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
@@ -259,6 +274,7 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     ++report.flipped;
     record(report, r.face[t], Fault::misoriented);
   }
+  const std::vector<int> cap = options.cap_patches ? caps_of(r) : std::vector<int>();
   for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
   sort_offending(report);
   if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));
@@ -267,6 +283,7 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     report.copies = report.opened_edges = 0;
   }
   take_over(r, surface, options, report);
+  label_caps(surface, cap, report);
 }
 
 CleanReport clean(Surface& surface, const CleanOptions& options) {

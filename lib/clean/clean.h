@@ -16,6 +16,7 @@ struct CleanOptions {
   bool drop_nonorientable = false;  ///< leave such components out instead of refusing the surface
   int keep_components = 0;          ///< the largest by area; 0: all
   int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
+  bool cap_patches = false;         ///< give each filled hole a patch of its own
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices.
   enum Sheets { pair, split, keep } sheets = pair;
@@ -64,6 +65,7 @@ struct CleanReport {
   int dropped_components = 0, dropped_triangles = 0;  ///< by keep_components
   HoleCounts holes;
   std::vector<std::array<int, 2>> sheet_patches;  ///< by sheets = keep: the new patch, and the one it was
+  std::vector<int> cap_patches;                   ///< the patch of each filled hole, if they have their own
   std::vector<Nonorientable> nonorientable;       ///< components dropped
   std::vector<OffendingFace> offending;           ///< by fault, then by triangle
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was

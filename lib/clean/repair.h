@@ -95,8 +95,12 @@ struct FlatCounts {
 FlatCounts remove_flat(Repair& r, const std::vector<Vec3>& points);
 
 /// Fills border loops of at most `most` edges by the triangulation of least area (cubic in the number of
-/// edges). The new triangles come last and copy the columns of the first neighbor of their loop.
+/// edges); from those of more than 1000, ears are cut first. The new triangles come last and copy the columns
+/// of the first neighbor of their loop.
 HoleCounts fill_holes(Repair& r, const std::vector<Vec3>& points, int most);
+
+/// Returns per triangle the number of the filled hole that it belongs to, -1: to none.
+std::vector<int> caps_of(const Repair& r);
 
 /// Marks edges between sheets in face column `model`, and gives each sheet that meets others a patch of its
 /// own (reported). `apart` has the connectivity of the sheets. Returns whether anything was changed.

@@ -53,6 +53,7 @@ std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& option
       {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
       {"holes_filled", r.holes.filled, "holes filled"},
       {"hole_triangles", r.holes.triangles, "triangles added in holes"},
+      {"cap_patches", (int)r.cap_patches.size(), "patches added, one for each filled hole"},
       {"holes_left", r.holes.left,
        "holes left open, along non-manifold edges or where filling would double an edge"},
   };

@@ -19,20 +19,24 @@ Vec3 seen(Vec3 p, const View& v) {
 
 }  // namespace
 
-Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
-                const View& view, int width, int height) {
-  const int w = width * samples, h = height * samples;
-  std::vector<Vec3> p(mesh.points.size());
-  Vec3 lo{1e300, 1e300, 1e300}, hi{-1e300, -1e300, -1e300};
+void add_to_frame(Frame& frame, const Mesh& mesh, const View& view) {
   for (const Tri& t : mesh.tris)
     for (int v : t) {
-      p[v] = seen(mesh.points[v], view);
-      lo = {std::min(lo.x, p[v].x), std::min(lo.y, p[v].y), 0};
-      hi = {std::max(hi.x, p[v].x), std::max(hi.y, p[v].y), 0};
+      const Vec3 p = seen(mesh.points[v], view);
+      frame = {std::min(frame.left, p.x), std::min(frame.low, p.y), std::max(frame.right, p.x),
+               std::max(frame.high, p.y)};
     }
-  const double fit = std::max({(hi.x - lo.x) / w, (hi.y - lo.y) / h, 1e-300});
+}
+
+Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
+                const View& view, const Frame& frame, int width, int height) {
+  const int w = width * samples, h = height * samples;
+  std::vector<Vec3> p(mesh.points.size());
+  for (std::size_t v = 0; v < p.size(); ++v) p[v] = seen(mesh.points[v], view);
+  const double fit = std::max({(frame.right - frame.left) / w, (frame.high - frame.low) / h, 1e-300});
   const double scale = 0.94 * view.zoom / fit;
-  const Vec3 center = 0.5 * (lo + hi) + Vec3{view.shift_x * w * fit, view.shift_y * w * fit, 0};
+  const Vec2 center{0.5 * (frame.left + frame.right) + view.shift_x * w * fit,
+                    0.5 * (frame.low + frame.high) + view.shift_y * w * fit};
   for (Vec3& q : p) q = {w / 2.0 + (q.x - center.x) * scale, h / 2.0 - (q.y - center.y) * scale, q.z * scale};
 
   std::vector<float> depth(std::size_t(w) * h, -1e30f);

@@ -24,11 +24,18 @@ struct View {
   bool edges = true;                    ///< draw the mesh lines
 };
 
-/// The mesh fitted into width x height pixels. `color` is per triangle; `strong` (empty, or per triangle: bit
-/// i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and gray, so that
-/// flipped triangles show.
+/// A rectangle of the plane that the viewer sees.
+struct Frame {
+  double left = 1e300, low = 1e300, right = -1e300, high = -1e300;
+};
+/// Widens a frame so that it holds a mesh.
+void add_to_frame(Frame& frame, const Mesh& mesh, const View& view);
+
+/// Draws a mesh, `frame` fitted into width x height pixels. `color` is per triangle; `strong` (empty, or per
+/// triangle: bit i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and gray,
+/// so that flipped triangles show.
 Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
-                const View& view, int width, int height);
+                const View& view, const Frame& frame, int width, int height);
 
 /// Pictures of equal height side by side.
 Image side_by_side(const std::vector<Image>& images);

@@ -227,7 +227,7 @@ void join_parts(Work& work) {
     if (becomes[p] != p) is_union[number[becomes[p]]] = 1;
   if (work.cuts)
     for (MultiscaleCut& c : *work.cuts)
-      for (int& half : c.halves) half = number[becomes[half]];
+      for (int* p : {&c.part, &c.halves[0], &c.halves[1]}) *p = number[becomes[*p]];
   if (n <= limit::straightened_unions) straighten_unions(work, n, is_union);
   work.is.assign(n, {});
 }

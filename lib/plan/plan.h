@@ -40,8 +40,8 @@ struct MultiscaleOptions {
 
 /// One cut that was made.
 struct MultiscaleCut {
-  int part = 0;  ///< of the input, or the half of an earlier cut that was cut again
-  /// Parts of the result; cut again themselves if they are the `part` of a later cut.
+  int part = 0;  ///< whose number its first half keeps
+  /// Numbered as in the result; cut again themselves if they are the `part` of a later cut.
   int halves[2] = {0, 0};
   double eta = 0;     ///< eta_geo before
   int levels = 0;     ///< of Laplace maps

@@ -220,12 +220,8 @@ void lower_where_narrow(Field& f, SizeReport& report) {
 
 /// Converts vertex data to doubles, in place.
 void convert_data(Surface& s, const std::string& name) {
+  expect_data(s, name);
   const Column* c = s.vertex.find(name);
-  if (!c) {
-    std::string known;
-    for (const Column& other : s.vertex.columns) known += (known.empty() ? "" : ", ") + other.name;
-    throw NotAdmissible("no vertex data '" + name + "'; there is " + (known.empty() ? "none" : known));
-  }
   std::visit([&](const auto& v) { s.vertex.set(name, std::vector<double>(v.begin(), v.end())); },
              decltype(Column::data)(c->data));
 }

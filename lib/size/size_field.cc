@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "lib/core/error.h"
+
 namespace meshpipe {
 
 void add_lone_points(SizeField& field) {
@@ -33,6 +35,13 @@ double size_near(const SizeField& field, const Bvh& tree, Vec3 p) {
       least = std::min(least, size_at(t, w[0], w[1], w[2]));
   });
   return least;
+}
+
+void expect_data(const Surface& surface, const std::string& name) {
+  if (surface.vertex.has(name)) return;
+  std::string known;
+  for (const Column& c : surface.vertex.columns) known += (known.empty() ? "" : ", ") + c.name;
+  throw NotAdmissible("no vertex data '" + name + "'; there is " + (known.empty() ? "none" : known));
 }
 
 }  // namespace meshpipe

@@ -21,4 +21,7 @@ void add_lone_points(SizeField& field);
 /// smallest. `tree` holds the field's triangles.
 double size_near(const SizeField& field, const Bvh& tree, Vec3 p);
 
+/// Throws: NotAdmissible, with the names of those that there are, unless the vertices have data `name`.
+void expect_data(const Surface& surface, const std::string& name);
+
 }  // namespace meshpipe

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/wrap/wrap.h"
 
-#include <cstdio>
-
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/wrap/fit.h"
 #include "lib/wrap/valid.h"
@@ -12,12 +11,6 @@
 
 namespace meshpipe {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 /// Divisions of a triangle that bound its distance to two percent of its size.
 constexpr int pieces = 6;
@@ -97,8 +90,8 @@ void verify_wrap(const Mesh& wrap, const Mesh& soup, WrapReport& r) {
     throw ContractMissed("triangle " + std::to_string(lost) + " of the input is outside the wrap");
   measure_distances(wrap, soup_tree, r);
   if (!(r.farthest <= r.farthest_allowed))
-    throw ContractMissed("the wrap is up to " + number(r.farthest) +
-                         " away from the input, expected at most " + number(r.farthest_allowed));
+    throw ContractMissed("the wrap is up to " + shown(r.farthest) +
+                         " away from the input, expected at most " + shown(r.farthest_allowed));
 }
 
 Mesh wrap(const Mesh& soup, const WrapOptions& options, WrapReport& report) {

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "formats/text.h"
+
 namespace meshpipe {
 namespace {
 
@@ -12,21 +14,6 @@ std::string places(const char* x, const char* y, Vec2 p) {
 
 std::string box(Vec2 corner, Vec2 size) {
   return places("x", "y", corner) + ' ' + places("width", "height", size);
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 }  // namespace
@@ -59,7 +46,7 @@ void Svg::path(const SvgPath& path, const std::string& attributes) {
 }
 
 void Svg::text(Vec2 at, const std::string& words, const std::string& attributes) {
-  out_ += "<text " + places("x", "y", at) + ' ' + attributes + '>' + escaped(words) + "</text>\n";
+  out_ += "<text " + places("x", "y", at) + ' ' + attributes + '>' + xml_escaped(words) + "</text>\n";
 }
 
 void Svg::circle(Vec2 center, double radius, const std::string& attributes) {
@@ -71,7 +58,7 @@ void Svg::rectangle(Vec2 corner, Vec2 size, const std::string& attributes) {
 }
 
 void Svg::image(Vec2 corner, Vec2 size, const std::string& file) {
-  element("image", box(corner, size) + " href=\"" + escaped(file) + '"');
+  element("image", box(corner, size) + " href=\"" + xml_escaped(file) + '"');
 }
 
 void Svg::begin_group(const std::string& attributes) { out_ += "<g " + attributes + ">\n"; }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 #include <random>
 #include <set>
 #include <string>
@@ -429,6 +430,45 @@ TEST(Clean, FillsHolesOfAtMostThatManyEdges) {
     EXPECT_EQ(clean(t, {.fill_holes = 4}).holes.filled, 1);
     EXPECT_EQ(topology_of(t).loops, 0);
     EXPECT_EQ(t.tris.size(), 4u);
+  }
+}
+
+/// A fan around a vertex above the origin, its border a star of five points with 2 n corners.
+Surface star_cone(int n) {
+  std::vector<Vec3> points{{0, 0, 1}};
+  std::vector<Tri> tris;
+  for (int i = 0; i < 2 * n; ++i) {
+    const double angle = std::numbers::pi * i / n, radius = 1 + 0.5 * std::sin(5 * angle);
+    points.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    tris.push_back({0, 1 + i, 1 + (i + 1) % (2 * n)});
+  }
+  return surface(points, tris);
+}
+
+TEST(Clean, FillsLongLoopsAndNamesEachCap) {
+  for (int n : {20, 501}) {
+    Surface s = star_cone(n);
+    const double area_of_cone = total_area(s);
+    const CleanReport r = clean(s, {.fill_holes = 100000, .cap_patches = true});
+    EXPECT_EQ(r.holes.filled, 1);
+    EXPECT_EQ(r.holes.triangles, 2 * n - 2);
+    EXPECT_EQ(topology_of(s).loops, 0);
+    // exactly the star: every triangle of the cap looks down, and they overlap nowhere
+    double star = 0, cap = 0;
+    for (int i = 0; i < 2 * n; ++i)
+      star += cross(Vec2{s.points[1 + i].x, s.points[1 + i].y},
+                    Vec2{s.points[1 + (i + 1) % (2 * n)].x, s.points[1 + (i + 1) % (2 * n)].y}) /
+              2;
+    const std::vector<int>& patch = s.face.get<int>("patch");
+    for (std::size_t t = 0; t < s.tris.size(); ++t) {
+      const Vec3 twice = area_vector(s.points[s.tris[t][0]], s.points[s.tris[t][1]], s.points[s.tris[t][2]]);
+      EXPECT_EQ(patch[t] == r.cap_patches.at(0), t >= std::size_t(2 * n));
+      if (t < std::size_t(2 * n)) continue;
+      EXPECT_LT(twice.z, 0);
+      cap += norm(twice) / 2;
+    }
+    EXPECT_NEAR(cap, star, 1e-9);
+    EXPECT_NEAR(total_area(s), area_of_cone + star, 1e-9);
   }
 }
 
