@@ -8,7 +8,6 @@
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
-#include "lib/core/regions.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
 #include "lib/plan/plan.h"
@@ -170,49 +169,6 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
     return true;
   }
   return false;
-}
-
-int cut_along_model_edges(Surface& surface, int part, int n_parts) {
-  if (!surface.face.has("model")) return n_parts;
-  const auto& model = surface.face.get<std::uint8_t>("model");
-  auto& label = surface.face.get<int>("part");
-  std::vector<int> only(label.size());
-  for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
-  const SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  std::vector<int> within = opposite, piece;
-  for (std::size_t h = 0; h < within.size(); ++h)
-    if (model[mesh.face[h / 3]] >> h % 3 & 1) within[h] = -1;
-
-  const int n = components(within, piece);
-  if (n == 1 || n * limit::piece_triangles > mesh.face.size()) return n_parts;
-
-  Joiner joiner({mesh, opposite}, piece, find_regions({mesh, opposite}, piece, n));
-  const auto& border = joiner.regions().border;
-  // a large surface in thousands of pieces, as creases of noise make, is not worth joining them one by one
-  std::size_t work = 0;
-  const std::size_t most = std::max<std::size_t>(20 * mesh.face.size(), 5000000);  // half-edges looked at
-  for (int a = 0; a < n; ++a)
-    while (joiner.regions().region[a].faces > 0 && !joiner.regions().region[a].maps_to_the_plane()) {
-      int with = -1;
-      for (int h : border[a]) {
-        const int b = opposite[h] < 0 ? a : piece[opposite[h] / 3];
-        if (b == a || b == with) continue;
-        work += border[a].size() + border[b].size();
-        if (work > most) return n_parts;
-        if (with < 0 || joiner.joined(a, b).maps_to_the_plane()) with = b;
-      }
-      if (with < 0) return n_parts;
-      joiner.join(a, with);
-    }
-  std::vector<int> number(n, -1);
-  int next = part;
-  for (std::size_t i = 0; i < mesh.face.size(); ++i) {
-    int& to = number[piece[i]];
-    if (to < 0) to = next, next = next == part ? n_parts : next + 1;
-    label[mesh.face[i]] = to;
-  }
-  return std::max(next, n_parts);
 }
 
 int cut_along_limbs(Surface& surface, int part, int n_parts) {

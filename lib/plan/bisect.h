@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts of one part of genus 0: by a short line, whatever its shape, along its limbs, or at model edges.
+// Cuts of one part of genus 0: by a short line, whatever its shape, or along its limbs.
 #pragma once
 #include <array>
 #include <vector>
@@ -17,14 +17,8 @@ namespace meshpipe {
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
                  bool even = false);
 
-/// Cuts `part` along the model edges (face column `model`) inside it, which the mesh keeps in any case.
-/// Pieces that do not map to the plane are joined to a neighbor; those above the first become parts n_parts,
-/// n_parts + 1, ... Returns the new number of parts; n_parts, with nothing changed, if the edges enclose
-/// nothing, or little more than single triangles.
-int cut_along_model_edges(Surface& surface, int part, int n_parts);
-
 /// Cuts `part` by multiscale_cut although its aspect ratio is admissible: along its limbs, so that none
-/// shrinks to nothing in a chart. Returns the new number of parts as above; n_parts, with nothing changed, if
+/// shrinks to nothing in a chart. Returns the new number of parts; n_parts, with nothing changed, if
 /// there is no such cut.
 int cut_along_limbs(Surface& surface, int part, int n_parts);
 

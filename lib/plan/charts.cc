@@ -151,9 +151,7 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const bool limbs =
       !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
   int n = n_parts;
-  if (missed || limbs || stretched || report.anisotropy_p99 > limit::high_anisotropy)
-    n = cut_along_model_edges(surface, p, n_parts);
-  if (n == n_parts && (limbs || stretched)) n = cut_along_limbs(surface, p, n_parts);
+  if (limbs || stretched) n = cut_along_limbs(surface, p, n_parts);
   if (n == n_parts && !missed && !chosen && round < limit::limb_rounds &&
       report.anisotropy_median > limit::limb_anisotropy && mesh.tris.size() >= limit::limb_triangles)
     n = cut_if_flatter(surface, mesh, p, n_parts, options, report);

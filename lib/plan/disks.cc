@@ -2,6 +2,7 @@
 // Cuts a surface until every part has genus 0 and a border.
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "lib/core/error.h"
 #include "lib/core/progress.h"
@@ -35,6 +36,50 @@ Labeling label_component(Component& c, const PartitionOptions& options) {
   return bounded.parts > 0 || options.max_faces > 0 ? bounded : l;
 }
 
+/// Labels the fans in which a region touches itself at a vertex, except the largest ones, as regions of their
+/// own, n, n + 1, ... Returns the new number of regions.
+int split_pinches(const Connectivity& mesh, std::vector<int>& label, int n) {
+  struct Fan {
+    int region, vertex, size, half_edge;
+    auto key() const { return std::tie(region, vertex, size, half_edge); }
+  };
+  std::vector<Fan> fans;
+  const Regions regions = find_regions(mesh, label, n);
+  auto inside = [&](int h) { return mesh.opposite[h] >= 0 && label[mesh.opposite[h] / 3] == label[h / 3]; };
+  for (int l = 0; l < n; ++l) {
+    if (!regions.region[l].pinched) continue;
+    for (int h : regions.border[l]) {
+      int size = 1;
+      for (int g = prev(h); inside(g); g = prev(mesh.opposite[g])) ++size;
+      fans.push_back({l, mesh.from(h), size, h});
+    }
+  }
+  std::sort(fans.begin(), fans.end(), [](const Fan& a, const Fan& b) { return a.key() < b.key(); });
+  for (std::size_t i = 0; i + 1 < fans.size(); ++i) {
+    const auto& [region, vertex, size, half_edge] = fans[i];
+    if (region != fans[i + 1].region || vertex != fans[i + 1].vertex) continue;
+    for (int k = 0, h = half_edge; k < size; ++k, h = mesh.opposite[prev(h)])
+      if (label[h / 3] == region) label[h / 3] = n;
+    ++n;
+  }
+  return n;
+}
+
+/// Labels the faces that model edges bound, the natural first parts, for these edges stay in any case. Edges
+/// that end inside a face do not divide it. Each face is edge-connected and touches itself nowhere.
+int label_faces(const Connectivity& mesh, std::vector<int>& label) {
+  std::vector<int> within = mesh.opposite;
+  for (int h = 0; h < mesh.n_half_edges(); ++h)
+    if (mesh.is_model(h)) within[h] = -1;
+  int n = components(within, label);
+  for (int before = 0; before != n;) {  // each round makes triangles of a face another one
+    before = n;
+    split_pinches(mesh, label, n);
+    n = separate_pieces(mesh, label);
+  }
+  return n;
+}
+
 }  // namespace
 
 int partition_to_disks(Surface& surface, const PartitionOptions& options, std::vector<int>* neighbors) {
@@ -42,7 +87,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options, std::v
   if (int v = find_pinched_vertex({surface, opposite}); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
   std::vector<int> component;
-  const int n_components = components(opposite, component);
+  const int n_components = label_faces({surface, opposite, model_of(surface)}, component);
   const Regions whole = find_regions({surface, opposite}, component, n_components);
   auto stays_whole = [&](int i) {
     return whole.region[i].maps_to_the_plane() && bound_of(whole.region[i].faces, options) == 0;

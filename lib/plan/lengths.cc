@@ -202,12 +202,17 @@ void join_parts(Work& work) {
   if (*std::min_element(label.begin(), label.end()) < 0) return;  // only some of the parts are given
   const int n_before = work.parts();
   const double max_aspect = work.options.max_aspect;
-  Joiner joiner({s, work.opposite}, label, find_regions({s, work.opposite}, label, n_before));
+  const Connectivity mesh{s, work.opposite, model_of(s)};
+  Joiner joiner(mesh, label, find_regions(mesh, label, n_before));
   std::vector<int> becomes(n_before);
   std::iota(becomes.begin(), becomes.end(), 0);
   auto length = [&](int h) { return norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]); };
-  const bool any = join_neighbors(joiner, {s, work.opposite}, label, length, [&](int a, int b) {
+  const bool any = join_neighbors(joiner, mesh, label, length, [&](int a, int b) {
     if (!work.was_cut[a] && !work.was_cut[b]) return false;
+    if (std::any_of(joiner.regions().border[a].begin(), joiner.regions().border[a].end(), [&](int h) {
+          return mesh.is_model(h) && mesh.opposite[h] >= 0 && label[mesh.opposite[h] / 3] == b;
+        }))
+      return false;
     const Region r = joiner.joined(a, b);
     if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect) return false;
     std::vector<int> both(label.size());

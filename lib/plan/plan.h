@@ -19,10 +19,10 @@ struct PartitionOptions {
 };
 
 /// Sets face columns `part` (0..n-1) and `origin` (where missing) so that every part is edge-connected,
-/// touches itself nowhere, has genus 0 and a border: as few parts as it finds, then the shortest and
-/// smoothest cut. Cuts run through triangles, and along model edges where they can (face column `model`).
-/// `opposite`, if given, receives the result's. Returns the number of parts. Requires: an oriented manifold.
-/// Throws NotAdmissible, and GoalMissed if there is no such cut.
+/// touches itself nowhere, has genus 0 and a border. The faces that model edges bound (face column `model`)
+/// are parts. Those that do not map to the plane are cut through triangles, into as few parts as it finds,
+/// then by the shortest and smoothest line. `opposite`, if given, receives the result's. Returns the number
+/// of parts. Requires: an oriented manifold. Throws NotAdmissible, and GoalMissed if there is no such cut.
 int partition_to_disks(Surface& surface, const PartitionOptions& options = {},
                        std::vector<int>* opposite = nullptr);
 
@@ -63,10 +63,10 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane, charts in parallel. A part
 /// whose map fails, or is worse than lib/plan/thresholds.h allows, is cut, and its pieces are mapped in its
-/// place: along model edges inside it if these bound simple pieces, else along its limbs, else by a short
-/// line. Cuts append vertices, split triangles and rewrite face column `part`; with options.strict there are
-/// none. Before circle maps, triangles with two edges on the longest loop are split (lib/param/ears.h).
-/// Returns the charts, with one row of `reports` per part. Throws GoalMissed if a part has no one-to-one map.
+/// place: along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face
+/// column `part`; with options.strict there are none. Before circle maps, triangles with two edges on the
+/// longest loop are split (lib/param/ears.h). Returns the charts, with one row of `reports` per part. Throws
+/// GoalMissed if a part has no one-to-one map.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports);
 

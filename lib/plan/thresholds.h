@@ -32,9 +32,6 @@ constexpr double unresolved_area_scale = 1e16;
 /// nothing between their ends to follow a ring in the plane, lie flat once they are open. Effect: 92 maps on
 /// 5 surfaces.
 constexpr double mean_anisotropy = 4;
-/// 99 % quantile of sigma1/sigma2 above which a part is cut if model edges bound pieces of it, at no cost.
-/// Effect: 21 cuts on 6 surfaces for this reason alone.
-constexpr double high_anisotropy = 4;
 /// Median of sigma1/sigma2 above which a limb is cut along its length. A limb with N edges around it changes
 /// its scale by exp(2 pi / N) over each of them, which shears triangles to about 1 + 3.6 / N. Effect: 56 maps
 /// on 20 surfaces.
@@ -48,8 +45,6 @@ constexpr double limb_aspect = 2;
 constexpr std::size_t limb_triangles = 500;
 /// Triangles below which no part is cut for the mean of sigma1/sigma2.
 constexpr std::size_t least_triangles = 50;
-/// Triangles that the pieces bounded by model edges have on average, at least: else the edges are noise.
-constexpr std::size_t piece_triangles = 8;
 /// Parts that one cut along limbs may end in: a ragged part keeps its aspect ratio through many cuts. Effect:
 /// 80 of 121 cuts are given up, on 4 surfaces.
 constexpr int limb_parts = 4;

@@ -188,12 +188,14 @@ TEST(Partition, CutsATorusIntoTwoRings) {
 }
 
 TEST(Partition, HalvesAClosedSurfaceOfGenus0) {
-  Surface s = cube(8);
+  Surface s = cube(8), without = s;
+  without.face.erase("model");
   const Surface before = s;
-  EXPECT_EQ(partition_to_disks(s), 2);
-  EXPECT_EQ(part_fault(s), "");
+  EXPECT_EQ(partition_to_disks(without), 2);
+  EXPECT_EQ(part_fault(without), "");
+  expect_same_surface(before, without);
+  EXPECT_EQ(partition_to_disks(s), 6);  // cut along model edges only
   expect_same_surface(before, s);
-  // the cut follows model edges
   const auto& part = s.face.get<int>("part");
   const auto& model = s.face.get<std::uint8_t>("model");
   auto opposite = opposite_halfedges(s.tris, (int)s.points.size());

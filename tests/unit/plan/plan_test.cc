@@ -146,61 +146,82 @@ TEST(Plan, EvenHalvesTheGraph) {
   }
 }
 
-//  +-----+-----+
-//  |     |     |    a model line across: two parts, no new vertex
-//  +-----+-----+
-TEST(Plan, AtModelEdgesThatEncloseSomething) {
-  auto strip = grid(
+TEST(Plan, FacesBetweenModelEdgesAreTheFirstParts) {
+  const Body body = cube(120);
+  Surface s = surface_of(body);
+  s.face.set("patch", body.patch);
+  mark_features(s, {});
+  const std::size_t n = s.points.size();
+  EXPECT_EQ(partition_to_disks(s), 6);
+  EXPECT_EQ(s.points.size(), n);
+  const auto& part = s.face.get<int>("part");
+  for (std::size_t t = 0; t < part.size(); ++t)
+    for (std::size_t u = 0; u < t; ++u) EXPECT_EQ(part[t] == part[u], body.patch[t] == body.patch[u]);
+}
+
+// The strip's edges at x = 5 below y are model edges.
+static Surface strip_with_line(double y) {
+  Surface s = surface_of(grid(
       40, 4, false,
       [](double s, double t) {
         return Vec3{10 * s, t, 0};
       },
-      all);
-  Surface s = one_part(strip);
-  auto mark = [&](double up_to) {  // the edges at x = 5 below y
-    std::vector<std::uint8_t> model(s.tris.size(), 0);
-    for (std::size_t h = 0; h < 3 * s.tris.size(); ++h) {
-      const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)];
-      if (a.x == 5 && b.x == 5 && a.y < up_to && b.y < up_to) model[h / 3] |= 1 << h % 3;
-    }
-    s.face.set("model", std::move(model));
-  };
-  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // no model edges
-  mark(0.9);
-  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // they end inside
-  mark(2);
-  ASSERT_EQ(cut_along_model_edges(s, 0, 1), 2);
-  EXPECT_EQ(s.points.size(), strip.points.size());
-  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
-    EXPECT_EQ(t.components, 1);
-    EXPECT_EQ(t.loops, 1);
-    EXPECT_NEAR(t.area, 5, 1e-12);
+      all));
+  std::vector<std::uint8_t> model(s.tris.size(), 0);
+  for (std::size_t h = 0; h < 3 * s.tris.size(); ++h) {
+    const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)];
+    if (a.x == 5 && b.x == 5 && a.y < y && b.y < y) model[h / 3] |= static_cast<std::uint8_t>(1 << h % 3);
+  }
+  s.face.set("model", std::move(model));
+  return s;
+}
+
+TEST(Plan, ModelEdgesThatEndInsideAFaceDoNotDivideIt) {
+  for (auto [y, parts] : {std::pair(0.9, 1), std::pair(2., 2)}) {
+    Surface s = strip_with_line(y);
+    EXPECT_EQ(partition_to_disks(s), parts);
   }
 }
 
-TEST(Plan, AlongModelEdges) {
-  const Body body = cube(120);
-  Surface s = surface_of(body);
-  s.face.set("patch", body.patch);
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
-  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 1);  // none are known
-  mark_features(s, {});
-  EXPECT_EQ(cut_along_model_edges(s, 0, 1), 6);
-  const auto& part = s.face.get<int>("part");
-  for (std::size_t t = 0; t < part.size(); ++t)
-    for (std::size_t u = 0; u < t; ++u) EXPECT_EQ(part[t] == part[u], body.patch[t] == body.patch[u]);
-  // a piece with a handle stays in one part with the rest
-  Surface ring;
-  static_cast<Mesh&>(ring) = torus(0.4, 200);
-  ring.vertex.rows = ring.points.size();
-  ring.face.rows = ring.tris.size();
-  ring.face.set("part", std::vector<int>(ring.tris.size(), 0));
+// Two triangles that meet in a vertex only are faces: the rest touches itself there.
+TEST(Plan, AFaceThatTouchesItselfIsDivided) {
+  Surface s = surface_of(grid(
+      6, 6, false,
+      [](double s, double t) {
+        return Vec3{s, t, 0};
+      },
+      all));
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  std::vector<std::uint8_t> model(s.tris.size(), 0);
+  std::vector<int> around;  // half-edges that leave the vertex in the middle
+  const Connectivity mesh{s, opposite};
+  for (int h = 0; around.empty(); ++h)
+    if (norm(mesh.point(mesh.from(h)) - Vec3{0.5, 0.5, 0}) < 1e-9)
+      mesh.for_each_spoke(h, [&](int g) { around.push_back(g); });
+  for (std::size_t i : {0, 2})
+    for (int k = 0; k < 3; ++k) {
+      const int h = 3 * (around[i] / 3) + k, o = opposite[h];
+      model[h / 3] |= static_cast<std::uint8_t>(1 << h % 3);
+      if (o >= 0) model[o / 3] |= static_cast<std::uint8_t>(1 << o % 3);
+    }
+  s.face.set("model", std::move(model));
+  const int n = partition_to_disks(s);
+  EXPECT_GT(n, 3);
+  EXPECT_EQ(part_fault(s), "");
+}
+
+// A face with a handle is cut as any surface is; the triangle with model edges all around it stays one part.
+TEST(Plan, AFaceWithAHandleIsCut) {
+  Surface ring = surface_of(torus(0.4, 200));
   std::vector<std::uint8_t> model(ring.tris.size(), 0);
-  model[0] = 7;  // all round one triangle
+  model[0] = 7;
   const std::vector<int> opposite = opposite_halfedges(ring.tris, (int)ring.points.size());
   for (int h = 0; h < 3; ++h) model[opposite[h] / 3] |= static_cast<std::uint8_t>(1 << opposite[h] % 3);
   ring.face.set("model", model);
-  EXPECT_EQ(cut_along_model_edges(ring, 0, 1), 1);
+  EXPECT_GE(partition_to_disks(ring), 2);
+  EXPECT_EQ(part_fault(ring), "");
+  const auto& part = ring.face.get<int>("part");
+  EXPECT_EQ(std::count(part.begin(), part.end(), part[0]), 1);
 }
 
 TEST(Plan, SliversOfACadBodyAreCutAlongModelEdges) {
