@@ -118,7 +118,8 @@ void merge_corners(State& s) {
     if (s.hold[a] != fixed || s.hold[b] != fixed) continue;
     if (s.keep_border && (m.on_border(a) || m.on_border(b))) continue;
     if (joins_lines(h) || joins_lines(m.opp[h])) continue;
-    if (collapse_edge(s, h, a, rules::short_line, true) || collapse_edge(s, h, b, rules::short_line, true))
+    if (collapse_edge(s, h, a, rules::near_corners, true) ||
+        collapse_edge(s, h, b, rules::near_corners, true))
       ++s.counts.corners_merged;
   }
 }

@@ -32,8 +32,8 @@ void hold_seams(State& s) {
 
 /// Removes what is far too short or long, before anything else.
 void coarse_rounds(State& s) {
-  merge_corners(s);
   for (int i = 0; i < rules::coarse_rounds; ++i) {
+    merge_corners(s);
     collapse_short_segments(s);
     split_long(s, rules::split_above, 1e9);
     collapse_short(s, rules::collapse_below, 0);

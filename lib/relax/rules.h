@@ -44,9 +44,10 @@ constexpr double merged_corners = 0.05;  // length: no good triangle between cor
 constexpr double line_deviation = 0.1;   // length: what a line may change when it loses a vertex
 constexpr int largest_valence = 9;       // of a vertex that a collapse leaves
 constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};
-constexpr Collapse kept_border{2000, 3};  // almost anything, to have no new vertex on it
-constexpr Collapse on_trial{1e9, 2};      // the objective judges
-constexpr double open_seam = 1e-3;        // length: borders this close are two sides of a seam
+constexpr Collapse near_corners{1e9, 1.6};  // needles between three of them go with the last one only
+constexpr Collapse kept_border{2000, 3};    // almost anything, to have no new vertex on it
+constexpr Collapse on_trial{1e9, 2};        // the objective judges
+constexpr double open_seam = 1e-3;          // length: borders this close are two sides of a seam
 
 // flips (flip.cc)
 constexpr double sound_for_valence = 3;    // shape: what a flip for the valence may leave
