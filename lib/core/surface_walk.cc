@@ -102,26 +102,6 @@ Place SurfaceWalk::across(const Place& p) const {
 
 Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
   const double b[3] = {from.b0, from.b1, from.b2};
-  int line = -1;
-  for (int i = 0; i < 3; ++i)
-    if (b[(i + 2) % 3] <= 0 && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
-  for (int i = 0; i < 3 && line < 0; ++i) {
-    if (b[i] < 1) continue;
-    // at a vertex: turn within its fan until a line leaves it
-    const int start = 3 * from.face + i;
-    for (int h = start; line < 0;) {
-      if (beyond_[h] < 0) line = h;
-      h = beyond_[prev(h)];
-      if (h < 0 || h == start) break;
-    }
-    for (int h = start; line < 0 && beyond_[h] >= 0;) {
-      h = next(beyond_[h]);
-      if (beyond_[h] < 0) line = h;
-      if (h == start) break;
-    }
-  }
-  if (line < 0) return from;
-
   auto closest_on = [&](int h, double& t) {
     const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
                q = mesh_.points[meshpipe::target(mesh_.tris, h)];
@@ -130,7 +110,33 @@ Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
     const Vec3 e = lerp(p, q, t) - target;
     return dot(e, e);
   };
+  int line = -1;
   double t;
+  for (int i = 0; i < 3; ++i)
+    if (b[(i + 2) % 3] <= 0 && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
+  for (int i = 0; i < 3; ++i) {
+    if (b[i] < 1) continue;
+    // at a vertex, which may be the end of several lines: the one that leaves it towards the target
+    double nearest = 1e300;
+    auto look = [&](int h) {
+      if (beyond_[h] >= 0) return;
+      if (const double d = closest_on(h, t); d < nearest) nearest = d, line = h;
+    };
+    const int start = 3 * from.face + i;
+    int h = start;
+    do {
+      look(h);
+      look(prev(h));
+      h = opposite_[prev(h)];
+    } while (h >= 0 && h != start);
+    for (int e = start; h < 0 && opposite_[e] >= 0;) {
+      e = next(opposite_[e]);
+      look(e);
+      look(prev(e));
+    }
+  }
+  if (line < 0) return from;
+
   double best = closest_on(line, t);
   for (int step = 0; step < 10000 && (t <= 0 || t >= 1); ++step) {
     const bool forward = t >= 1;

@@ -18,6 +18,7 @@ struct Star {
   double area[3][most];    ///< area vectors of the triangles with the last p
   void look(Vec3 p);
   double energy(Vec3 p, double size);
+  double energy_on_line(Vec3 p, double size);
   /// The least cosine of the normal deviations at p, whose reference normal is `normal_p`.
   double worst_cosine(Vec3 p, Vec3 normal_p) const;
 };
@@ -51,6 +52,18 @@ double Star::energy(Vec3 p, double size) {
   }
   double sum = 0;
   for (int i = 0; i < n; ++i) sum += each[i];
+  return sum;
+}
+
+/// The same and a share of 1 / kappa^2 for each triangle. In a strip narrower than its segments are long, the
+/// energy is least where vertices are opposite to the middle of a segment, but kappa is best where they are
+/// opposite to each other: the two lines become divided alike.
+double Star::energy_on_line(Vec3 p, double size) {
+  double sum = energy(p, size);
+  for (int i = 0; i < n; ++i) {
+    const double q = kappa(p, {y[0][i], y[1][i], y[2][i]}, {z[0][i], z[1][i], z[2][i]});
+    sum += q > 0 ? rules::strip_weight / (q * q) : 1e30;
+  }
   return sum;
 }
 
@@ -177,15 +190,15 @@ bool slide_vertex(State& s, int v) {
                probe = rules::probe * reach;
   if (reach <= 0) return false;
   auto place_at = [&](double step) { return walk.slide(s.place[v], x + step * direction); };
-  auto energy = [&](double step) { return star.energy(walk.point(place_at(step)), size); };
-  const double now = star.energy(x, size), left = energy(-probe), right = energy(probe);
+  auto energy = [&](double step) { return star.energy_on_line(walk.point(place_at(step)), size); };
+  const double now = star.energy_on_line(x, size), left = energy(-probe), right = energy(probe);
   const double bend = left - 2 * now + right;
   double step = bend > 0 ? 0.5 * probe * (left - right) / bend : left < right ? -2 * probe : 2 * probe;
   step = std::clamp(rules::line_relaxation * step, -rules::reach * reach, rules::reach * reach);
   if (!(std::abs(step) >= rules::shortest_step * size)) return false;
   const Place place = place_at(step);
   const Vec3 p = walk.point(place), normal = s.mesh.on_border(v) ? s.reference->normal(place) : Vec3{};
-  if (star.energy(p, size) > now * (1 - rules::least_gain)) return false;
+  if (star.energy_on_line(p, size) > now * (1 - rules::least_gain)) return false;
   for (const Vec3& end : {ahead, behind})
     if (norm(end - p) > std::max(rules::longest_segment * size, norm(end - x))) return false;
   if (folds_star(s, star, v, x, p, normal)) return false;

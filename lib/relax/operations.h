@@ -8,9 +8,9 @@ namespace meshpipe {
 
 // --- split.cc ---
 
-/// Splits the edge of h at the place on the reference nearest to its middle; a border or model edge at a
-/// place on the line. False if the pieces would fold, or if both ends of a model edge are corners.
-bool split_edge(State& s, int h);
+/// Splits the edge of h at the place on the reference nearest to its point `at` (0 to 1 from where h starts);
+/// a border or model edge at a place on the line. False if the pieces would fold.
+bool split_edge(State& s, int h, double at = 0.5);
 /// Puts a new vertex on the edge of h, without a look at the triangles.
 void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal);
 /// The end of a line's edge that is no corner, so that it knows which line; -1 if both are.

@@ -6,7 +6,7 @@ namespace {
 
 /// Makes a change if it may be made; else nothing is changed.
 bool try_edit(State& s, const Edit& edit) {
-  if (edit.kind == Edit::split) return split_edge(s, edit.h);
+  if (edit.kind == Edit::split) return split_edge(s, edit.h, edit.at);
   if (edit.kind == Edit::collapse)
     return s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h] &&
            collapse_edge(s, edit.h, edit.gone, rules::on_trial);
@@ -15,9 +15,23 @@ bool try_edit(State& s, const Edit& edit) {
   return may;
 }
 
+/// Splits of model edges of t where an end of its other edges is as near as possible: opposite to its third
+/// corner, and as far from each end as that is. Segments of lines that are closer to each other than they are
+/// long must be divided alike.
+void add_aligned_splits(const State& s, int t, std::vector<Edit>& edits) {
+  for (int h = 3 * t; h < 3 * t + 3; ++h) {
+    if (!s.mesh.hard[h]) continue;
+    const Vec3 a = s.points[s.mesh.from(h)], b = s.points[s.mesh.to(h)], c = s.points[s.mesh.apex(h)];
+    const double l = norm(b - a), foot = dot(c - a, b - a) / (l * l);
+    for (double at : {foot, norm(c - a) / l, 1 - norm(c - b) / l})
+      if (at > rules::least_piece && at < 1 - rules::least_piece) edits.push_back({Edit::split, h, -1, at});
+  }
+}
+
 /// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
 /// share a vertex with it.
-std::vector<Edit> edits_around(const EditMesh& m, int t, bool wide) {
+std::vector<Edit> edits_around(const State& s, int t, bool wide) {
+  const EditMesh& m = s.mesh;
   std::vector<int> halfedges;
   for (int s : wide ? triangles_around(m, t, 1) : std::vector<int>{t})
     for (int h = 3 * s; h < 3 * s + 3; ++h) {
@@ -26,11 +40,12 @@ std::vector<Edit> edits_around(const EditMesh& m, int t, bool wide) {
       if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
     }
   std::vector<Edit> edits;
+  add_aligned_splits(s, t, edits);
   for (int h : halfedges) {
     edits.push_back({Edit::collapse, h, m.from(h)});
     edits.push_back({Edit::collapse, h, m.to(h)});
-    edits.push_back({Edit::split, h, -1});
-    if (!m.hard[h]) edits.push_back({Edit::flip, h, -1});
+    edits.push_back({Edit::split, h});
+    if (!m.hard[h]) edits.push_back({Edit::flip, h});
   }
   return edits;
 }
@@ -97,13 +112,13 @@ std::vector<int> bad_triangles(const State& s) {
 std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough) {
   const State before = extract(s, triangles);
   const double bad = objective(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
-  const std::vector<Trial> trials = try_all(before, edits_around(before.mesh, 0, thorough));
+  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough));
   if (trials.empty()) return {};
   Trial best = trials.front();
   for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {
     if (best.objective <= good_enough) break;
     const State& from = trials[i].state;
-    for (Trial& second : try_all(from, edits_around(from.mesh, worst(from), false)))
+    for (Trial& second : try_all(from, edits_around(from, worst(from), false)))
       if (second.objective < best.objective) best = std::move(second);
   }
   if (best.objective > good_enough) return {};

@@ -18,6 +18,7 @@ constexpr double same_cosine = 1e-12;  // cosines that differ by less are roundi
 
 // moves (move.cc)
 constexpr double size_weight = 0.012;    // area against shape: equal areas without giving up equal angles
+constexpr double strip_weight = 0.5;     // of 1/kappa^2 on lines: it decides where they are nearer than 0.15
 constexpr double shortest_step = 3e-3;   // length: shorter steps do not show, and would keep neighbors awake
 constexpr double overrelaxation = 1.5;   // factor: errors over many edges even out in fewer sweeps
 constexpr double line_relaxation = 1.3;  // factor: the same along a line, where a parabola is less exact
@@ -65,6 +66,7 @@ constexpr double needle = 0.05;                    // of the quality: one needle
 constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-break
 constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change
 constexpr int promising = 8, promising_pairs = 5;  // trials that go on, of about 100
+constexpr double least_piece = 0.02;               // of a segment: shorter pieces are needles themselves
 constexpr int rings = 2, thorough_rings = 3;       // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
 constexpr int sweeps_to_settle = 3;

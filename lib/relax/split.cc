@@ -25,40 +25,26 @@ Place place_near(const State& s, Vec3 p, std::initializer_list<int> vertices, Ve
   return best;
 }
 
-/// The place on the line of edge a, b nearest to its middle.
-Place place_on_line(const State& s, int a, int b, Vec3 middle) {
-  const SurfaceWalk& walk = s.reference->walk;
-  const int from = end_on_line(s, a, b);
-  const Place place = walk.slide(s.place[from < 0 ? a : from], middle);
-  if (from >= 0) return place;
-  // from a corner it may have gone the other way
-  const Place other = walk.slide(s.place[b], middle);
-  return norm(walk.point(other) - middle) < norm(walk.point(place) - middle) ? other : place;
-}
-
 }  // namespace
 
 int end_on_line(const State& s, int a, int b) {
   return s.hold[a] == slides ? a : s.hold[b] == slides ? b : -1;
 }
 
-bool split_edge(State& s, int h) {
+bool split_edge(State& s, int h, double at) {
   const EditMesh& m = s.mesh;
   const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
   if (g < 0 && s.keep_border) return false;
   // the rim of a patch, as a rule, or a seam
   if (g < 0 && s.hold[a] >= frozen && s.hold[b] >= frozen) return false;
-  const Vec3 middle = lerp(s.points[a], s.points[b], 0.5);
-  Place place;
-  if (m.hard[h]) {
-    if (end_on_line(s, a, b) < 0 && g >= 0) return false;
-    place = place_on_line(s, a, b, middle);
-  } else {
-    place = place_near(s, middle, {a, b, c, d}, s.face_normal(h / 3) + s.face_normal(g / 3));
-  }
+  const Vec3 wanted = lerp(s.points[a], s.points[b], at);
+  const int from = end_on_line(s, a, b);
+  const Place place = m.hard[h]
+                          ? s.reference->walk.slide(s.place[from < 0 ? a : from], wanted)
+                          : place_near(s, wanted, {a, b, c, d}, s.face_normal(h / 3) + s.face_normal(g / 3));
   const Vec3 normal = m.hard[h] && g >= 0 ? Vec3{} : s.reference->normal(place);
   const Vec3 p = s.reference->walk.point(place);
-  if (norm(p - middle) > (m.hard[h] ? rules::off_line : rules::off_edge) * norm(s.points[b] - s.points[a]))
+  if (norm(p - wanted) > (m.hard[h] ? rules::off_line : rules::off_edge) * norm(s.points[b] - s.points[a]))
     return false;
   const int ring[5] = {b, c, a, d, b};
   for (int i = 0; i < (g < 0 ? 2 : 4); ++i) {
@@ -75,7 +61,7 @@ void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal) {
   EditMesh& m = s.mesh;
   const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
   const bool hard = m.hard[h];
-  if (s.recording) s.edits.push_back({Edit::split, h, -1});
+  if (s.recording) s.edits.push_back({Edit::split, h});
   s.points.push_back(p);
   s.place.push_back(place);
   s.normal.push_back(normal);

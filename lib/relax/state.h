@@ -55,10 +55,12 @@ enum Hold : char {
   paired     ///< on an open seam
 };
 
-/// A change of connectivity: of the edge of half-edge h, and for a collapse the vertex that goes.
+/// A change of connectivity: of the edge of half-edge h.
 struct Edit {
   enum Kind { flip, split, collapse } kind;
-  int h, gone;
+  int h;
+  int gone = -1;    ///< the vertex that a collapse takes out
+  double at = 0.5;  ///< where a split is tried, as in split_edge
 };
 
 /// Times at which vertices changed, by one clock: what has not changed is not tried again.

@@ -42,10 +42,12 @@ TEST(Split, ABorderThatIsKeptHasNoNewVertex) {
   EXPECT_TRUE(split_edge(m.s, m.edge('a', 'c')));
 }
 
-TEST(Split, AModelEdgeBetweenCornersStays) {
+TEST(Split, AModelEdgeBetweenCornersIsSplitOnItsLine) {
   Drawn m(drawn_surface(square, halves, "ac"));
   EXPECT_EQ(m.s.hold[0], fixed);  // three lines meet
-  EXPECT_FALSE(split_edge(m.s, m.edge('a', 'c')));
+  ASSERT_TRUE(split_edge(m.s, m.edge('a', 'c'), 0.25));
+  EXPECT_EQ(m.s.hold[4], slides);
+  EXPECT_EQ(m.s.points[4], (Vec3{1, 1, 0}));
 }
 
 TEST(Split, AnOpenSeamStays) {
