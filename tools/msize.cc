@@ -57,6 +57,12 @@ void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
   io.report["expected_triangles"] = r.triangles;
   io.report["factor"] = r.scale;
   io.report["split_edges"] = r.added;
+  if (r.narrow > 0)
+    io.report["narrow"] = {{"places", r.narrow},
+                           {"at", {r.narrow_at.x, r.narrow_at.y, r.narrow_at.z}},
+                           {"gap", r.narrow_gap},
+                           {"asked", r.narrow_from},
+                           {"permitted", r.narrow_to}};
 }
 
 /// Drops lines that came with the file, and counts the triangles of the parts again.

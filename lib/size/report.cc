@@ -37,6 +37,11 @@ std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, boo
                     " vertices of narrow tubes or closed lines, which need four edges around them: at " +
                     shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) +
                     " from " + shown(r.lowered_from) + " to " + shown(r.lowered_to));
+  if (r.narrow > 0)
+    lines.push_back("lines or sheets are too near each other for the size at " + std::to_string(r.narrow) +
+                    " places: at " + shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' +
+                    shown(r.narrow_at.z) + ", " + shown(r.narrow_gap) + " apart, it is lowered from " +
+                    shown(r.narrow_from) + " to " + shown(r.narrow_to));
   if (counted && !within(r, o, much))
     lines.push_back("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
                     " triangles instead of the requested " + std::to_string(std::llround(o.triangles)));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "lib/core/error.h"
 #include "lib/core/neighbors.h"
@@ -14,6 +15,7 @@
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
 #include "lib/size/local_feature_size.h"
+#include "lib/size/permitted.h"
 
 namespace meshpipe {
 namespace {
@@ -23,7 +25,9 @@ constexpr double default_size = 0.1;       ///< of the diagonal, where no source
 constexpr double longest_edge = 1.0 / 16;  ///< of the diagonal, where a field may have detail anywhere
 constexpr int most_passes = 12;            ///< of splitting edges; each halves them, fields have few scales
 constexpr double interpolation_error = 0.15;  ///< of the size in the middle of an edge
+constexpr double excess_error = 0.5;          ///< the same near narrow places, where it only costs triangles
 constexpr double count_error = 1e-3;          ///< of the number of triangles asked for
+constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
 /// The field while it is made: wishes at the vertices, edges split where they are not linear.
 struct Field {
@@ -35,6 +39,10 @@ struct Field {
   std::vector<int> opposite{};
   std::vector<double> curvature{};                ///< per triangle; empty if not needed
   std::vector<double> wish{}, size{}, permits{};  ///< per vertex: of the sources, the field, the surface
+  // Where the surface is near itself: the bounds by half-edge of the surface as it came, and which of its
+  // triangles each triangle is part of. Empty where nothing is bounded.
+  std::vector<SizeBound> bounds{};
+  std::vector<int> root{};
 };
 
 std::vector<double> curvature_of(const Field& f) {
@@ -103,6 +111,31 @@ double wish_between(const Field& f, int h) {
   }
   if (f.o.at) least = std::min(least, asked(f.o, lerp(f.s.points[a], f.s.points[b], 0.5), most));
   return least;
+}
+
+/// Calls visit(bound) for the bounds on the given edge that half-edge h is part of.
+template <class Visit>
+void each_bound(const Field& f, int h, Visit visit) {
+  const Vec3 a = f.s.points[origin(f.s.tris, h)], b = f.s.points[target(f.s.tris, h)];
+  const int t = f.root[h / 3];
+  auto first = std::lower_bound(f.bounds.begin(), f.bounds.end(), 3 * t,
+                                [](const SizeBound& x, int k) { return x.half_edge < k; });
+  for (; first != f.bounds.end() && first->half_edge / 3 == t; ++first) {
+    const Vec3 p = first->place;
+    // on the sub-edge: a way by p is no detour
+    if (norm(p - a) + norm(b - p) <= norm(b - a) * (1 + 1e-9)) visit(*first);
+  }
+}
+
+/// Lowers what the surface permits at the ends of every edge by the bounds on it.
+void bound_vertices(Field& f) {
+  f.permits.assign(f.s.points.size(), infinite);
+  if (f.bounds.empty()) return;
+  for (int h = 0; h < static_cast<int>(f.opposite.size()); ++h)
+    each_bound(f, h, [&](const SizeBound& x) {
+      for (int v : {origin(f.s.tris, h), target(f.s.tris, h)})
+        f.permits[v] = std::min(f.permits[v], x.size + f.o.gradation * norm(f.s.points[v] - x.place));
+    });
 }
 
 double bounded(const Field& f, double wish) {
@@ -176,7 +209,18 @@ bool bends(const Field& f, int h) {
     m = std::min(m, f.size[apex] + f.o.gradation * norm(f.s.points[apex] - middle));
   }
   const double linear = 0.5 * (f.size[a] + f.size[b]);
-  return l > m && std::abs(m - linear) > interpolation_error * m;
+  const double error = f.bounds.empty() || linear > m ? interpolation_error : excess_error;
+  if (l > m && std::abs(m - linear) > error * m) return true;
+  bool misses = false;
+  if (!f.bounds.empty())
+    for (int side : {h, o})
+      if (side >= 0)
+        each_bound(f, side, [&](const SizeBound& x) {
+          const double t = norm(x.place - f.s.points[a]) / l;
+          const double least = std::max(x.size, f.o.min);
+          misses |= l > 2 * least && (1 - t) * f.size[a] + t * f.size[b] > (1 + interpolation_error) * least;
+        });
+  return misses;
 }
 
 void connect(Field& f) { f.opposite = opposite_halfedges(f.s.tris, static_cast<int>(f.s.points.size())); }
@@ -190,6 +234,12 @@ bool split(Field& f, const Test& test) {
   const std::vector<int> parent = split_edges({f.s, f.opposite}, std::move(mark), f.chart);
   if (parent.empty()) return false;
   connect(f);
+  if (!f.root.empty()) {
+    std::vector<int> root;
+    root.reserve(parent.size());
+    for (int t : parent) root.push_back(f.root[t]);
+    f.root = std::move(root);
+  }
   if (!f.curvature.empty()) {
     std::vector<double> k;
     k.reserve(parent.size());
@@ -203,7 +253,8 @@ bool split(Field& f, const Test& test) {
 void lower_where_narrow(Field& f, SizeReport& report) {
   const auto model = model_of(f.s);
   if (f.curvature.empty()) f.curvature = curvature_of(f);
-  f.permits = local_feature_size({f.s, f.opposite, model}, f.curvature, f.size);
+  const auto feature = local_feature_size({f.s, f.opposite, model}, f.curvature, f.size);
+  for (std::size_t v = 0; v < feature.size(); ++v) f.permits[v] = std::min(f.permits[v], feature[v]);
   double most = 1;
   for (std::size_t v = 0; v < f.permits.size(); ++v) {
     const double r = std::max(f.permits[v], f.o.min);
@@ -226,9 +277,36 @@ void convert_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
+/// of triangles to be met also where it permits less than sizes may grow to elsewhere.
+std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& opposite,
+                                    const std::vector<double>& size, const SizeOptions& o,
+                                    SizeReport& report) {
+  const auto model = model_of(s);
+  std::vector<double> most = size;
+  if (o.triangles > 0)
+    for (double& h : most) h *= most_growth;
+  auto bounds = permitted_sizes({s, opposite, model}, most);
+  report.narrow = 0;
+  for (SizeBound& x : bounds) {
+    x.size = std::max(x.size, o.min);
+    const int a = origin(s.tris, x.half_edge), b = target(s.tris, x.half_edge);
+    const double h = 0.5 * (size[a] + size[b]);
+    if (!(x.size < h)) continue;
+    if (report.narrow++ > 0 && x.size >= report.narrow_to) continue;
+    report.narrow_at = x.place;
+    report.narrow_gap = x.gap;
+    report.narrow_from = h;
+    report.narrow_to = x.size;
+  }
+  if (report.narrow == 0) bounds.clear();
+  return bounds;
+}
+
 /// Makes a field that is not uniform.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
-                               SizeReport& report) {
+                               SizeReport& report, std::vector<SizeBound> bounds = {}) {
+  const bool uniform = !bounds.empty();
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinite;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
@@ -240,12 +318,25 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (may_split && o.at)
     while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
     }
-  for (int pass = 0;; ++pass) {
-    set_wishes(f);
-    make_sizes(f);
-    if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
+  auto follow_field = [&] {
+    for (int pass = 0;; ++pass) {
+      set_wishes(f);
+      bound_vertices(f);
+      make_sizes(f);
+      if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
+    }
+  };
+  if (bounds.empty()) {
+    follow_field();
+    bounds = bounds_below(s, f.opposite, f.size, o, report);
   }
-  lower_where_narrow(f, report);
+  if (!bounds.empty()) {
+    f.bounds = std::move(bounds);
+    f.root.resize(s.tris.size());
+    std::iota(f.root.begin(), f.root.end(), 0);
+    follow_field();
+  }
+  if (!uniform) lower_where_narrow(f, report);
   report.added = static_cast<int>(s.points.size() - n_before);
   report.scale = f.scale;
   return std::move(f.size);
@@ -292,7 +383,17 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     double h = options.size > 0 ? options.size : infinite;
     if (options.triangles > 0) h = std::min(h, size_for_count(area, options.triangles));
     if (options.max > 0) h = std::min(h, options.max);
-    size.assign(surface.points.size(), std::max(h, options.min));
+    h = std::max(h, options.min);
+    size.assign(surface.points.size(), h);
+    const std::vector<int> opposite =
+        opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+    std::vector<SizeBound> bounds = bounds_below(surface, opposite, size, options, report);
+    if (!bounds.empty()) {
+      SizeOptions o = options;
+      o.max = o.max > 0 ? std::min(o.max, most_growth * h) : most_growth * h;
+      size = make_field(surface, chart, o, may_split, report, std::move(bounds));
+      report.scale = 1;
+    }
   } else {
     size = make_field(surface, chart, options, may_split, report);
   }

@@ -33,6 +33,9 @@ struct SizeReport {
   int lowered = 0;       ///< vertices where the local feature size is below the size that was asked for
   Vec3 lowered_at{};     ///< where that is most, with
   double lowered_from = 0, lowered_to = 0;
+  int narrow = 0;    ///< places where lines or sheets so near each other permit no uniform size
+  Vec3 narrow_at{};  ///< the narrowest
+  double narrow_from = 0, narrow_to = 0, narrow_gap = 0;  ///< sizes asked for and permitted there
 };
 
 /// Sets vertex column `size` to the minimum of all sources (a tenth of the diagonal if none sets it), bounded

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/size/permitted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/core/intersect.h"
+#include "lib/core/normals.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
+constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features
+constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do, some are larger
+constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
+constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
+constexpr double opposed = 0.5;           ///< least cosine between the way across and the sides that face it
+constexpr double sharp_turn = 2.6;        ///< radians: a line that turns back by more ends in a sharp corner
+constexpr double least_bend = 1e-3;       ///< radians: edges across flatter ones hardly sag
+constexpr double flat_triangle = 1e-7;    ///< height over length, below which rounding decides on the normal
+constexpr int most_pieces = 1000;         ///< of an edge that are measured
+
+double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
+
+/// The point nearest to p on a segment.
+Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 d = b - a;
+  const double l = dot(d, d);
+  return l > 0 ? lerp(a, b, clamp01(dot(p - a, d) / l)) : a;
+}
+
+double distance_to(const Mesh& mesh, int t, Vec3 p) {
+  const auto& [i, j, k] = mesh.tris[t];
+  const auto w = closest_on_triangle(p, mesh.points[i], mesh.points[j], mesh.points[k]);
+  return norm(w[0] * mesh.points[i] + w[1] * mesh.points[j] + w[2] * mesh.points[k] - p);
+}
+
+/// Visits the triangles around a point that are connected within a distance.
+class Search {
+ public:
+  explicit Search(const Connectivity& surface) : surface_(surface), seen_(surface.n_tris(), 0) {}
+
+  /// Calls visit(t) for the triangles nearer to p than reach(), from the first one on, across edges that pass
+  /// the test; it returns false to stop.
+  template <class Crosses, class Reach, class Visit>
+  void flood(const std::vector<int>& first, Vec3 p, Crosses crosses, Reach reach, Visit visit) {
+    ++turn_;
+    queue_ = first;
+    for (int t : queue_) seen_[t] = turn_;
+    for (std::size_t i = 0; i < queue_.size(); ++i) {
+      const int t = queue_[i];
+      if (!visit(t)) return;
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        if (surface_.is_border(h) || !crosses(h)) continue;
+        const int u = surface_.opposite[h] / 3;
+        if (seen_[u] == turn_) continue;
+        seen_[u] = turn_;
+        if (distance_to(surface_.mesh, u, p) < reach()) queue_.push_back(u);
+      }
+    }
+  }
+
+ private:
+  const Connectivity& surface_;
+  std::vector<int> seen_, queue_;
+  int turn_ = 0;
+};
+
+/// What is measured at one point after the other.
+class Measure {
+ public:
+  Measure(const Connectivity& surface, const std::vector<double>& asked);
+  /// Returns the size permitted at t along half-edge h, and the gap there; infinite where
+  /// nothing bounds it.
+  SizeBound at(int h, double t, Search& search) const {
+    const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
+    return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
+  }
+  /// The size asked for on an edge.
+  double asked(int h) const { return 0.5 * (asked_[surface_.from(h)] + asked_[surface_.to(h)]); }
+  /// Whether a triangle that passes the test is connected with the edge of h within a distance from p.
+  template <class Test>
+  bool joins(int h, Vec3 p, double within, Test test, Search& search) const {
+    bool found = false;
+    search.flood(
+        {h / 3, surface_.opposite[h] / 3}, p, [](int) { return true; }, [&] { return within; },
+        [&](int t) { return !(found = test(t)); });
+    return found;
+  }
+  const Bvh& tree() const { return tree_; }
+  bool is_line(int h) const {
+    return surface_.is_border(h) || surface_.is_model(h) || surface_.is_model(surface_.opposite[h]);
+  }
+
+ private:
+  SizeBound strip(int h, Vec3 p, Search& search) const;
+  SizeBound sheet(int h, Vec3 p, Search& search) const;
+  bool adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const;
+  double until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const;
+
+  const Connectivity& surface_;
+  const std::vector<double>& asked_;
+  double least_width_;
+  std::vector<Vec3> normal_;         ///< of triangles
+  std::vector<int> after_, before_;  ///< per half-edge on a line: its neighbors around the region; else -1
+  Bvh tree_;
+};
+
+Measure::Measure(const Connectivity& surface, const std::vector<double>& asked)
+    : surface_(surface),
+      asked_(asked),
+      least_width_(least_width * diagonal(surface.mesh)),
+      normal_(face_normals(surface.mesh)),
+      after_(surface.n_half_edges(), -1),
+      before_(surface.n_half_edges(), -1),
+      tree_(surface.mesh) {
+  for (int h = 0; h < surface_.n_half_edges(); ++h) {
+    if (!is_line(h)) continue;
+    int g = next(h);
+    while (!is_line(g)) g = next(surface_.opposite[g]);
+    after_[h] = g;
+    before_[g] = h;
+  }
+}
+
+/// Whether q on the half-edge `other` is reached from p on h along the lines around their region, on a way
+/// that is short for the width between them.
+bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const {
+  const double most = std::max(per_width * width, asked(h));
+  for (bool forward : {true, false}) {
+    double way = 0;
+    bool sharp = false;
+    Vec3 x = p;
+    for (int g = h; g != other || way == 0;) {
+      const int v = forward ? surface_.to(g) : surface_.from(g);
+      const int then = forward ? after_[g] : before_[g];
+      way += norm(surface_.point(v) - x);
+      x = surface_.point(v);
+      if (then < 0 || way > most) {
+        way = infinite;
+        break;
+      }
+      const int w = forward ? surface_.to(then) : surface_.from(then);
+      sharp = sharp || angle(x - surface_.point(forward ? surface_.from(g) : surface_.to(g)),
+                             surface_.point(w) - x) > sharp_turn;
+      g = then;
+      if (g == h) {
+        way = infinite;
+        break;
+      }
+    }
+    way += norm(q - x);
+    if (way <= per_width * width || (sharp && way <= asked(h))) return true;
+  }
+  return false;
+}
+
+SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
+  double width = asked(h) / per_width;
+  auto inward = [&](int g) {
+    return normalized(
+        cross(normal_[g / 3], surface_.point(surface_.to(g)) - surface_.point(surface_.from(g))));
+  };
+  const Vec3 in = inward(h);
+  SizeBound found{h, p, infinite, 0};
+  search.flood(
+      {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
+      [&](int t) {
+        for (int g = 3 * t; g < 3 * t + 3; ++g) {
+          if (g == h || after_[g] < 0) continue;
+          const Vec3 q =
+              nearest_on_segment(p, surface_.point(surface_.from(g)), surface_.point(surface_.to(g)));
+          const double d = norm(q - p);
+          if (!(d < width) || d < least_width_ || dot(q - p, in) < opposed * d ||
+              dot(p - q, inward(g)) < opposed * d || adjacent_along(h, p, g, q, d))
+            continue;
+          width = d;
+          found.size = per_width * d;
+          found.gap = d;
+        }
+        return true;
+      });
+  return found;
+}
+
+/// Returns the distance from p at which the surface, connected without model edges, rises by `most`.
+double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const {
+  double reach = 0.5 * asked(h);
+  search.flood(
+      {h / 3, surface_.opposite[h] / 3}, p, [&](int g) { return !is_line(g); }, [&] { return reach; },
+      [&](int t) {
+        Vec3 level[2];
+        int n = 0;
+        for (int g = 3 * t; g < 3 * t + 3; ++g) {
+          const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
+          const double za = dot(a - p, up) - most, zb = dot(b - p, up) - most;
+          if ((za > 0) != (zb > 0) && n < 2) level[n++] = lerp(a, b, za / (za - zb));
+        }
+        if (n == 2) reach = std::min(reach, norm(nearest_on_segment(p, level[0], level[1]) - p));
+        return true;
+      });
+  return reach;
+}
+
+SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
+  const SizeBound none{h, p, infinite, 0};
+  const int s = h / 3, t = surface_.opposite[h] / 3;
+  const Vec3 along = surface_.point(surface_.to(h)) - surface_.point(surface_.from(h));
+  const double bend =
+      std::atan2(dot(cross(normal_[s], normal_[t]), along) / norm(along), dot(normal_[s], normal_[t]));
+  auto height = [&](int face) { return norm(surface_.area_vector(face)) / norm(along); };
+  const double heights = height(s) + height(t);
+  if (!(std::abs(bend) > least_bend) || !(std::min(height(s), height(t)) > flat_triangle * norm(along)))
+    return none;
+  const double most = asked(h);
+  // a chord of the size asked sags to the side where the surface is hollow, at most by this
+  const double sag = std::min(0.125 * most * most * std::abs(bend) / (heights / 3), 0.5 * most);
+  const Vec3 normal = normalized(normal_[s] + normal_[t]), up = bend > 0 ? -1.0 * normal : normal;
+  double gap = sag / most_sag;
+  int other = -1;
+  const Vec3 r{gap, gap, gap};
+  tree_.overlapping({p - r, p + r}, [&](int u) {
+    if (std::abs(dot(normal_[u], normal)) < opposed) return;
+    const auto& [i, j, k] = surface_.mesh.tris[u];
+    const auto w = closest_on_triangle(p, surface_.point(i), surface_.point(j), surface_.point(k));
+    const Vec3 d = w[0] * surface_.point(i) + w[1] * surface_.point(j) + w[2] * surface_.point(k) - p;
+    const double l = norm(d);
+    if (l > gap || dot(d, up) < opposed * l || l == 0) return;
+    if (l < gap || u < other) other = u;
+    gap = l;
+  });
+  if (other < 0) return none;
+  const double size =
+      std::max({2 * until_sag(h, p, up, most_sag * gap, search), least_height * heights, least_share * most});
+  if (size >= most || joins(
+                          h, p, size, [&](int u) { return u == other; }, search))
+    return none;
+  return {h, p, size, gap};
+}
+
+/// Measures a half-edge between two parameters at points about as far apart as the sizes they permit.
+void measure_along(const Measure& measure, int h, double from, double to, double length, Search& search,
+                   std::vector<SizeBound>& found) {
+  const SizeBound x = measure.at(h, 0.5 * (from + to), search);
+  if (x.size == infinite) return;
+  if ((to - from) * length < x.size) return found.push_back(x);
+  const int pieces = (int)std::min(std::ceil((to - from) * length / x.size), (double)most_pieces);
+  for (int i = 0; i < pieces; ++i) {
+    const SizeBound y = measure.at(h, from + (to - from) * (i + 0.5) / pieces, search);
+    if (y.size < infinite) found.push_back(y);
+  }
+}
+
+/// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
+void drop_intersecting(const Measure& measure, const Connectivity& surface, std::vector<SizeBound>& bounds) {
+  auto is_sheet = [&](const SizeBound& x) { return !measure.is_line(x.half_edge); };
+  if (std::none_of(bounds.begin(), bounds.end(), is_sheet)) return;
+  std::vector<char> marked(surface.n_tris(), 0);
+  for (const auto& [s, t] : self_intersections(surface.mesh, measure.tree())) marked[s] = marked[t] = 1;
+  Search search(surface);
+  std::erase_if(bounds, [&](const SizeBound& x) {
+    return is_sheet(x) && measure.joins(
+                              x.half_edge, x.place, 0.5 * measure.asked(x.half_edge),
+                              [&](int t) { return marked[t]; }, search);
+  });
+}
+
+}  // namespace
+
+std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked) {
+  const Measure measure(surface, asked);
+  constexpr int chunk = 1024;
+  const int n = surface.n_half_edges();
+  std::vector<std::vector<SizeBound>> found((n + chunk - 1) / chunk);
+#pragma omp parallel
+  {
+    Search search(surface);
+#pragma omp for schedule(dynamic)
+    for (int c = 0; c < (int)found.size(); ++c)
+      for (int h = c * chunk; h < std::min(n, (c + 1) * chunk); ++h) {
+        if (h < surface.opposite[h] && !measure.is_line(h)) continue;
+        const double length = surface.length(h);
+        const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
+        for (int i = 0; i < pieces; ++i)
+          measure_along(measure, h, (double)i / pieces, (i + 1.0) / pieces, length, search, found[c]);
+      }
+  }
+  std::vector<SizeBound> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  drop_intersecting(measure, surface, all);
+  return all;
+}
+
+}  // namespace meshpipe

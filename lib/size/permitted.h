@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The largest sizes that narrow strips and near sheets of a surface permit.
+#pragma once
+#include <vector>
+
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+
+/// A size that a surface permits at a point of one of its edges.
+struct SizeBound {
+  int half_edge;
+  Vec3 place;
+  double size;
+  double gap;  ///< to the other line or sheet
+};
+
+/// Measures where a surface comes so close to itself that edges of the length `asked` (per vertex) cannot be
+/// good: a strip between two lines (borders or model edges) permits a multiple of its width, and a bent sheet
+/// whose chords sag towards another sheet permits those that sag by a share of the gap. Lines and sheets that
+/// meet nearby are adjacent, not near. Returns the bounds in the order of half-edges; for edges that are on
+/// no line, at one of the two. Near-linear where few places are narrow.
+std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked);
+
+}  // namespace meshpipe

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/size/permitted.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lib/core/topology.h"
+#include "lib/size/size.h"
+
+using namespace meshpipe;
+
+namespace {
+
+std::vector<SizeBound> bounds_of(const Mesh& mesh, double asked) {
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  return permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), asked));
+}
+
+/// A flat rectangle of two triangles.
+Mesh rectangle(double length, double width) {
+  return {{{0, 0, 0}, {length, 0, 0}, {length, width, 0}, {0, width, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+/// Adds an open tube around the z axis, of triangles half as long as they are wide.
+void add_tube(Mesh& mesh, double radius, double length) {
+  constexpr int n = 96, rows = 20;
+  const int first = (int)mesh.points.size();
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double a = 2 * std::numbers::pi * j / n;
+      mesh.points.push_back({radius * std::cos(a), radius * std::sin(a), length * i / rows});
+    }
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = first + i * n + j, b = first + i * n + (j + 1) % n;
+      mesh.tris.push_back({a, b, b + n});
+      mesh.tris.push_back({a, b + n, a + n});
+    }
+}
+
+}  // namespace
+
+TEST(Permitted, SevenWidthsOfAStrip) {
+  const auto bounds = bounds_of(rectangle(8, 0.2), 4);
+  ASSERT_GT(bounds.size(), 4u);
+  for (const SizeBound& b : bounds) {
+    EXPECT_NEAR(b.size, 7 * 0.2, 1e-12);
+    EXPECT_NEAR(b.gap, 0.2, 1e-12);
+    EXPECT_NEAR(b.place.y, b.half_edge == 0 ? 0 : 0.2, 1e-12);
+  }
+  EXPECT_TRUE(bounds_of(rectangle(8, 0.2), 1.3).empty());
+}
+
+TEST(Permitted, LinesThatMeetAreNotNear) {
+  EXPECT_TRUE(bounds_of(rectangle(1, 1), 100).empty());
+  EXPECT_TRUE(bounds_of(rectangle(1, 0.2), 100).empty());  // five widths long
+}
+
+TEST(Permitted, ChordsOfASheetStayOffTheNext) {
+  Mesh mesh;
+  add_tube(mesh, 1, 2);
+  EXPECT_TRUE(bounds_of(mesh, 0.5).empty());
+  add_tube(mesh, 0.98, 2);
+  const auto bounds = bounds_of(mesh, 0.5);
+  ASSERT_GT(bounds.size(), 1000u);
+  for (const SizeBound& b : bounds) {
+    EXPECT_NEAR(std::hypot(b.place.x, b.place.y), 1, 1e-3) << "the inner tube's chords sag away";
+    EXPECT_NEAR(b.size, std::sqrt(8 * 0.45 * 0.02), 0.03);
+    EXPECT_NEAR(b.gap, 0.02, 1e-3);
+  }
+  EXPECT_TRUE(bounds_of(mesh, 0.2).empty());
+}
+
+TEST(Permitted, FlatSheetsAreAsNearAsTheyLike) {
+  Mesh mesh = rectangle(1, 1);
+  for (const Vec3 p : rectangle(1, 1).points) mesh.points.push_back(p + Vec3{0, 0, 0.001});
+  mesh.tris.push_back({4, 5, 6});
+  mesh.tris.push_back({4, 6, 7});
+  EXPECT_TRUE(bounds_of(mesh, 0.5).empty());
+}
+
+TEST(Permitted, SizesGrowAwayFromNarrowPlaces) {
+  // a strip on one side of a square: the number of triangles is met all the same
+  Surface s;
+  static_cast<Mesh&>(s) = rectangle(8, 0.2);
+  s.points.push_back({8, 8, 0});
+  s.points.push_back({0, 8, 0});
+  s.tris.push_back({3, 2, 4});
+  s.tris.push_back({3, 4, 5});
+  s = surface_of(s);
+  s.face.set("model", std::vector<std::uint8_t>{0, 2, 1, 0});
+  s.face.set("part", std::vector<int>{0, 0, 0, 0});
+  SizeOptions o;
+  o.triangles = 40;
+  const SizeReport r = set_size(s, nullptr, o);
+  EXPECT_GT(r.narrow, 0);
+  EXPECT_NEAR(r.narrow_to, 1.4, 1e-9);
+  EXPECT_NEAR(r.triangles, 40, 0.5);
+  const auto& size = s.vertex.get<double>("size");
+  for (std::size_t v = 0; v < size.size(); ++v) EXPECT_TRUE(s.points[v].y > 0.3 || size[v] < 1.7);
+  EXPECT_GT(size[4], 1.9);
+}
