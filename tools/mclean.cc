@@ -12,7 +12,7 @@ using namespace meshpipe;
 namespace {
 
 struct Options : CleanOptions {
-  std::string within = "auto", most = "all", how = "pair", data, offending;
+  std::string within = "auto", most = "all", how = "pair", resolving = "none", data, offending;
 };
 
 /// Throws: BadUsage for values that no surface makes valid.
@@ -33,6 +33,10 @@ void put(Io& io, const CleanReport& r, const CleanOptions& options) {
   io.report["clean"] = r.nothing;
   io.report["weld_tolerance"] = r.tolerance;
   for (const auto& [key, count, what] : table_of(r, options)) io.report[key] = count;
+  if (options.resolve != options.none) {
+    io.report["dropped_area"] = r.resolved.dropped_area;
+    io.report["closed"] = r.resolved.closed;
+  }
   for (const auto& [t, n, a, b, p] : r.nonorientable)
     io.report[options.drop_nonorientable ? "dropped_nonorientable" : "refused_nonorientable"].push_back(
         {{"triangle", t}, {"triangles", n}, {"disagree", {a, b}}, {"place", {p.x, p.y, p.z}}});
@@ -64,8 +68,8 @@ void name_patches(Stream& stream, const CleanReport& report) {
     if (const std::string name = stream.name_of(2, was); !name.empty())
       stream.names.push_back({2, patch, name + "-" + std::to_string(number)});
   }
-  for (std::size_t i = 0; i < report.cap_patches.size(); ++i)
-    stream.names.push_back({2, report.cap_patches[i], "cap-" + std::to_string(i + 1)});
+  for (std::size_t i = 0; i < report.holes.patches.size(); ++i)
+    stream.names.push_back({2, report.holes.patches[i], "cap-" + std::to_string(i + 1)});
 }
 
 void write_offending(const Io& io, const std::string& path, const CleanReport& report, const Mesh& input) {
@@ -105,6 +109,10 @@ int main(int argc, char** argv) {
         app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
             ->type_name("NAME")
             ->group("Reports");
+        app.add_option("--resolve", o.resolving,
+                       "self-intersections: none (default: left as they are), outer: only what bounds the "
+                       "outside is kept, or all: every piece")
+            ->check(CLI::IsMember({"none", "outer", "all"}));
         app.add_option("--culprits", o.offending, "write the offending triangles to this file")
             ->type_name("FILE")
             ->group("Reports");
@@ -112,6 +120,7 @@ int main(int argc, char** argv) {
       [&](Io& io) {
         check(o);
         o.sheets = o.how == "keep" ? o.keep : o.how == "split" ? o.split : o.pair;
+        o.resolve = o.resolving == "all" ? o.all : o.resolving == "outer" ? o.outer : o.none;
         if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
         Stream stream = io.read();
         Surface& s = stream.surface;

@@ -246,15 +246,12 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
   if (most > std::numeric_limits<int>::max() - holes)
     throw NotAdmissible("patch " + std::to_string(most) + " leaves no numbers for " + std::to_string(holes) +
                         " more patches");
-  for (int i = 1; i <= holes; ++i) report.cap_patches.push_back(most + i);
+  for (int i = 1; i <= holes; ++i) report.holes.patches.push_back(most + i);
   for (std::size_t t = 0; t < cap.size(); ++t)
-    if (cap[t] >= 0) patch[t] = report.cap_patches[cap[t]];
+    if (cap[t] >= 0) patch[t] = report.holes.patches[cap[t]];
 }
 
-}  // namespace
-
-void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
-  expect_measurable(surface);
+void clean_once(Surface& surface, const CleanOptions& options, CleanReport& report) {
   report = {};
   report.input_vertices = (int)surface.points.size();
   report.input_triangles = (int)surface.tris.size();
@@ -284,6 +281,52 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   }
   take_over(r, surface, options, report);
   label_caps(surface, cap, report);
+}
+
+/// Repairs a resolved surface: `report` is that of the repair before, and keeps what concerns the input.
+void clean_resolved(Surface& surface, CleanOptions options, CleanReport& report) {
+  options.weld = 0;  // vertices at intersections may be as close as rounding permits
+  options.fill_holes = 0;
+  CleanReport after;
+  clean_once(surface, options, after);
+  after.input_vertices = report.input_vertices;
+  after.input_triangles = report.input_triangles;
+  after.welded = report.welded;
+  after.welded_near = report.welded_near;
+  after.tolerance = report.tolerance;
+  after.unreferenced = report.unreferenced;
+  after.degenerate += report.degenerate;
+  after.duplicate += report.duplicate;
+  after.flipped += report.flipped;
+  after.holes = report.holes;
+  after.nonorientable = std::move(report.nonorientable);
+  after.offending = std::move(report.offending);
+  after.resolved = report.resolved;
+  after.nothing = false;
+  report = std::move(after);
+}
+
+}  // namespace
+
+void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
+  expect_measurable(surface);
+  if (options.resolve == CleanOptions::none) return clean_once(surface, options, report);
+  CleanOptions first = options;
+  first.keep_components = 0;
+  first.sheets = CleanOptions::pair;
+  Surface s = surface;
+  clean_once(s, first, report);
+  const ResolveOptions how{options.resolve == CleanOptions::all ? ResolveOptions::all
+                                                                : ResolveOptions::outer};
+  const ResolveReport resolved = resolve(s, how);
+  if (resolved.nothing) {
+    clean_once(surface, options, report);
+    report.resolved = resolved;
+    return;
+  }
+  report.resolved = resolved;
+  clean_resolved(s, options, report);
+  surface = std::move(s);
 }
 
 CleanReport clean(Surface& surface, const CleanOptions& options) {

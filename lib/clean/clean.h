@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/core/mesh.h"
+#include "lib/resolve/resolve.h"
 
 namespace meshpipe {
 
@@ -20,6 +21,8 @@ struct CleanOptions {
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices.
   enum Sheets { pair, split, keep } sheets = pair;
+  /// Self-intersections: left as they are, resolved into the boundary of the outside, or into all pieces.
+  enum Resolve { none, outer, all } resolve = none;
 };
 
 /// What may be wrong with a triangle of the input.
@@ -42,6 +45,7 @@ struct Nonorientable {
 struct HoleCounts {
   int filled = 0, triangles = 0;  ///< loops, and the triangles they took
   int left = 0;                   ///< loops on non-manifold edges, or whose every filling doubles an edge
+  std::vector<int> patches;       ///< of the loops filled, if each has its own
 };
 
 /// Counts of repairs. Triangles are numbered as in the input.
@@ -64,8 +68,8 @@ struct CleanReport {
   int components = 0;            ///< of the result
   int dropped_components = 0, dropped_triangles = 0;  ///< by keep_components
   HoleCounts holes;
+  ResolveReport resolved;
   std::vector<std::array<int, 2>> sheet_patches;  ///< by sheets = keep: the new patch, and the one it was
-  std::vector<int> cap_patches;                   ///< the patch of each filled hole, if they have their own
   std::vector<Nonorientable> nonorientable;       ///< components dropped
   std::vector<OffendingFace> offending;           ///< by fault, then by triangle
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
@@ -76,6 +80,7 @@ struct CleanReport {
 /// holes. A sound surface stays bit for bit as it is, copies of vertices that keep fans apart included; a
 /// repaired one loses face column `model` and numbers its vertices by first use if some had to go.
 /// Sheets that are kept stay non-manifold, with model edges between them and a patch each.
+/// Self-intersections are resolved when all that is done, and then connectivity is repaired once more.
 /// Throws: NotAdmissible if a component is not orientable or no triangle is left; the report then holds the
 /// offending faces, and the surface is as it was.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);

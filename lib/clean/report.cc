@@ -27,7 +27,9 @@ std::string describe_nothing_left(const CleanReport& r) {
   return what;
 }
 
-std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
+namespace {
+
+std::vector<RepairRow> repairs(const CleanReport& r, const CleanOptions& options) {
   char within[64];
   std::snprintf(within, sizeof within, "vertices merged with one within %g", r.tolerance);
   const bool keep = options.sheets == CleanOptions::keep;
@@ -53,10 +55,27 @@ std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& option
       {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
       {"holes_filled", r.holes.filled, "holes filled"},
       {"hole_triangles", r.holes.triangles, "triangles added in holes"},
-      {"cap_patches", (int)r.cap_patches.size(), "patches added, one for each filled hole"},
+      {"cap_patches", (int)r.holes.patches.size(), "patches added, one for each filled hole"},
       {"holes_left", r.holes.left,
        "holes left open, along non-manifold edges or where filling would double an edge"},
   };
+}
+
+}  // namespace
+
+std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
+  std::vector<RepairRow> table = repairs(r, options);
+  if (options.resolve == CleanOptions::none) return table;
+  char area[64];
+  std::snprintf(area, sizeof area, "pieces inside dropped, of area %.4g", r.resolved.dropped_area);
+  for (RepairRow row :
+       {RepairRow{"intersecting_pairs", r.resolved.pairs, "pairs of triangles that intersect"},
+        {"intersection_vertices", r.resolved.new_vertices, "vertices added where they do"},
+        {"dropped_pieces", r.resolved.dropped, area},
+        {"reversed_pieces", r.resolved.reversed, "pieces reversed, which were inside out"},
+        {"intersecting_left", r.resolved.left, "pairs that still intersect"}})
+    table.push_back(std::move(row));
+  return table;
 }
 
 std::string remark_of(const CleanReport& r) {

@@ -462,7 +462,7 @@ TEST(Clean, FillsLongLoopsAndNamesEachCap) {
     const std::vector<int>& patch = s.face.get<int>("patch");
     for (std::size_t t = 0; t < s.tris.size(); ++t) {
       const Vec3 twice = area_vector(s.points[s.tris[t][0]], s.points[s.tris[t][1]], s.points[s.tris[t][2]]);
-      EXPECT_EQ(patch[t] == r.cap_patches.at(0), t >= std::size_t(2 * n));
+      EXPECT_EQ(patch[t] == r.holes.patches.at(0), t >= std::size_t(2 * n));
       if (t < std::size_t(2 * n)) continue;
       EXPECT_LT(twice.z, 0);
       cap += norm(twice) / 2;

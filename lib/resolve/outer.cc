@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/resolve/outer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "lib/core/bvh.h"
+#include "lib/core/edges.h"
+#include "lib/core/predicates.h"
+#include "lib/core/union_find.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int unknown = std::numeric_limits<int>::max();
+
+/// The sides of pieces: 2 t is the one that the normal of piece t points to, 2 t + 1 the other. Sides of one
+/// region that are connected along edges form a shell.
+struct Sides {
+  UnionFind shell, component;
+  std::vector<char> open;  ///< per piece: it has an edge that does not close
+};
+
+/// Sorts the half-edges of an edge counterclockwise around it, seen against the direction from its smaller to
+/// its larger vertex.
+class Around {
+ public:
+  Around(const Pieces& pieces, const std::vector<Tri>& tris, const ExactPoints& points)
+      : pieces_(pieces), tris_(tris), points_(points) {}
+  bool forward(int h) const { return origin(pieces_.tris, h) < target(pieces_.tris, h); }
+  /// The side of piece h / 3 that is seen from further on, or with `back` from before.
+  int side(int h, bool back = false) const { return 2 * (h / 3) + (forward(h) == back); }
+  void sort(std::vector<int>& edge) const {
+    const int first = edge[0];
+    std::vector<std::pair<int, int>> order;  // first the half turn, then the half-edge
+    for (int h : edge) {
+      const int s = h == first ? 2 : turn(first, h);
+      order.push_back({h == first ? -1 : s > 0 ? 0 : s == 0 ? 1 : 2, h});
+    }
+    std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+      if (a.first != b.first) return a.first < b.first;
+      return a.second != b.second && turn(a.second, b.second) > 0;
+    });
+    for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = order[i].second;
+  }
+
+ private:
+  /// +1 if g is within half a turn after h, -1 if before.
+  int turn(int h, int g) const {
+    const int s = points_.side(tris_[pieces_.origin[h / 3]], origin(pieces_.tris, prev(g)));
+    return forward(h) ? s : -s;
+  }
+  const Pieces& pieces_;
+  const std::vector<Tri>& tris_;
+  const ExactPoints& points_;
+};
+
+Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const ExactPoints& points) {
+  const int n = (int)pieces.tris.size();
+  Sides s{UnionFind(2 * (std::size_t)n), UnionFind(n), std::vector<char>(n, 0)};
+  const Around around(pieces, tris, points);
+  std::vector<int> edge;
+  for_each_edge(pieces.tris, points.size(), [&](std::span<const EdgeUse> uses) {
+    edge.clear();
+    int sum = 0;
+    for (EdgeUse e : uses) {
+      const int h = half_edge(e);
+      edge.push_back(h);
+      sum += around.forward(h) ? pieces.weight[h / 3] : -pieces.weight[h / 3];
+      s.component.join(h / 3, edge[0] / 3);
+    }
+    if (sum != 0) s.open[edge[0] / 3] = 1;
+    if (edge.size() > 2) around.sort(edge);
+    for (std::size_t i = 0; i < edge.size(); ++i)
+      s.shell.join(around.side(edge[i]), around.side(edge[(i + 1) % edge.size()], true));
+  });
+  return s;
+}
+
+/// Returns the sign of a crossing of the ray from p in direction x with a triangle: +1 if the ray leaves
+/// through it. Symbolic perturbation (p moves a little in z, less in y) makes sums right at edges and
+/// vertices.
+int leaves(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3* corner[] = {&a, &b, &c};
+  bool inside = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 *low = corner[i], *high = corner[(i + 1) % 3];
+    if ((low->z > p.z) == (high->z > p.z)) continue;
+    if (low->z > high->z) std::swap(low, high);
+    inside ^= orient2d({low->y, low->z}, {high->y, high->z}, {p.y, p.z}) > 0;
+  }
+  if (!inside) return 0;
+  const int below = orient3d(a, b, c, p), turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});
+  return below * turn > 0 ? turn : 0;
+}
+
+/// Per component: the winding number of all others that are closed, in the middle of its largest piece.
+std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, const Pieces& pieces,
+                             const ExactPoints& points, const Hull& hull) {
+  const std::vector<char>& open = hull.open;
+  std::vector<int> sum(open.size(), 0);
+  if (open.size() < 2) return sum;
+  std::vector<Vec3> place(open.size());
+  std::vector<double> largest(open.size(), -1);
+  for (std::size_t t = 0; t < pieces.tris.size(); ++t) {
+    const auto [a, b, c] = pieces.tris[t];
+    const Vec3 p = points.near(a), q = points.near(b), r = points.near(c);
+    const int k = hull.component[t];
+    if (const double area = norm(area_vector(p, q, r)); area > largest[k])
+      largest[k] = area, place[k] = (1.0 / 3) * (p + q + r);
+  }
+  const Bvh tree(mesh);
+  double end = -std::numeric_limits<double>::infinity();
+  for (const Tri& t : mesh.tris)
+    for (int v : t) end = std::max(end, mesh.points[v].x);
+  for (int c = 0; c < (int)sum.size(); ++c) {
+    const Vec3 p = place[c];
+    tree.overlapping({p, {end, p.y, p.z}}, [&](int t) {
+      if (const int d = hull.component[pieces.piece_of[t]]; d == c || open[d]) return;
+      const Tri& v = mesh.tris[t];
+      sum[c] += weight[t] * leaves(p, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+    });
+  }
+  return sum;
+}
+
+/// The shell of each component that bounds it from outside: its volume, by the orientation away from the
+/// region, is the negative sum of the others'.
+std::vector<int> outer_shells(const Pieces& pieces, const ExactPoints& points, Sides& sides,
+                              const Hull& hull) {
+  const int n = (int)pieces.tris.size();
+  std::vector<int> seed(hull.open.size(), -1), outer(hull.open.size(), -1);
+  std::vector<double> volume(2 * (std::size_t)n, 0);
+  for (int t = 0; t < n; ++t) {
+    const auto [a, b, c] = pieces.tris[t];
+    int& o = seed[hull.component[t]];
+    if (o < 0) o = a;
+    const Vec3 p = points.near(o);
+    const double v = dot(points.near(a) - p, cross(points.near(b) - p, points.near(c) - p));
+    volume[sides.shell.find(2 * t)] -= v;
+    volume[sides.shell.find(2 * t + 1)] += v;
+  }
+  for (int t = 0; t < n; ++t)
+    for (int side : {2 * t, 2 * t + 1}) {
+      const int s = sides.shell.find(side);
+      int& least = outer[hull.component[t]];
+      if (least < 0 || volume[s] < volume[least]) least = s;
+    }
+  return outer;
+}
+
+}  // namespace
+
+Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
+                const ExactPoints& points) {
+  const int n = (int)pieces.tris.size();
+  Sides sides = connect_sides(pieces, tris, points);
+  Hull hull{std::vector<signed char>(n, 0), std::vector<int>(n), {}};
+  std::vector<int> number(n, -1);
+  for (int t = 0; t < n; ++t) {
+    int& c = number[sides.component.find(t)];
+    if (c < 0) c = (int)hull.open.size(), hull.open.push_back(0);
+    hull.component[t] = c;
+  }
+  for (int t = 0; t < n; ++t)
+    if (sides.open[t]) hull.open[hull.component[t]] = 1;
+  Mesh mesh;
+  for (int p = 0; p < points.size() && points.is_vertex(p); ++p) mesh.points.push_back(points.near(p));
+  mesh.tris = tris;
+  const std::vector<int> around = surrounding(mesh, weight, pieces, points, hull);
+  const std::vector<int> outer = outer_shells(pieces, points, sides, hull);
+  // winding numbers go from shell to shell through the pieces
+  std::vector<int> winding(2 * (std::size_t)n, unknown);
+  for (std::size_t c = 0; c < outer.size(); ++c) winding[outer[c]] = around[c];
+  std::vector<std::vector<int>> through;  // pieces of each shell
+  std::vector<int> shell_number(2 * (std::size_t)n, -1), todo;
+  for (int side = 0; side < 2 * n; ++side) {
+    int& k = shell_number[sides.shell.find(side)];
+    if (k < 0) k = (int)through.size(), through.emplace_back();
+    through[k].push_back(side);
+  }
+  for (int o : outer) todo.push_back(o);
+  while (!todo.empty()) {
+    const int s = todo.back();
+    todo.pop_back();
+    for (int side : through[shell_number[s]]) {
+      const int t = side / 2, other = sides.shell.find(side ^ 1);
+      const int there = winding[s] + (side % 2 ? -pieces.weight[t] : pieces.weight[t]);
+      if (winding[other] == unknown) {
+        winding[other] = there;
+        todo.push_back(other);
+      } else if (winding[other] != there) {
+        hull.open[hull.component[t]] = 1;
+      }
+    }
+  }
+  for (int t = 0; t < n; ++t) {
+    const bool front = winding[sides.shell.find(2 * t)] != 0,
+               back = winding[sides.shell.find(2 * t + 1)] != 0;
+    hull.keep[t] = hull.open[hull.component[t]] ? pieces.weight[t] != 0 : back - front;
+  }
+  return hull;
+}
+
+}  // namespace meshpipe

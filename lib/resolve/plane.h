@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The arrangement of segments within one triangle, triangulated, in exact arithmetic.
+#pragma once
+#include <vector>
+
+#include "lib/resolve/exact.h"
+#include "lib/resolve/plane_mesh.h"
+
+namespace meshpipe {
+
+/// A triangulation of a triangle, in which points and segments are inserted. One object serves many triangles
+/// in turn, so that memory is reused.
+class TriangleArrangement {
+ public:
+  explicit TriangleArrangement(ExactPoints& points) : points_(points) {}
+  /// Starts with one triangle of three vertices. Requires: it has area.
+  void start(const Tri& corners);
+  /// Makes point p, which lies on the triangle, a vertex.
+  void insert(int p);
+  /// Makes the segment between two vertices a chain of fixed edges; where it crosses other fixed edges, there
+  /// are new vertices.
+  void insert(int p, int q);
+  /// Flips free edges towards Delaunay's, by rounded coordinates.
+  void improve();
+  /// The triangles, oriented as the corners; the sides of the corners are fixed.
+  const PlaneMesh& mesh() const { return mesh_; }
+
+ private:
+  int turn(int a, int b, int c) const { return points_.turn(a, b, c, view_); }
+  bool ahead(int p, int q, int r) const;
+  bool can_flip(int h) const;
+  void improve(std::vector<int> todo);
+  int locate(int p, int& on) const;
+  void clear_way(int p, int q, const std::vector<std::array<int, 2>>& crossed);
+  int step(int p, int on_line);
+
+  ExactPoints& points_;
+  PlaneMesh mesh_;
+  View view_;
+  std::vector<std::array<int, 2>> lines_;  ///< two points on each
+  int last_ = 0;                           ///< a triangle of the point inserted last
+};
+
+}  // namespace meshpipe

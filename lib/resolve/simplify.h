@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Slivers of an arrangement removed, as rounding makes them intersect again.
+#pragma once
+#include <vector>
+
+#include "lib/resolve/arrange.h"
+
+namespace meshpipe {
+
+/// Points and the pieces between them.
+struct PieceMesh {
+  std::vector<Vec3> points;
+  Pieces pieces;
+};
+
+/// Makes one vertex of equal ones, drops triangles without area, and unites those with the same vertices.
+void normalize(PieceMesh& mesh);
+
+/// Among the triangles at the vertices flagged: merges vertices no farther apart than `tolerance`, and
+/// divides edges at vertices of a triangle that are no farther from them. What was closed stays closed. The
+/// result is normalized.
+void remove_slivers(PieceMesh& mesh, const std::vector<char>& flagged, double tolerance);
+
+}  // namespace meshpipe
