@@ -9,6 +9,7 @@
 #include "formats/stream/line_tables.h"
 #include "lib/check/check.h"
 #include "lib/clean/clean.h"
+#include "lib/core/number.h"
 #include "lib/core/weld.h"
 #include "tools/common.h"
 #include "tools/report/rounds.h"
@@ -75,6 +76,15 @@ void say(Io& io, const Findings& f) {
   report["reference"] = reference;
 }
 
+/// Where the surfaces are farther apart than half the size, which the contract may allow.
+void warn_of_distance(Io& io, const Findings& f) {
+  const Deviation& d = f.distance.deviation;
+  if (d.worst <= 1) return;
+  io.say("the surfaces are " + shown(most_deviation * d.worst) + " of the local size apart at (" +
+         shown(d.place.x) + " " + shown(d.place.y) + " " + shown(d.place.z) +
+         "): detail as fine as the size is lost; --max-error bounds the distance");
+}
+
 /// Reports what mclean has done to the input's topology, which the comparison with the cleaned input hides.
 void say_cleaning(Io& io, const Stream& stream) {
   for (const std::string& text : stream.remarks) {
@@ -86,22 +96,14 @@ void say_cleaning(Io& io, const Stream& stream) {
   }
 }
 
-/// Writes the result with sizes that are small enough where it is too far from the reference, and smaller
-/// ones where it fails. Returns whether any size changed: if not, nothing is written.
-bool write_refined(const Io& io, const Stream& stream, const Surface& reference, const Options& o,
-                   const Surface& faulty) {
+/// Writes the result with sizes that may meet the contract. Returns whether any size changed: if not, nothing
+/// is written.
+bool write_refined(const Io& io, const Stream& stream, const std::string& file, std::vector<double> size) {
+  if (size == stream.surface.vertex.get<double>("size")) return false;
   Stream refined;
   static_cast<Mesh&>(refined.surface) = stream.surface;
-  const auto& given = stream.surface.vertex.get<double>("size");
-  std::vector<double> size = given;
-  if (o.max_error > 0) {
-    const auto errors = triangle_errors(reference, Bvh(reference), refined.surface, Bvh(refined.surface));
-    size = refined_size(refined.surface, size, errors, o.max_error * diagonal(reference));
-  }
-  size = refined_size(refined.surface, size, severity_of(faulty, refined.surface), 1);
-  if (size == given) return false;
   refined.surface.vertex.set("size", std::move(size));
-  io.write_to(o.refine, refined);
+  io.write_to(file, refined);
   return true;
 }
 
@@ -149,6 +151,7 @@ void check(Io& io, const Options& o, Verdict& verdict) {
   Surface reference;
   const Findings f = compare(io, stream, o, reference);
   say(io, f);
+  warn_of_distance(io, f);
   say_cleaning(io, stream);
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.offending.empty()) {
@@ -165,7 +168,7 @@ void check(Io& io, const Options& o, Verdict& verdict) {
   verdict.outcome.failures = failures;
   if (!o.refine.empty() && !failures.empty())
     verdict.outcome.refined =
-        write_refined(io, stream, reference, o, offending_faces(contract, f, stream.surface));
+        write_refined(io, stream, o.refine, smaller_sizes(contract, f, stream.surface, reference));
   if (verdict.repeats())
     io.json.clear();
   else if (failures.empty() || o.accept)

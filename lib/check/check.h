@@ -36,6 +36,12 @@ struct Findings {
   std::vector<std::string> lost_patches;
 };
 
+/// Of the local size: an edge that is farther off cuts through what it should follow, and that is worth a
+/// warning. (Three edges that stand for a circle deviate by 0.29 of their length.) Unit of Deviation::ratio.
+/// The contract allows twice as much, the roughness of surfaces with detail as fine as the size (steps of
+/// voxels, terrain: 0.9); what is farther off is a limb, a component, or a spike that one of the two lacks.
+constexpr double most_deviation = 0.5;
+
 /// Measures everything but the patches. Reads, where present, the result's vertex columns `size` and
 /// `ref_face`, and of both surfaces face column `model`; the reference is compared as it was before cuts
 /// (face column `origin`), and as the smooth surface where face column `curved` is there.
@@ -96,7 +102,8 @@ enum Offense {
   offends_intersections = 2,
   offends_folds = 4,
   offends_kappa = 8,
-  offends_vertices = 16
+  offends_vertices = 16,
+  offends_deviation = 32
 };
 /// Returns the faces in which the contract fails, with face columns int `triangle` (number in the mesh) and
 /// uchar `fault` (bits of Offense). Vertices stay, some unused.
@@ -105,5 +112,10 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
 /// Returns per triangle the factor by which its size is too large for a sound mesh, as `errors` of
 /// refined_size with limit 1; 0 where no triangle at its vertices is offending.
 std::vector<double> severity_of(const Surface& offending, const Mesh& mesh);
+
+/// Returns the result's sizes, smaller where it is too far from the reference and where triangles offend.
+/// Requires: vertex column `size`.
+std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
+                                  const Mesh& reference);
 
 }  // namespace meshpipe

@@ -16,10 +16,11 @@ constexpr double nan = no_figure;
 constexpr const char* flags[] = {"topology", "intersections", "folds", "patches"};
 // Lower limits: kappa (of triangles that are not forced), kappa_off_wedges, kappa_mean, angle (degrees).
 // Upper limits: hausdorff (of its bound), mean, rms, boundary, features (over the diagonal), vertices (of
-// Findings::off), size (edge deviation), trace (kappa_elsewhere - kappa_by_cuts).
-constexpr const char* limits[] = {
-    "kappa", "kappa_off_wedges", "kappa_mean", "angle",    "hausdorff", "mean",
-    "rms",   "boundary",         "features",   "vertices", "size",      "trace"};
+// Findings::off), deviation (of the local size), size (edge deviation), trace (kappa_elsewhere -
+// kappa_by_cuts).
+constexpr const char* limits[] = {"kappa", "kappa_off_wedges", "kappa_mean", "angle",    "hausdorff", "mean",
+                                  "rms",   "boundary",         "features",   "vertices", "deviation", "size",
+                                  "trace"};
 
 template <class Names>
 bool among(const Names& names, const std::string& name) {
@@ -106,9 +107,9 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
         worst < 0 ? shown(value) : "smallest is " + shown(value) + " in " + triangle(mesh, worst);
     facts.push_back(what + ", not above " + shown(r.limit), value, worst);
   };
-  auto within = [&](double value, const std::string& where = "") {
+  auto within = [&](double value, const std::string& where = "", int worst = -1) {
     if (value <= r.limit) return;
-    facts.push_back(shown(value) + where + ", above " + shown(r.limit), value);
+    facts.push_back(shown(value) + where + ", above " + shown(r.limit), value, worst);
   };
   if (r.name == "kappa")
     return above(f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced], f.worst_unforced);
@@ -123,6 +124,13 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
   if (r.name == "boundary") return within(f.boundary);
   if (r.name == "features") {
     if (f.features) within(*f.features);
+    return;
+  }
+  if (r.name == "deviation") {
+    within(most_deviation * d.deviation.worst,
+           " of the local size is how far the surfaces are apart " + place(d.deviation.place),
+           d.deviation.triangle);
+    if (!facts.failures.empty()) facts.failures.back().place = d.deviation.place;
     return;
   }
   if (r.name == "size") return within(q.edge_deviation);
@@ -154,6 +162,8 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
       if (r.name == "vertices" &&
           !(f.off[v[0]] <= r.limit && f.off[v[1]] <= r.limit && f.off[v[2]] <= r.limit))
         faults[t] |= offends_vertices;
+      if (r.name == "deviation" && most_deviation * f.distance.deviation.ratio[t] > r.limit)
+        faults[t] |= offends_deviation;
     }
   }
   return faults;
@@ -161,7 +171,8 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
 
 }  // namespace
 
-const char* const default_contract = "topology,intersections,folds,patches,vertices=0.1,kappa=0.1";
+const char* const default_contract =
+    "topology,intersections,folds,patches,vertices=0.1,kappa=0.1,deviation=1";
 
 Contract parse_contract(const std::string& list) {
   Contract contract;
@@ -223,20 +234,6 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
   return s;
 }
 
-std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
-  constexpr double crowded = 2, crossing = 1.7;  // sizes of three tenths, and a little more
-  std::vector<double> at(mesh.points.size(), 0), severity(mesh.tris.size(), 0);
-  const auto& triangle = offending.face.get<int>("triangle");
-  const auto& fault = offending.face.get<std::uint8_t>("fault");
-  for (std::size_t i = 0; i < triangle.size(); ++i)
-    for (int v : mesh.tris[triangle[i]])
-      at[v] = std::max(at[v], fault[i] & offends_kappa ? crowded : crossing);
-  // the next mesh has other triangles there: include the neighbors
-  for (std::size_t t = 0; t < severity.size(); ++t)
-    for (int v : mesh.tris[t]) severity[t] = std::max(severity[t], at[v]);
-  return severity;
-}
-
 std::vector<Figure> figures(const Findings& f) {
   const Soundness &m = f.mesh, &r = f.reference;
   const Quality &q = f.quality, &p = f.reference_quality;
@@ -278,6 +275,7 @@ std::vector<Figure> figures(const Findings& f) {
       {"hausdorff_to_result", "distance of the reference", digits, nan, d.to_mesh},
       {"hausdorff", "Hausdorff, at least", digits, nan, d.hausdorff},
       {"hausdorff_bound", "Hausdorff, at most", digits, nan, d.hausdorff + d.bound},
+      {"deviation", "distance, in sizes", digits, nan, most_deviation * d.deviation.worst},
       {"mean_distance", "distance mean", digits, nan, d.mean},
       {"rms_distance", "distance rms", digits, nan, d.rms},
       {"boundary_distance", "distance of borders", digits, nan, f.boundary},

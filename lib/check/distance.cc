@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <tuple>
 
 namespace meshpipe {
 namespace {
@@ -51,17 +52,33 @@ std::vector<int> vertices_of(const Mesh& mesh, std::span<const int> triangles) {
   return vertices;
 }
 
+/// What a distance may be at each triangle of the mesh, and whether that is the surface measured from.
+struct Allowed {
+  std::span<const double> at;  ///< none: anything
+  bool from_mesh;
+  double least = infinity;
+};
+
 /// One direction: the distances of one surface's points from the other.
 class OneSided {
  public:
-  OneSided(const Mesh& from, const Bvh& from_tree, const Mesh& to, const Bvh& to_tree, double diagonal)
-      : from_(from), from_tree_(from_tree), to_(to), to_tree_(to_tree), diagonal_(diagonal) {}
+  OneSided(const Mesh& from, const Bvh& from_tree, const Mesh& to, const Bvh& to_tree, double diagonal,
+           const Allowed& allowed)
+      : from_(from),
+        from_tree_(from_tree),
+        to_(to),
+        to_tree_(to_tree),
+        diagonal_(diagonal),
+        allowed_(allowed) {
+    deviation.ratio.assign(allowed.at.size(), 0);
+  }
 
   double largest = 0;  ///< found
   Vec3 place;
   double known = 0;  ///< found on either side: what is not beyond it need not be known any better
   double upper = 0;  ///< no point is farther
   double mean = 0, rms = 0;
+  Deviation deviation;
 
   void sample(int samples);
   void bound(int budget);
@@ -71,21 +88,32 @@ class OneSided {
     std::array<Vec3, 3> corner;
     std::array<Near, 3> near;
     double upper;
+    int face;  ///< the triangle it is of
   };
 
   double limit() const {
     const double d = std::max(largest, known);
     return std::max((1 + relative) * d, d + absolute * diagonal_);
   }
-  void found(double distance, Vec3 p) {
-    if (distance > largest) {
-      largest = distance;
-      place = p;
-    }
+  void found(const Near& near, Vec3 p, int face) {
+    if (near.distance > largest) largest = near.distance, place = p;
+    if (allowed_.at.empty()) return;
+    const int t = allowed_.from_mesh ? face : near.face;
+    const double r = near.distance / allowed_.at[t];
+    deviation.ratio[t] = std::max(deviation.ratio[t], r);
+    if (r > deviation.worst) deviation.worst = r, deviation.triangle = t, deviation.place = p;
+  }
+  /// Below this, a piece's distance need not be known any better.
+  double enough(const Piece& p) const {
+    double most = limit();
+    if (allowed_.at.empty() || allowed_.least >= most) return most;
+    if (allowed_.from_mesh) return std::min(most, allowed_.at[p.face]);
+    for (const Near& near : p.near) most = std::min(most, allowed_.at[near.face]);
+    return most;
   }
   std::vector<int> doubtful_triangles();
   std::vector<Piece> doubtful_pieces(std::span<const int> triangles);
-  void set_upper(Piece& piece, double enough) const;
+  void set_upper(Piece& piece) const;
   double from_triangle(Vec3 p, int face) const;
   double farthest_corner(const Piece& piece, int face) const;
   double overlay_upper(const Piece& piece, double enough) const;
@@ -95,6 +123,7 @@ class OneSided {
   const Mesh& to_;
   const Bvh& to_tree_;
   const double diagonal_;
+  const Allowed allowed_;
 };
 
 void OneSided::sample(int samples) {
@@ -108,8 +137,8 @@ void OneSided::sample(int samples) {
   }
   const int chunks = (samples + chunk - 1) / chunk;
   struct Part {
-    double largest = -1, sum = 0, squares = 0;
-    Vec3 place;
+    double sum = 0, squares = 0;
+    std::vector<std::tuple<Near, Vec3, int>> found;
   };
   std::vector<Part> part(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
@@ -124,25 +153,25 @@ void OneSided::sample(int samples) {
       if (u + v > 1) u = 1 - u, v = 1 - v;
       const Tri& t = from_.tris[order[i]];
       const Vec3 p = (1 - u - v) * from_.points[t[0]] + u * from_.points[t[1]] + v * from_.points[t[2]];
-      const double d = seek(p).distance;
-      if (d > part[k].largest) part[k].largest = d, part[k].place = p;
-      part[k].sum += d;
-      part[k].squares += d * d;
+      const Near near = seek(p);
+      part[k].found.push_back({near, p, order[i]});
+      part[k].sum += near.distance;
+      part[k].squares += near.distance * near.distance;
     }
   }
   for (const Part& p : part) {
-    found(p.largest, p.place);
+    for (const auto& [near, point, face] : p.found) found(near, point, face);
     mean += p.sum / samples;
     rms += p.squares / samples;
   }
   rms = std::sqrt(rms);
 }
 
-/// Returns the triangles that bounding balls of groups of neighbors do not prove to be within the limit.
+/// Returns the triangles that bounding balls of groups of neighbors do not prove to be near enough.
 std::vector<int> OneSided::doubtful_triangles() {
   const auto& order = from_tree_.order();
   const int n = (int)order.size();
-  const double most = limit();
+  const double most = std::min(limit(), allowed_.least);
   std::vector<int> groups, split;  // where in the order they start
   for (int first = 0; first < n; first += 64) groups.push_back(first);
   for (int size = 64; size > 1; size /= 4) {
@@ -250,7 +279,8 @@ double OneSided::overlay_upper(const Piece& piece, double enough) const {
 /// No point of a triangle is farther from a corner than its longest side over sqrt(3). And distance from a
 /// convex set is convex: a triangle is within the largest distance of its corners from any one triangle of
 /// the other surface. The dearer bounds are looked at only if the cheaper ones are not `enough`.
-void OneSided::set_upper(Piece& p, double enough) const {
+void OneSided::set_upper(Piece& p) const {
+  const double enough = this->enough(p);
   double side = 0, distance = 0;
   for (int i = 0; i < 3; ++i) {
     side = std::max(side, norm(p.corner[(i + 1) % 3] - p.corner[i]));
@@ -273,8 +303,8 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
     for (int i = first; i < std::min(n, first + chunk); ++i)
       near[vertices[i]] = seek(from_.points[vertices[i]]);
   }
-  for (int v : vertices) found(near[v].distance, from_.points[v]);
-  const double enough = limit();
+  for (int t : triangles)
+    for (int v : from_.tris[t]) found(near[v], from_.points[v], t);
   std::vector<Piece> pieces(faces);
 #pragma omp parallel for schedule(dynamic, 64) if (faces > chunk)
   for (int i = 0; i < faces; ++i) {
@@ -283,7 +313,8 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
       pieces[i].corner[k] = from_.points[t[k]];
       pieces[i].near[k] = near[t[k]];
     }
-    set_upper(pieces[i], enough);
+    pieces[i].face = triangles[i];
+    set_upper(pieces[i]);
   }
   return pieces;
 }
@@ -291,9 +322,8 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
 void OneSided::bound(int budget) {
   std::vector<Piece> pieces = doubtful_pieces(doubtful_triangles()), halves;
   for (;;) {
-    const double enough = limit();
     const auto done =
-        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.upper > enough; });
+        std::partition(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.upper > enough(p); });
     for (auto p = done; p < pieces.end(); ++p) upper = std::max(upper, p->upper);
     pieces.erase(done, pieces.end());
     const int n = (int)pieces.size();
@@ -316,12 +346,12 @@ void OneSided::bound(int budget) {
         Piece& half = halves[2 * i + side] = p;
         half.corner[side ? a : b] = middle;
         half.near[side ? a : b] = near;
-        set_upper(half, enough);
+        set_upper(half);
         half.upper = std::min(half.upper, p.upper);
       }
     }
     for (int i = 0; i < n; ++i)
-      for (int k = 0; k < 3; ++k) found(halves[2 * i].near[k].distance, halves[2 * i].corner[k]);
+      for (int k = 0; k < 3; ++k) found(halves[2 * i].near[k], halves[2 * i].corner[k], halves[2 * i].face);
     pieces.swap(halves);
   }
   for (const Piece& p : pieces) upper = std::max(upper, p.upper);
@@ -331,13 +361,14 @@ void OneSided::bound(int budget) {
 }  // namespace
 
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples) {
+                          const Bvh& mesh_tree, int samples, std::span<const double> allowed) {
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   // small meshes need no more than this for the mean to be right within a percent
   const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 4 + 500;
   const int n = (int)std::min<long long>(samples, enough);
-  OneSided there(mesh, mesh_tree, reference, reference_tree, d),
-      back(reference, reference_tree, mesh, mesh_tree, d);
+  const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
+  OneSided there(mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least}),
+      back(reference, reference_tree, mesh, mesh_tree, d, {allowed, false, least});
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
   there.bound(8 * samples);
@@ -352,6 +383,11 @@ Distance distance_between(const Mesh& reference, const Bvh& reference_tree, cons
   r.bound = std::max(there.upper, back.upper) / unit - r.hausdorff;
   r.mean = std::max(there.mean, back.mean) / unit;
   r.rms = std::max(there.rms, back.rms) / unit;
+  if (there.deviation.worst < back.deviation.worst) std::swap(there.deviation, back.deviation);
+  r.deviation = std::move(there.deviation);
+  r.deviation.allowed.assign(allowed.begin(), allowed.end());
+  for (std::size_t t = 0; t < allowed.size(); ++t)
+    r.deviation.ratio[t] = std::max(r.deviation.ratio[t], back.deviation.ratio[t]);
   return r;
 }
 

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances between two surfaces.
 #pragma once
+#include <span>
+
 #include "lib/core/bvh.h"
 #include "lib/core/mesh.h"
 
 namespace meshpipe {
+
+/// Distances over those that are allowed at each triangle of the mesh.
+struct Deviation {
+  std::vector<double> allowed;  ///< per triangle, as given; empty: any
+  std::vector<double> ratio;    ///< per triangle, the largest found
+  double worst = 0;             ///< the largest of them
+  int triangle = -1;            ///< where: the one it is measured from or to
+  Vec3 place;
+};
 
 /// Lengths over the diagonal of the reference's bounding box.
 struct Distance {
@@ -14,13 +25,15 @@ struct Distance {
   double to_mesh = 0;        ///< one-sided: from the reference to the mesh
   Vec3 place;                ///< the point with the largest distance
   double mean = 0, rms = 0;  ///< over the area; the worse of both sides
+  Deviation deviation;
 };
 
 /// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
 /// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
-/// the diagonal, where these suffice. Deterministic at any thread count. Requires: both have triangles.
+/// the diagonal, where these suffice, and to the distance `allowed` at each triangle of the mesh (none: any).
+/// Deterministic at any thread count. Requires: both have triangles.
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples = 10000);
+                          const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {});
 
 /// Returns the distance of each vertex of the mesh from a surface (0 for unused vertices). `mesh_tree` is the
 /// mesh's, `tree` the surface's.

@@ -22,8 +22,8 @@ Mesh before_cuts(const Surface& reference) {
   return recover_triangles(cut, origin);
 }
 
-/// Distances over the mean edge at each vertex.
-void over_edges(const Mesh& mesh, std::vector<double>& distance) {
+/// The mean length of the edges at each vertex; 0 if it is unused.
+std::vector<double> mean_edges(const Mesh& mesh) {
   std::vector<double> length(mesh.points.size(), 0);
   std::vector<int> count(mesh.points.size(), 0);
   for (const Tri& t : mesh.tris)
@@ -32,8 +32,30 @@ void over_edges(const Mesh& mesh, std::vector<double>& distance) {
       const double l = norm(mesh.points[a] - mesh.points[b]);
       for (int v : {a, b}) length[v] += l, ++count[v];
     }
-  for (std::size_t v = 0; v < distance.size(); ++v)
-    distance[v] = length[v] > 0 ? distance[v] * count[v] / length[v] : distance[v] > 0 ? 1e300 : 0;
+  for (std::size_t v = 0; v < length.size(); ++v)
+    if (count[v]) length[v] /= count[v];
+  return length;
+}
+
+/// The distance allowed at each triangle: half the size, and what the smooth surface is off. The size is that
+/// of the field asked for, or of the mean edges at the vertices; where a surface admits only triangles that
+/// are smaller, one and a half of their longest edge, the most that a mesh has that obeys its field. But no
+/// less than the mean: sizes are lowered where something fails, and that must not make the contract harder to
+/// meet.
+std::vector<double> allowed_distances(const Mesh& mesh, const std::vector<double>& size,
+                                      const std::vector<double>& smooth_off) {
+  constexpr double longest = 1.5;
+  const double mean = std::sqrt(4 / std::sqrt(3.0) * total_area(mesh) / (double)mesh.tris.size());
+  std::vector<double> allowed(mesh.tris.size());
+  for (int t = 0; t < (int)allowed.size(); ++t) {
+    const Tri& v = mesh.tris[t];
+    const double edge =
+        std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
+    const double local = std::min((size[v[0]] + size[v[1]] + size[v[2]]) / 3, longest * edge);
+    allowed[t] = most_deviation * std::max(local, mean) +
+                 std::max({smooth_off[v[0]], smooth_off[v[1]], smooth_off[v[2]]});
+  }
+  return allowed;
 }
 
 /// Lowers the distances of vertices to those from their places on the smooth surface above the reference.
@@ -171,16 +193,22 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   }
   add_progress(0.3);
   f.folds = find_folds(mesh, reference, reference_tree);
-  f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples);
+  const std::vector<double> edges = mean_edges(result);
+  const double d = diagonal(reference);
   f.off = vertex_distances(result, mesh_tree, reference_tree);
+  std::vector<double> smooth_off = f.off;
   if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
+  for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
+  f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples,
+                                allowed_distances(result, size.empty() ? edges : size, smooth_off));
   add_progress(0.4);
-  over_edges(result, f.off);
+  for (std::size_t v = 0; v < f.off.size(); ++v)
+    f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;
   f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
                                       [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
                      f.off.begin());
 
-  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  const double unit = d > 0 ? d : 1;
   Mesh curves, reference_curves;
   add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
   add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });

@@ -142,6 +142,46 @@ TEST(contract, a_moved_vertex) {
   EXPECT_NE(f[0].fact.find(" the distance found at ("), std::string::npos);
 }
 
+TEST(contract, a_lost_limb_a_lost_end_and_another_size) {
+  // a sphere with a spike that the result has not, and the other way round
+  const Mesh good = sphere(2000);
+  Mesh spiked = good;
+  const int tip = spiked.tris[3][0];
+  spiked.points[tip] = 1.3 * spiked.points[tip];
+  for (const auto& [mesh, reference] : {std::pair{good, spiked}, std::pair{spiked, good}}) {
+    const auto f = verdict(mesh, reference, "deviation=1");
+    ASSERT_EQ(f.size(), 1u);
+    EXPECT_GT(f[0].value, 1);
+    EXPECT_NEAR(norm(f[0].place - spiked.points[tip]), 0, 0.1);
+  }
+  EXPECT_TRUE(fails(verdict(tube(3, 20, false), tube(4, 20, false)), "deviation"));
+  // two components far apart, one of them twice: the topology is the same
+  Mesh two = sphere(500), twice = sphere(500);
+  for (auto [m, shift] : {std::pair{&two, 5.0}, std::pair{&twice, 0.0}}) {
+    const int n = (int)m->points.size(), faces = (int)m->tris.size();
+    for (int v = 0; v < n; ++v) m->points.push_back(m->points[v] + Vec3{shift, 0, 0});
+    for (int t = 0; t < faces; ++t)
+      m->tris.push_back({m->tris[t][0] + n, m->tris[t][1] + n, m->tris[t][2] + n});
+  }
+  EXPECT_TRUE(fails(verdict(twice, two, "deviation=1"), "deviation"));
+  // far coarser, but nothing is lost
+  EXPECT_TRUE(verdict(sphere(60), sphere(2000), "deviation=0.3").empty());
+}
+
+TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
+  const Mesh good = sphere(2000);
+  Mesh spiked = good;
+  const int tip = spiked.tris[3][0];
+  spiked.points[tip] = 1.3 * spiked.points[tip];
+  Surface result = surface_of(good);
+  result.vertex.set("size", std::vector<double>(good.points.size(), 0.1));
+  const Contract contract = parse_contract("deviation=1");
+  const Findings f = examine(result, surface_of(spiked), nullptr, 2000);
+  const std::vector<double> size = smaller_sizes(contract, f, result, spiked);
+  EXPECT_LT(size[tip], 0.05);
+  EXPECT_GT(std::count(size.begin(), size.end(), 0.1), 900);
+}
+
 TEST(contract, a_crossing_and_a_lost_name) {
   const Mesh good = sphere(500);
   Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "lib/check/check.h"
+
+namespace meshpipe {
+
+std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
+  constexpr double crowded = 2, crossing = 1.7;  // sizes of three tenths, and a little more
+  std::vector<double> at(mesh.points.size(), 0), severity(mesh.tris.size(), 0);
+  const auto& triangle = offending.face.get<int>("triangle");
+  const auto& fault = offending.face.get<std::uint8_t>("fault");
+  for (std::size_t i = 0; i < triangle.size(); ++i) {
+    if (fault[i] == offends_deviation) continue;  // its size follows from the distance
+    for (int v : mesh.tris[triangle[i]])
+      at[v] = std::max(at[v], fault[i] & offends_kappa ? crowded : crossing);
+  }
+  // the next mesh has other triangles there: include the neighbors
+  for (std::size_t t = 0; t < severity.size(); ++t)
+    for (int v : mesh.tris[t]) severity[t] = std::max(severity[t], at[v]);
+  return severity;
+}
+
+std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
+                                  const Mesh& reference) {
+  std::vector<double> size = result.vertex.get<double>("size"), errors;
+  auto is_distance = [](const Requirement& r) { return r.name == "hausdorff" || r.name == "deviation"; };
+  if (std::any_of(contract.begin(), contract.end(), is_distance))
+    errors = triangle_errors(reference, Bvh(reference), result, Bvh(result));
+  for (const Requirement& r : contract) {
+    if (r.name == "hausdorff") size = refined_size(result, size, errors, r.limit * diagonal(reference));
+    if (r.name != "deviation" || !(most_deviation * findings.distance.deviation.worst > r.limit)) continue;
+    std::vector<double> deviation = errors;
+    for (std::size_t t = 0; t < errors.size(); ++t)
+      deviation[t] *= most_deviation / findings.distance.deviation.allowed[t];
+    size = refined_size(result, size, deviation, r.limit);
+  }
+  return refined_size(result, size, severity_of(offending_faces(contract, findings, result), result), 1);
+}
+
+}  // namespace meshpipe
