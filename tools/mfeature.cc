@@ -6,19 +6,25 @@
 #include "formats/stream/model_edges.h"
 #include "formats/stream/stages.h"
 #include "lib/core/triangle_count.h"
+#include "lib/defeature/defeature.h"
 #include "lib/feature/feature.h"
 #include "tools/common.h"
 #include "tools/files.h"
+#include "tools/report/removed.h"
 
 using namespace meshpipe;
 
 namespace {
 
 struct Options : FeatureOptions {
-  std::string angles = "auto", group_file, edge_file;
+  std::string angles = "auto", group_file, edge_file, tolerance = "auto";
   bool merge_auto = false;
   double triangles = 0;
+  bool keep_boundary = false;
 };
+
+/// Target lengths: strips narrower than this only make needles.
+constexpr double default_tolerance = 0.05;
 
 /// Gives the faces the patches that theirs have become, and the patches the names of their groups.
 void relabel(const Io& io, Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
@@ -52,6 +58,13 @@ PatchMerge merge_patches(const Io& io, Stream& stream, const Options& o, double 
   relabel(io, stream, merge, groups);
   io.say(std::to_string(merge.patch.size()) + " patches merged to " + std::to_string(merge.count()));
   return merge;
+}
+
+/// Flags the half-edges that lie on segments.
+std::vector<char> flags_under(const Surface& surface, const ModelSegments& lines) {
+  std::vector<char> flags;
+  for (int segment : segments_under(surface, lines)) flags.push_back(segment >= 0);
+  return flags;
 }
 
 /// Flags the half-edges that lie on lines of the input, or of the file of --edges; the lines stay in the
@@ -91,6 +104,26 @@ void report(Io& io, const FeatureReport& r) {
     io.report[key] = n;
 }
 
+/// Removes what is narrower than the tolerance. Returns whether the surface has changed: then its edges are
+/// to be marked again. `before`, by face, and `given`, by half-edge, follow.
+bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<int>& before,
+               std::vector<char>& given) {
+  const DefeatureReport r = remove_small_features(stream.surface, o, &given);
+  report_removed(io, r, o.tolerance, stream);
+  std::erase_if(stream.names, [&](const Name& n) {
+    return n.dim == 2 && std::binary_search(r.vanished.begin(), r.vanished.end(), n.tag);
+  });
+  if (r.removed.empty()) return false;
+  drop_downstream(stream, Stage::parts);
+  for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
+  for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
+  given = flags_under(stream.surface, read_model_edges(stream));
+  std::vector<int> labels;
+  for (int t : r.face) labels.push_back(before.empty() ? 0 : before[t]);
+  if (!before.empty()) before = std::move(labels);
+  return true;
+}
+
 void add_options(CLI::App& app, Options& o) {
   app.add_option("--feature-angle", o.angles,
                  "auto: creases that look designed; A,B: edges above A degrees, and above B where they "
@@ -107,12 +140,20 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--edges", o.edge_file,
                  "the lines of this mesh are model edges too; none: nor are those of the input's file")
       ->type_name("FILE|none");
+  app.add_option(
+         "--tolerance", o.tolerance,
+         "remove features narrower than this, as a length or as P% of the diagonal; auto: a twentieth of "
+         "the target edge length; 0: none")
+      ->type_name("D|P%|auto");
+  app.add_flag("--keep-boundary", o.keep_boundary, "features are removed without moving the borders' points");
   app.add_flag("--merge-auto", o.merge_auto,
                "merge patches that are tangent to each other, or smaller than the mesh size");
 }
 
 void mark(Io& io, Options& o) {
   parse_angles(o.angles, o);
+  if (o.tolerance != "auto" && !parse_length(o.tolerance, 1))
+    throw BadUsage("--tolerance: expected auto, a length or a percentage, found '" + o.tolerance + "'");
   if (!o.group_file.empty()) expect_readable(o.group_file);
   if (!o.edge_file.empty() && o.edge_file != "none") expect_readable(o.edge_file);
   Stream stream = io.read();
@@ -126,8 +167,13 @@ void mark(Io& io, Options& o) {
   const PatchMerge merge = merge_patches(io, stream, o, length);
   io.report["patches_before"] = merge.patch.size();
   io.report["patches"] = merge.count();
-  const std::vector<char> given = given_edges(io, stream, o.edge_file);
-  report(io, mark_features(surface, o, before.empty() ? nullptr : &before, &given));
+  std::vector<char> given = given_edges(io, stream, o.edge_file);
+  auto features = [&] { return mark_features(surface, o, before.empty() ? nullptr : &before, &given); };
+  FeatureReport marked = features();
+  const double tolerance =
+      o.tolerance == "auto" ? default_tolerance * length : *parse_length(o.tolerance, diagonal(surface));
+  if (defeature(io, stream, {tolerance, o.keep_boundary}, before, given)) marked = features();
+  report(io, marked);
   io.write(stream);
 }
 

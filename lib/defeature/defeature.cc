@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/defeature/defeature.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+
+#include "lib/core/bvh.h"
+#include "lib/core/intersect.h"
+#include "lib/core/union_find.h"
+#include "lib/defeature/zipper.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int most_passes = 8;    ///< closed strips leave small regions, and these new strips
+constexpr int most_attempts = 6;  ///< without the places where the surface would get worse
+/// Lines that meet at a smaller angle (6 degrees) force triangles with kappa below 0.2.
+constexpr double needle = 6 * std::numbers::pi / 180;
+
+/// The vertex that each has become.
+std::vector<int> images(const MergedSurface& z) {
+  std::vector<int> image(z.points.size());
+  std::iota(image.begin(), image.end(), 0);
+  for (std::size_t i = z.merges.size(); i-- > 0;) image[z.merges[i].gone] = image[z.merges[i].kept];
+  return image;
+}
+
+/// Rows of a table for the vertices of the result: those of the input, and values between them.
+void take_rows(Table& table, const std::vector<int>& rows, const std::vector<SplitVertex>& added) {
+  for (Column& column : table.columns)
+    std::visit(
+        [&](auto& all) {
+          using T = std::decay_t<decltype(all[0])>;
+          for (const SplitVertex& s : added) {
+            if constexpr (std::is_same_v<T, double>)
+              all.push_back((1 - s.t) * all[s.a] + s.t * all[s.b]);
+            else
+              all.push_back(all[s.t < 0.5 ? s.a : s.b]);
+          }
+          std::decay_t<decltype(all)> taken;
+          taken.reserve(rows.size());
+          for (int r : rows) taken.push_back(all[r]);
+          all = std::move(taken);
+        },
+        column.data);
+  table.rows = rows.size();
+}
+
+/// The result, and per vertex of it the number in the zipper.
+Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int>& face,
+                  std::vector<int>& vertex) {
+  Surface s;
+  s.vertex = before.vertex, s.face = before.face;
+  std::vector<int> number(z.points.size(), -1);
+  std::vector<std::uint8_t> model;
+  std::vector<char> used(z.points.size(), 0);
+  for (const Tri& t : z.mesh.tris)
+    if (t[0] >= 0) used[t[0]] = used[t[1]] = used[t[2]] = 1;
+  for (int v = 0; v < (int)z.points.size(); ++v) {
+    if (!used[v]) continue;
+    number[v] = (int)vertex.size();
+    vertex.push_back(v);
+    s.points.push_back(z.points[v]);
+  }
+  for (int t = 0; t < (int)z.mesh.tris.size(); ++t) {
+    const Tri& v = z.mesh.tris[t];
+    if (v[0] < 0) continue;
+    face.push_back(z.origin[t]);
+    s.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
+    std::uint8_t bits = 0;
+    for (int i = 0; i < 3; ++i)
+      if (z.is_model(3 * t + i)) bits |= 1 << i;
+    model.push_back(bits);
+  }
+  take_rows(s.vertex, vertex, z.added);
+  take_rows(s.face, face, {});
+  s.face.set("model", std::move(model));
+  return s;
+}
+
+/// Triangles of the result that meet others where the input's do not.
+std::vector<int> crossing_triangles(const Surface& result, const std::vector<char>& changed,
+                                    const Surface& before) {
+  const Bvh tree(result);
+  std::vector<std::pair<int, int>> pairs;
+  for (int t = 0; t < (int)changed.size(); ++t) {
+    if (!changed[t]) continue;
+    tree.overlapping(box_of(result, t), [&](int u) {
+      if (u == t || (changed[u] && u < t)) return;
+      if (triangles_intersect(result, std::min(t, u), std::max(t, u)))
+        pairs.push_back({std::min(t, u), std::max(t, u)});
+    });
+  }
+  std::vector<int> crossing;
+  if (pairs.empty()) return crossing;
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [t, u] : new_intersections(result, pairs, contacts(before, self_intersections(before))))
+    crossing.insert(crossing.end(), {t, u});
+  return crossing;
+}
+
+/// Connects the vertices of the result into which others have been merged, where they are joined by an edge:
+/// each set is one feature. Flags them in `merged`.
+UnionFind feature_sets(const MergedSurface& z, const std::vector<int>& image, std::vector<char>& merged) {
+  UnionFind sets(z.points.size());
+  merged.assign(z.points.size(), 0);
+  for (const Merge& m : z.merges) merged[image[m.gone]] = 1;
+  for (const Tri& t : z.mesh.tris)
+    for (int i = 0; i < 3 && t[0] >= 0; ++i)
+      if (const int a = t[i], b = t[(i + 1) % 3]; merged[a] && merged[b]) sets.join(a, b);
+  return sets;
+}
+
+/// Flags the input's vertices that have become one of `at`, or, with `whole`, are in the same feature.
+void ban(const MergedSurface& z, const std::vector<int>& image, const std::vector<int>& at, bool whole,
+         std::vector<char>& banned) {
+  std::vector<char> merged, hit(z.points.size(), 0), hit_set(hit);
+  UnionFind sets = feature_sets(z, image, merged);
+  for (int v : at) hit[v] = hit_set[sets.find(v)] = 1;
+  for (std::size_t v = 0; v < banned.size(); ++v)
+    banned[v] |= hit[image[v]] | (whole & merged[image[v]] & hit_set[sets.find(image[v])]);
+}
+
+/// Vertices of features that were removed only in part, so that two lines meet there in a sharper needle than
+/// before.
+std::vector<int> new_needles(const MergedSurface& z, const std::vector<int>& image,
+                             const std::vector<double>& before) {
+  std::vector<char> merged;
+  UnionFind sets = feature_sets(z, image, merged);
+  std::vector<double> least(z.points.size(), needle);
+  for (std::size_t v = 0; v < before.size(); ++v)
+    if (const int w = image[v]; merged[w]) least[sets.find(w)] = std::min(least[sets.find(w)], before[v]);
+  std::vector<int> found;
+  for (int v = 0; v < (int)merged.size(); ++v)
+    if (merged[v] && z.mesh.out[v] >= 0 && z.sharpest(v) < 0.9 * least[sets.find(v)]) found.push_back(v);
+  return found;
+}
+
+std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vector<int>& image) {
+  std::vector<char> merged;
+  UnionFind sets = feature_sets(z, image, merged);
+  std::vector<int> number(z.points.size(), -1);
+  std::vector<RemovedFeature> all;
+  std::vector<Box> box;
+  for (const Merge& m : z.merges) {
+    int& i = number[sets.find(image[m.gone])];
+    if (i < 0) {
+      i = (int)all.size();
+      all.push_back({m.at});
+      box.push_back({m.at, m.at});
+    }
+    if (m.width > all[i].width) all[i].width = m.width, all[i].at = m.at;
+    box[i] = join(box[i], {m.at, m.at});
+    ++all[i].merged;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].length = norm(box[i].hi - box[i].lo);
+  std::stable_sort(all.begin(), all.end(), [](auto& a, auto& b) { return a.width > b.width; });
+  return all;
+}
+
+std::vector<int> labels(const Surface& s) {
+  std::vector<int> all = s.face.has("patch") ? s.face.get<int>("patch") : std::vector<int>();
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace
+
+DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
+                                      const std::vector<char>* given) {
+  DefeatureReport report;
+  if (!(options.tolerance > 0)) return report;
+  std::vector<char> banned(surface.points.size(), 0);
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    Zipper z(surface, options, given, banned);
+    std::vector<double> sharpest;
+    for (int v = 0; v < (int)banned.size(); ++v)
+      sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));
+    for (int pass = 0; pass < most_passes; ++pass)
+      if (z.contract_clusters() + z.close_strips() + z.contract_regions() == 0) break;
+    if (z.merges.empty()) return report;
+    std::vector<int> face, vertex;
+    const std::vector<int> image = images(z);
+    Surface result = result_of(z, surface, face, vertex);
+    std::vector<char> touched(z.points.size(), 0), changed(result.tris.size(), 0);
+    for (const Merge& m : z.merges) touched[image[m.gone]] = 1;
+    for (std::size_t t = 0; t < changed.size(); ++t)
+      for (int v : result.tris[t]) changed[t] |= touched[vertex[v]];
+    const std::vector<int> crossing = crossing_triangles(result, changed, surface);
+    const std::vector<int> needles = new_needles(z, image, sharpest);
+    if (crossing.empty() && needles.empty()) {
+      report.removed = features_of(z, image);
+      report.merged = (int)z.merges.size();
+      report.moved = *std::max_element(z.drift.begin(), z.drift.end());
+      const std::vector<int> before = labels(surface), after = labels(result);
+      std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
+                          std::back_inserter(report.vanished));
+      report.face = std::move(face);
+      surface = std::move(result);
+      return report;
+    }
+    std::vector<int> at;
+    for (int t : crossing)
+      for (int v : result.tris[t]) at.push_back(vertex[v]);
+    ban(z, image, at, attempt > 0, banned);
+    ban(z, image, needles, true, banned);
+  }
+  report.stopped = true;
+  return report;
+}
+
+}  // namespace meshpipe

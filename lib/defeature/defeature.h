@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Removal of features that are narrower than a tolerance: strips, steps, slots, sliver patches, short model
+// edges.
+#pragma once
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// A connected place where features were removed.
+struct RemovedFeature {
+  Vec3 at;            ///< where it was widest
+  double width = 0;   ///< the longest distance over which two vertices were merged
+  double length = 0;  ///< diagonal of the box around the place
+  int merged = 0;     ///< vertices
+};
+
+struct DefeatureReport {
+  std::vector<RemovedFeature> removed;  ///< widest first
+  int merged = 0;                       ///< vertices, in all
+  double moved = 0;                     ///< no point of either surface is farther than this from the other
+  std::vector<int> vanished;            ///< patches that have no face any more
+  std::vector<int> face;  ///< per triangle of the result, the one of the input that it is part of
+  bool stopped = false;   ///< nothing was removed, since the surface would intersect itself
+};
+
+struct DefeatureOptions {
+  double tolerance = 0;       ///< 0: nothing is removed
+  bool keep_borders = false;  ///< no vertex of a border moves
+};
+
+/// Closes strips between two lines (model edges, borders) that are at most `tolerance` wide, and contracts
+/// short lines and small regions between corners: vertices across are merged, the weaker line into the
+/// stronger one. Every point stays within `tolerance` of its place, the topology stays, and so do strips from
+/// which the surface folds back, such as the rim of a thin plate and the bottom of a slot. Needs face column
+/// `model`, which is kept up to date; other columns follow. `given`: flags of half-edges whose lines are
+/// stronger than creases, or null. Throws: like opposite_halfedges.
+DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
+                                      const std::vector<char>* given = nullptr);
+
+}  // namespace meshpipe

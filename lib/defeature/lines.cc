@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <numbers>
+
+#include "lib/core/union_find.h"
+#include "lib/defeature/zipper.h"
+
+namespace meshpipe {
+namespace {
+constexpr double corner_turn = 50 * std::numbers::pi / 180;  ///< as mfeature counts corners
+}
+
+bool MergedSurface::is_corner(int v) const {
+  Vec3 along[2];
+  int count = 0;
+  auto see = [&](int w) {
+    if (count < 2) along[count] = points[w] - points[v];
+    ++count;
+  };
+  mesh.star(v, [&](int h) {
+    if (mesh.hard[h]) see(mesh.to(h));
+    if (mesh.opp[prev(h)] < 0) see(mesh.apex(h));
+  });
+  return count == 1 || count > 2 || (count == 2 && angle(-1.0 * along[0], along[1]) > corner_turn);
+}
+
+double MergedSurface::sharpest(int v) const {
+  auto is_line = [&](int h) { return mesh.hard[h] || is_sharp(h); };
+  int first = -1;
+  mesh.star(v, [&](int h) {
+    if (first < 0 && is_line(h)) first = h;
+  });
+  double least = std::numbers::pi, sum = 0;
+  if (first < 0) return least;
+  for (int h = first;;) {
+    sum += angle(points[mesh.to(h)] - points[v], points[mesh.apex(h)] - points[v]);
+    if (is_line(prev(h))) least = std::min(least, sum), sum = 0;
+    h = mesh.opp[prev(h)];
+    if (h < 0 || h == first) return least;
+  }
+}
+
+FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<char>* given,
+                        const std::vector<char>& wrinkles) {
+  const int n = (int)mesh.opp.size(), n_vertices = (int)surface.points.size();
+  std::vector<int> count(n_vertices, 0);
+  std::vector<std::array<int, 2>> at(n_vertices);  // the first two edges, as half-edges
+  auto is_first = [&](int h) { return mesh.hard[h] && mesh.opp[h] < h; };
+  auto end = [&](int v, int h) {
+    if (count[v] < 2) at[v][count[v]] = h;
+    ++count[v];
+  };
+  for (int h = 0; h < n; ++h)
+    if (is_first(h)) end(mesh.from(h), h), end(mesh.to(h), h);
+  auto away = [&](int h, int v) {
+    const Vec3 d = surface.points[mesh.to(h)] - surface.points[mesh.from(h)];
+    return mesh.from(h) == v ? d : -1.0 * d;
+  };
+  UnionFind sets(n);
+  std::vector<char> node(n_vertices, 0);
+  for (int v = 0; v < n_vertices; ++v) {
+    node[v] = count[v] != 2 || angle(-1.0 * away(at[v][0], v), away(at[v][1], v)) > corner_turn;
+    if (!node[v]) sets.join(at[v][0], at[v][1]);
+  }
+  FeatureLines lines;
+  lines.of.assign(n, -1);
+  std::vector<int> number(n, -1);
+  const std::vector<int>* patch = surface.face.has("patch") ? &surface.face.get<int>("patch") : nullptr;
+  for (int h = 0; h < n; ++h) {
+    if (!is_first(h)) continue;
+    const int o = mesh.opp[h];
+    int& l = number[sets.find(h)];
+    if (l < 0) {
+      l = (int)lines.length.size();
+      lines.length.push_back(0), lines.open.push_back(0), lines.rank.push_back(0);
+    }
+    lines.of[h] = l;
+    if (o >= 0) lines.of[o] = l;
+    lines.length[l] += norm(away(h, mesh.from(h)));
+    if (node[mesh.from(h)] || node[mesh.to(h)]) lines.open[l] = 1;
+    const bool strong = o >= 0 && ((given && (*given)[h]) || (patch && (*patch)[h / 3] != (*patch)[o / 3]));
+    lines.rank[l] = std::max<char>(lines.rank[l], o < 0 ? 3 : strong ? 2 : wrinkles[h] ? 0 : 1);
+  }
+  return lines;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/defeature/zipper.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+
+#include "lib/core/topology.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+/// The surface folds back where normals differ by more: what is between is the rim of a thin plate or the
+/// bottom of a slot, and closing it would bring two sheets together.
+constexpr double fold_angle = 160 * degree;
+constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
+constexpr double wrinkle = 0.4;            ///< tolerances: higher triangles show as creases on their own
+constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
+constexpr double flattest = 1e-6;  ///< least height of a triangle over its length, above rounding errors
+
+double turn(Vec3 a, Vec3 b) { return norm(a) > 0 && norm(b) > 0 ? angle(a, b) : 0; }
+
+double longest_edge(Vec3 a, Vec3 b, Vec3 c) { return std::max({norm(b - a), norm(c - b), norm(a - c)}); }
+
+}  // namespace
+
+Vec3 MergedSurface::normal(int t) const {
+  const Tri& v = mesh.tris[t];
+  return area_vector(points[v[0]], points[v[1]], points[v[2]]);
+}
+
+bool MergedSurface::is_sharp(int h) const {
+  return mesh.opp[h] >= 0 && turn(normal(h / 3), normal(mesh.opp[h] / 3)) > sharp;
+}
+
+Zipper::Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<char>* given,
+               const std::vector<char>& banned)
+    : MergedSurface{.mesh = {surface.tris, (int)surface.points.size(),
+                             surface.face.get<std::uint8_t>("model")},
+                    .points = surface.points,
+                    .drift = std::vector<double>(surface.points.size(), 0),
+                    .origin = std::vector<int>(surface.tris.size()),
+                    .added = {},
+                    .merges = {},
+                    .lines = {}},
+      options_(options),
+      banned_(banned),
+      region_(points.size(), -1) {
+  std::iota(origin.begin(), origin.end(), 0);
+  lines = find_lines(mesh, surface, given, add_wrinkles());
+}
+
+/// Makes sharp edges of triangles lower than the tolerance hard, as bounds of steps too narrow for model
+/// edges. Flags their half-edges. Components without model edges, such as scans, stay as they are.
+std::vector<char> Zipper::add_wrinkles() {
+  std::vector<char> added_edges(mesh.opp.size(), 0);
+  std::vector<int> component;
+  std::vector<char> designed(components(mesh.opp, component), 0);
+  for (int h = 0; h < (int)mesh.opp.size(); ++h)
+    if (mesh.hard[h] && mesh.opp[h] >= 0) designed[component[h / 3]] = 1;
+  for (int h = 0; h < (int)mesh.opp.size(); ++h) {
+    const int o = mesh.opp[h];
+    if (o < h || mesh.hard[h] || !designed[component[h / 3]]) continue;
+    if (std::min(height(h / 3), height(o / 3)) > options_.tolerance) continue;
+    if (is_sharp(h)) added_edges[h] = added_edges[o] = 1;
+  }
+  for (int h = 0; h < (int)mesh.opp.size(); ++h) mesh.hard[h] |= added_edges[h];
+  return added_edges;
+}
+
+double MergedSurface::height(int t) const {
+  const Tri& v = mesh.tris[t];
+  return norm(normal(t)) / longest_edge(points[v[0]], points[v[1]], points[v[2]]);
+}
+
+bool MergedSurface::on_line(int v) const {
+  bool found = mesh.on_border(v);
+  if (!found) mesh.star(v, [&](int h) { found |= mesh.hard[h] != 0; });
+  return found;
+}
+
+/// On the left of h.
+Zipper::Side Zipper::side_of(int h) const {
+  Side s;
+  if (h < 0) return s;
+  const int a = mesh.from(h), b = mesh.to(h);
+  for (int e = prev(h);; e = prev(mesh.opp[e])) {  // runs to a, counterclockwise from h
+    if (mesh.hard[e]) {
+      s.a = e;
+      break;
+    }
+    if (e == mesh.opp[h]) return s;
+  }
+  for (int e = next(h);; e = next(mesh.opp[e])) {  // runs from b, clockwise from h
+    if (mesh.hard[e]) {
+      s.b = e;
+      break;
+    }
+    if (e == mesh.opp[h]) return s;
+  }
+  if (s.a == mesh.opp[h] || s.b == mesh.opp[h]) return {};  // all around
+  s.along_a = points[mesh.from(s.a)] - points[a];
+  s.along_b = points[mesh.to(s.b)] - points[b];
+  return s;
+}
+
+/// The normal beyond h, of the first triangle that is higher than the tolerance: lower ones may face
+/// anywhere.
+Vec3 Zipper::normal_beyond(int h) const {
+  constexpr int most_steps = 16;
+  for (int steps = 0; steps < most_steps && mesh.opp[h] >= 0; ++steps) {
+    const int o = mesh.opp[h], t = o / 3;
+    if (height(t) > options_.tolerance) return normal(t);
+    const bool longer =
+        norm(points[mesh.apex(o)] - points[mesh.to(o)]) > norm(points[mesh.apex(o)] - points[mesh.from(o)]);
+    h = longer ? next(o) : prev(o);
+  }
+  return {};
+}
+
+bool Zipper::folded(const Side& s) const { return turn(normal_beyond(s.a), normal_beyond(s.b)) > fold_angle; }
+
+/// Is the edge of h a rung between two lines that may be joined?
+bool Zipper::is_strip(int h) const {
+  bool any = false;
+  for (int e : {h, mesh.opp[h]}) {
+    const Side s = side_of(e);
+    if (!s.parallel()) continue;
+    if (folded(s)) return false;
+    any = true;
+  }
+  return any || mesh.hard[h];
+}
+
+/// The strengths of the lines at both ends of h: of those that bound the strip with rung h, so that one of
+/// them is kept all along it, else of any that leave the ends.
+std::array<Zipper::Strength, 2> Zipper::strengths(int h) const {
+  std::array<Strength, 2> best{};
+  auto see = [&](int end, int e) {
+    const int l = lines.of[e];
+    best[end] = std::max(best[end], Strength{(double)lines.rank[l], lines.length[l], -(double)l});
+  };
+  bool strip = false;
+  for (const int e : {h, mesh.opp[h]}) {
+    const Side s = side_of(e);
+    if (!s.parallel()) continue;
+    strip = true;
+    see(e == h ? 0 : 1, s.a), see(e == h ? 1 : 0, s.b);
+  }
+  if (strip) return best;
+  for (int end : {0, 1})
+    mesh.star(end ? mesh.to(h) : mesh.from(h), [&](int e) {
+      if (mesh.hard[e] && e != h && e != mesh.opp[h]) see(end, e);
+      if (const int b = prev(e); mesh.opp[b] < 0 && b != h) see(end, b);
+    });
+  return best;
+}
+
+bool Zipper::may_merge(int h, int gone) const {
+  const int kept = mesh.from(h) == gone ? mesh.to(h) : mesh.from(h), g = mesh.opp[h];
+  if (mesh.on_border(gone) && (g >= 0 || options_.keep_borders)) return false;
+  if (!mesh.can_collapse(h, gone, true)) return false;
+  if (drift[gone] + norm(points[gone] - points[kept]) > options_.tolerance) return false;
+  const Vec3 to = points[kept];
+  bool ok = true;
+  double before = 0, after = 0;  // the sharpest fold
+  auto moved = [&](int t) {
+    Vec3 p[3];
+    for (int i = 0; i < 3; ++i) p[i] = mesh.tris[t][i] == gone ? to : points[mesh.tris[t][i]];
+    return area_vector(p[0], p[1], p[2]);
+  };
+  auto vanishes = [&](int t) { return t == h / 3 || (g >= 0 && t == g / 3); };
+  auto beyond = [&](int e) {  // the neighbor across e once the triangles at h are gone
+    int o = mesh.opp[e];
+    if (o < 0 || !vanishes(o / 3)) return o;
+    const int rung = o / 3 == h / 3 ? h : g;
+    return mesh.opp[next(rung) == o ? prev(rung) : next(rung)];
+  };
+  mesh.star(gone, [&](int e) {
+    const int t = e / 3;
+    const Vec3 old_normal = normal(t), new_normal = moved(t);
+    for (int k : {e, next(e), prev(e)})
+      if (const int o = mesh.opp[k]; o >= 0) before = std::max(before, turn(old_normal, normal(o / 3)));
+    if (vanishes(t)) return;
+    const double l = longest_edge(to, points[mesh.to(e)], points[mesh.apex(e)]);
+    ok = ok && norm(new_normal) > flattest * l * l;
+    ok = ok && (height(t) <= options_.tolerance || turn(old_normal, new_normal) < most_turn);
+    for (int k : {e, next(e), prev(e)})
+      if (const int o = beyond(k); o >= 0) after = std::max(after, turn(new_normal, moved(o / 3)));
+  });
+  return ok && after <= std::max(fold_angle, before + degree);
+}
+
+void Zipper::collapse(int h, int gone) {
+  for (int e : {h, mesh.opp[h]}) {
+    if (e < 0) continue;
+    const int x = next(e), y = prev(e);
+    int l = lines.of[x];
+    const int m = lines.of[y];
+    if (l < 0 ||
+        (m >= 0 && std::pair(lines.rank[m], lines.length[m]) > std::pair(lines.rank[l], lines.length[l])))
+      l = m;
+    for (int side : {x, y})
+      if (const int o = mesh.opp[side]; o >= 0) lines.of[o] = l;
+  }
+  mesh.collapse(h, gone);
+}
+
+bool Zipper::merge(int h) {
+  int gone = mesh.from(h), kept = mesh.to(h);
+  if (banned_[gone] || banned_[kept]) return false;
+  auto [weak, strong] = strengths(h);
+  if (weak > strong) std::swap(gone, kept), std::swap(weak, strong);
+  if (!may_merge(h, gone)) {
+    std::swap(gone, kept);
+    if (weak[0] < strong[0] || !may_merge(h, gone)) return false;
+  }
+  const double width = norm(points[gone] - points[kept]);
+  merges.push_back({gone, kept, width, points[gone]});
+  drift[kept] = std::max(drift[kept], drift[gone] + width);
+  collapse(h, gone);
+  return true;
+}
+
+int Zipper::split(int h, double t) {
+  const int a = mesh.from(h), b = mesh.to(h), g = mesh.opp[h], n = (int)mesh.tris.size();
+  const int across = lines.of[h], right = lines.of[next(h)], low = g >= 0 ? lines.of[prev(g)] : -1;
+  const int m = mesh.split(h);
+  points.push_back(lerp(points[a], points[b], t));
+  drift.push_back((1 - t) * drift[a] + t * drift[b]);
+  region_.push_back(-1);
+  banned_.push_back(banned_[a] || banned_[b]);
+  added.push_back({a, b, t});
+  origin.push_back(origin[h / 3]);
+  lines.of.insert(lines.of.end(), {across, right, -1});
+  lines.of[next(h)] = -1;
+  if ((int)mesh.tris.size() > n + 1) {
+    origin.push_back(origin[g / 3]);
+    lines.of.insert(lines.of.end(), {across, -1, low});
+    lines.of[prev(g)] = -1;
+  }
+  return m;
+}
+
+/// Merges the apex of the triangle of h with the nearest point of h.
+bool Zipper::close_cap(int h) {
+  const int a = mesh.from(h), b = mesh.to(h), apex = mesh.apex(h);
+  const Vec3 edge = points[b] - points[a];
+  const double t = dot(points[apex] - points[a], edge) / dot(edge, edge);
+  if (!(t > 0 && t < 1) || banned_[a] || banned_[b]) return false;
+  const int m = split(h, t), rung = next(h);  // from m to the apex
+  if (is_strip(rung) && merge(rung)) return true;
+  collapse(h, m);
+  return false;
+}
+
+void Zipper::consider(std::vector<Candidate>& heap, int t) const {
+  for (int h = 3 * t; h < 3 * t + 3; ++h) {
+    const int a = mesh.from(h), b = mesh.to(h), c = mesh.apex(h), l = lines.of[h];
+    const double length = norm(points[b] - points[a]);
+    if (length <= options_.tolerance) {
+      const bool in_region = region_[a] >= 0 && region_[a] == region_[b];
+      const bool wanted =
+          mesh.hard[h] ? lines.open[l] && lines.length[l] <= options_.tolerance : on_line(a) && on_line(b);
+      if (!in_region && !wanted) continue;
+      heap.push_back({length, h, a, b, -1});
+    } else {
+      const double width = norm(normal(t)) / length;
+      const double shortest = std::min(norm(points[c] - points[a]), norm(points[c] - points[b]));
+      if (!mesh.hard[h] || width > options_.tolerance || shortest <= options_.tolerance || !on_line(c))
+        continue;
+      heap.push_back({width, h, a, b, c});
+    }
+    std::push_heap(heap.begin(), heap.end());
+  }
+}
+
+int Zipper::run(std::vector<Candidate> heap) {
+  int count = 0;
+  const int most =
+      4 * (int)points.size() + 100;  // each merge shortens the lines or takes a vertex: a backstop
+  while (!heap.empty() && count < most) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Candidate c = heap.back();
+    heap.pop_back();
+    if (mesh.dead(c.h / 3) || mesh.from(c.h) != c.from || mesh.to(c.h) != c.to) continue;
+    if (c.apex >= 0 && mesh.apex(c.h) != c.apex) continue;
+    const std::size_t before = merges.size();
+    if (c.apex >= 0) {
+      close_cap(c.h);
+    } else if ((region_[c.from] >= 0 && region_[c.from] == region_[c.to]) || is_strip(c.h)) {
+      merge(c.h);
+    }
+    if (merges.size() == before) continue;
+    ++count;
+    mesh.star(merges.back().kept, [&](int h) { consider(heap, h / 3); });
+  }
+  return count;
+}
+
+int Zipper::close_strips() {
+  std::fill(region_.begin(), region_.end(), -1);
+  std::vector<Candidate> heap;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    if (!mesh.dead(t)) consider(heap, t);
+  return run(std::move(heap));
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The editable surface on which narrow strips are closed.
+#pragma once
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "lib/core/edit_mesh.h"
+#include "lib/defeature/defeature.h"
+
+namespace meshpipe {
+
+/// Lines whose directions differ by less (25 degrees) bound a strip; by more they meet in a corner.
+constexpr double strip_angle = 25 * std::numbers::pi / 180;
+
+/// Lines of a surface: chains of hard edges between nodes, where more or fewer than two meet or a line
+/// bends.
+struct FeatureLines {
+  std::vector<int> of;         ///< line of each half-edge, -1: not hard
+  std::vector<double> length;  ///< per line
+  std::vector<char> open;      ///< per line: it ends at nodes
+  std::vector<char> rank;  ///< per line: 0 edge of a wrinkle, 1 crease, 2 given or between patches, 3 border
+};
+/// `wrinkles`: flags of half-edges that are no model edges.
+FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<char>* given,
+                        const std::vector<char>& wrinkles);
+
+/// A vertex on an edge: a + t (b - a).
+struct SplitVertex {
+  int a, b;
+  double t;
+};
+
+/// A merge of the vertex `gone`, which was at `at`, with the vertex `kept`.
+struct Merge {
+  int gone, kept;
+  double width;
+  Vec3 at;
+};
+
+/// A surface whose vertices are merged. The edits make a simplicial map of a subdivision of the input onto
+/// the result, so that no point moves farther than the vertices (`drift`).
+struct MergedSurface {
+  EditMesh mesh;
+  std::vector<Vec3> points;
+  std::vector<double> drift;       ///< per vertex: how far what was merged into it has come, at most
+  std::vector<int> origin;         ///< per triangle: the one of the input
+  std::vector<SplitVertex> added;  ///< vertices after those of the input
+  std::vector<Merge> merges;
+  FeatureLines lines;
+
+  Vec3 normal(int t) const;  ///< times twice the area
+  double height(int t) const;
+  bool is_model(int h) const { return mesh.opp[h] >= 0 && mesh.hard[h] && lines.rank[lines.of[h]] > 0; }
+  bool is_sharp(int h) const;
+  bool on_line(int v) const;
+  bool is_corner(int v) const;
+  /// The smallest angle over the surface between neighboring sharp or hard edges at v; pi if there is none.
+  double sharpest(int v) const;
+};
+
+/// Merges vertices of a surface.
+class Zipper : public MergedSurface {
+ public:
+  /// `banned`: flags of vertices that take no part.
+  Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<char>* given,
+         const std::vector<char>& banned);
+
+  /// Merges across strips and along short lines, narrowest first. Returns the number of merges, as the
+  /// others.
+  int close_strips();
+  /// Contracts regions between lines that are smaller than the tolerance.
+  int contract_regions();
+  /// Contracts places where three or more corners are within half the tolerance.
+  int contract_clusters();
+
+ private:
+  /// An edge, or (apex >= 0) a triangle with a long hard edge h and its apex close to that.
+  struct Candidate {
+    double width;
+    int h, from, to, apex;
+    bool operator<(const Candidate& o) const {  // for a heap with the narrowest on top
+      return width != o.width ? width > o.width : h != o.h ? h > o.h : apex > o.apex;
+    }
+  };
+  /// Rank and length of a line, and something to tell equal ones apart.
+  using Strength = std::array<double, 3>;
+  /// A side of an edge a-b: the first hard edges there around a and b.
+  struct Side {
+    int a = -1, b = -1;  ///< half-edges in the triangles on this side, -1: none
+    Vec3 along_a, along_b;
+    bool parallel() const { return a >= 0 && angle(along_a, along_b) < strip_angle; }
+  };
+
+  std::vector<char> add_wrinkles();
+  Side side_of(int h) const;
+  Vec3 normal_beyond(int h) const;
+  bool folded(const Side& side) const;
+  bool is_strip(int h) const;
+  std::array<Strength, 2> strengths(int h) const;
+  bool may_merge(int h, int gone) const;
+  bool merge(int h);
+  void collapse(int h, int gone);
+  int split(int h, double t);
+  bool close_cap(int h);
+  void consider(std::vector<Candidate>& heap, int t) const;
+  int run(std::vector<Candidate> heap);
+  std::vector<int> ball(int center) const;
+  bool makes_needle(const std::vector<int>& vertices) const;
+
+  DefeatureOptions options_;
+  std::vector<char> banned_;
+  std::vector<int> region_;  ///< per vertex, of those to be contracted; -1: in none
+};
+
+}  // namespace meshpipe

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/defeature/defeature.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "lib/core/bvh.h"
+#include "lib/core/topology.h"
+#include "lib/feature/feature.h"
+
+using namespace meshpipe;
+
+namespace {
+
+constexpr double width = 0.01;  // of every small feature
+constexpr double wide_enough = 1.05 * width, too_narrow = 0.95 * width;
+
+/// The profile (x, z) along y = 0, 1, ..., ny; patch i is below the i-th piece of the profile. Marked edges
+/// are the creases.
+Surface extruded(const std::vector<Vec2>& profile, int ny) {
+  Surface s;
+  const int n = (int)profile.size();
+  for (int j = 0; j <= ny; ++j)
+    for (const Vec2& p : profile) s.points.push_back({p.x, (double)j, p.y});
+  std::vector<int> patch;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i + 1 < n; ++i) {
+      const int a = j * n + i, b = a + 1, c = b + n, d = a + n;
+      s.tris.push_back({a, b, c});
+      s.tris.push_back({a, c, d});
+      patch.insert(patch.end(), {i, i});
+    }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", patch);
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  return s;
+}
+
+double farthest(const Mesh& from, const Mesh& to) {
+  const Bvh tree(to);
+  double most = 0;
+  for (const Tri& t : from.tris)
+    for (int i = 0; i <= 4; ++i)
+      for (int j = 0; i + j <= 4; ++j) {
+        const double a = i / 4.0, b = j / 4.0;
+        const Vec3 p = (1 - a - b) * from.points[t[0]] + a * from.points[t[1]] + b * from.points[t[2]];
+        most = std::max(most, tree.nearest(p).distance);
+      }
+  return most;
+}
+
+/// Removes features and checks what must be true of every result.
+DefeatureReport removed(Surface& s, double tolerance) {
+  const Surface before = s;
+  const DefeatureReport r = remove_small_features(s, {tolerance});
+  EXPECT_LE(r.moved, tolerance);
+  EXPECT_LE(farthest(s, before), r.moved + 1e-9);
+  EXPECT_LE(farthest(before, s), r.moved + 1e-9);
+  const Topology t = topology_of(before), u = topology_of(s);
+  EXPECT_EQ(std::tuple(t.components, t.genus, t.loops), std::tuple(u.components, u.genus, u.loops));
+  EXPECT_EQ(s.vertex.rows, s.points.size());
+  EXPECT_EQ(s.face.rows, s.tris.size());
+  if (r.removed.empty()) {
+    EXPECT_EQ(s.points, before.points);
+    EXPECT_EQ(s.tris, before.tris);
+    EXPECT_EQ(s.face.get<std::uint8_t>("model"), before.face.get<std::uint8_t>("model"));
+  } else {
+    EXPECT_EQ(r.face.size(), s.tris.size());
+  }
+  return r;
+}
+
+/// The profile's narrow pieces become lines at a tolerance above the width, and stay at one below.
+void expect_removed(const std::vector<Vec2>& profile, std::vector<int> vanished) {
+  Surface s = extruded(profile, 4);
+  EXPECT_TRUE(removed(s, too_narrow).removed.empty());
+  const DefeatureReport r = removed(s, wide_enough);
+  ASSERT_EQ(r.removed.size(), 1u);
+  EXPECT_NEAR(r.removed[0].width, width, 1e-9);
+  EXPECT_NEAR(r.removed[0].length, 4, 0.05);
+  EXPECT_EQ(r.vanished, vanished);
+}
+
+void expect_kept(const std::vector<Vec2>& profile, double tolerance = wide_enough) {
+  Surface s = extruded(profile, 4);
+  EXPECT_TRUE(removed(s, tolerance).removed.empty());
+}
+
+}  // namespace
+
+TEST(Defeature, AStepVanishes) { expect_removed({{0, 0}, {1, 0}, {1, width}, {2, width}}, {1}); }
+
+TEST(Defeature, AChamferBecomesOneLine) {
+  const double leg = width / std::numbers::sqrt2;
+  expect_removed({{0, 0}, {1, 0}, {1 + leg, -leg}, {1 + leg, -1}}, {1});
+}
+
+TEST(Defeature, ABluntEdgeBecomesSharp) { expect_removed({{0, 0}, {1, 0}, {1, -width}, {0, -0.5}}, {1}); }
+
+TEST(Defeature, AShallowSlotLosesItsSides) {
+  const std::vector<Vec2> slot{{0, 0}, {1, 0}, {1, -width}, {1.5, -width}, {1.5, 0}, {2.5, 0}};
+  Surface s = extruded(slot, 4);
+  EXPECT_TRUE(removed(s, too_narrow).removed.empty());
+  EXPECT_EQ(removed(s, wide_enough).vanished, (std::vector<int>{1, 3}));
+}
+
+TEST(Defeature, TheBottomOfADeepSlotStays) {
+  expect_kept({{0, 0}, {1, 0}, {1, -1}, {1 + width, -1}, {1 + width, 0}, {2, 0}});
+}
+
+TEST(Defeature, TheRimOfAThinPlateStays) { expect_kept({{0, 0}, {1, 0}, {1, -width}, {0, -width}}); }
+
+TEST(Defeature, FineSurfacesStay) {
+  std::vector<Vec2> fine;
+  for (int i = 0; i <= 200; ++i) fine.push_back({0.005 * i, 0});
+  fine.push_back({1, -1});
+  Surface s = extruded(fine, 4);
+  s.face.erase("patch");
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  EXPECT_TRUE(removed(s, wide_enough).removed.empty());
+}
+
+TEST(Defeature, ToleranceZeroRemovesNothing) {
+  Surface s = extruded({{0, 0}, {1, 0}, {1, 1e-12}, {2, 1e-12}}, 4);
+  EXPECT_TRUE(removed(s, 0).removed.empty());
+}
+
+TEST(Defeature, BordersThatAreKeptDoNotMove) {
+  Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
+  const Surface before = s;
+  remove_small_features(s, {wide_enough, true});
+  const Bvh tree(s);
+  for (const Vec3& p : before.points) EXPECT_TRUE((p.y > 0 && p.y < 4) || tree.nearest(p).distance == 0);
+}
+
+TEST(Defeature, ColumnsFollow) {
+  Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
+  std::vector<double> y;
+  for (const Vec3& p : s.points) y.push_back(p.y);
+  s.vertex.set("y2", y);
+  removed(s, wide_enough);
+  for (std::size_t v = 0; v < s.points.size(); ++v) EXPECT_EQ(s.vertex.get<double>("y2")[v], s.points[v].y);
+  for (std::size_t t = 0; t < s.tris.size(); ++t)
+    EXPECT_EQ(s.face.get<int>("patch")[t], centroid(s, (int)t).x < 1 ? 0 : 2);
+}
+
+/// Two lines with vertices at different places, joined by caps: no two vertices are closer than 0.2.
+TEST(Defeature, LinesNeedNoVerticesOppositeEachOther) {
+  Surface s;
+  for (int i = 0; i <= 10; ++i) s.points.push_back({(double)i, -3, 0});
+  const int p = (int)s.points.size();
+  for (int i = 0; i <= 10; ++i) s.points.push_back({(double)i, 0, 0});
+  const int q = (int)s.points.size();
+  for (int i = 0; i <= 10; ++i) s.points.push_back({i == 0 || i == 10 ? i : i + 0.3, 0, width});
+  const int r = (int)s.points.size();
+  for (int i = 0; i <= 10; ++i) s.points.push_back({(double)i, 3, width});
+  std::vector<int> patch;
+  for (const auto& [a, b] : {std::pair{0, p}, {p, q}, {q, r}})
+    for (int i = 0; i < 10; ++i) {
+      patch.insert(patch.end(), {a, a});
+      s.tris.push_back({a + i, a + i + 1, b + i});
+      s.tris.push_back({a + i + 1, b + i + 1, b + i});
+    }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", patch);
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  EXPECT_TRUE(removed(s, too_narrow).removed.empty());
+  const DefeatureReport report = removed(s, wide_enough);
+  ASSERT_EQ(report.removed.size(), 1u);
+  EXPECT_NEAR(report.removed[0].length, 10, 0.05);
+  for (std::size_t t = 0; t < s.tris.size(); ++t) EXPECT_GT(triangle_area(s, (int)t), 0.1);
+}
