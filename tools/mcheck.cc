@@ -33,6 +33,7 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   Surface& result = stream.surface;
   std::vector<std::string> before;
   Lines lines;
+  int opened = 0;
   if (o.reference.empty()) {
     reference = read_reference(stream);
     before = patch_names(stream, reference);
@@ -41,12 +42,13 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
     Stream other = io.read(o.reference);
     before = patch_names(other, other.surface);
     reference = std::move(other.surface);
-    clean(reference);
+    opened = clean(reference).opened_edges;
     if (is_soup(result)) weld(result);
   }
   expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   Findings f = examine(result, reference, o.reference.empty() ? &lines : nullptr, o.samples);
+  f.opened = opened;
   const std::vector<std::string> after = patch_names(stream, result);
   // a file that holds one patch comes from a format without patches, as a rule
   if (o.reference.empty() || after.size() > 1)
@@ -86,14 +88,20 @@ void warn_of_distance(Io& io, const Findings& f) {
 }
 
 /// Reports what mclean has done to the input's topology, which the comparison with the cleaned input hides.
-void say_cleaning(Io& io, const Stream& stream) {
+/// Returns the number of edges it has opened without being asked to.
+int say_cleaning(Io& io, const Stream& stream) {
+  int opened = 0;
   for (const std::string& text : stream.remarks) {
     const Remark r = parse_remark(text);
     if (r.opened + r.split + r.dropped == 0) continue;
     io.say("of the input, mclean has opened " + std::to_string(r.opened) + " edges, split " +
            std::to_string(r.split) + " vertices, dropped " + std::to_string(r.dropped) + " triangles");
     io.report["input"] = {{"opened", r.opened}, {"split", r.split}, {"dropped", r.dropped}};
+    opened = r.opened;
   }
+  for (const Provenance& p : stream.history)
+    if (p.program == "mclean" && p.arguments.find("--sheets") != p.arguments.npos) opened = 0;
+  return opened;
 }
 
 /// Writes the result with sizes that may meet the contract. Returns whether any size changed: if not, nothing
@@ -149,10 +157,10 @@ void check(Io& io, const Options& o, Verdict& verdict) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
-  const Findings f = compare(io, stream, o, reference);
+  Findings f = compare(io, stream, o, reference);
   say(io, f);
   warn_of_distance(io, f);
-  say_cleaning(io, stream);
+  f.opened += say_cleaning(io, stream);
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.offending.empty()) {
     Stream faulty;

@@ -34,6 +34,7 @@ struct Findings {
   int worst_off_corners = -1;
   std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
   std::vector<std::string> lost_patches;
+  int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
 /// Of the local size: an edge that is farther off cuts through what it should follow, and that is worth a
@@ -42,9 +43,9 @@ struct Findings {
 /// voxels, terrain: 0.9); what is farther off is a limb, a component, or a spike that one of the two lacks.
 constexpr double most_deviation = 0.5;
 
-/// Measures everything but the patches. Reads, where present, the result's vertex columns `size` and
-/// `ref_face`, and of both surfaces face column `model`; the reference is compared as it was before cuts
-/// (face column `origin`), and as the smooth surface where face column `curved` is there.
+/// Measures everything but the patches and the cleaning. Reads, where present, the result's vertex columns
+/// `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it was
+/// before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
 /// `lines`: those that the result was made with, or null. `samples`: see distance_between.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples);
 

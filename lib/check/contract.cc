@@ -11,8 +11,8 @@ namespace meshpipe {
 namespace {
 
 constexpr double nan = no_figure;
-// Requirements without a limit. topology: sound, and components, genus and loops of the reference;
-// intersections: none where the reference has none; folds: none; patches: all of the reference's.
+// Requirements without a limit. topology: sound, components, genus and loops of the reference, no sheets
+// apart; intersections: none where the reference has none; folds: none; patches: all of the reference's.
 constexpr const char* flags[] = {"topology", "intersections", "folds", "patches"};
 // Lower limits: kappa (of triangles that are not forced), kappa_off_wedges, kappa_mean, angle (degrees).
 // Upper limits: hausdorff (of its bound), mean, rms, boundary, features (over the diagonal), vertices (of
@@ -203,7 +203,9 @@ Contract parse_contract(const std::string& list) {
 
 std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh) {
   std::vector<Failure> failures;
+  bool topology = false;
   for (const Requirement& r : contract) {
+    topology |= r.name == "topology";
     const bool flag = among(flags, r.name);
     Facts facts{mesh, r.name, flag ? no_figure : r.limit, {}};
     if (flag)
@@ -212,6 +214,13 @@ std::vector<Failure> judge(const Contract& contract, const Findings& findings, c
       judge_limit(r, findings, mesh, facts);
     std::move(facts.failures.begin(), facts.failures.end(), std::back_inserter(failures));
   }
+  // last: no other sizes repair it, so no round is scored by it
+  if (topology && findings.opened > 0)
+    failures.push_back({"topology",
+                        std::to_string(findings.opened) + (findings.opened == 1 ? " edge" : " edges") +
+                            " of more than two triangles of the input became borders; mclean --sheets split "
+                            "takes sheets apart on request, and mwrap closes the surface",
+                        (double)findings.opened});
   return failures;
 }
 
