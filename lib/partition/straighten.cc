@@ -499,6 +499,7 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
     for (const Curve& c : find_curves(cut))
       for (const PairColor& p : pairs)
         if (p.a == c.a && p.b == c.b && p.color == color && (chosen.empty() || chosen[p.a] || chosen[p.b]) &&
+            !std::all_of(c.half_edges.begin(), c.half_edges.end(), model) &&
             !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
