@@ -129,7 +129,6 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options, std::v
   }
   if (n_parts > n_components) {  // else each maps to the plane as it is
     straighten_interfaces({surface, opposite}, n_parts, limit::snap, options.max_faces);
-    hand_over_slivers({surface, opposite}, n_parts, options.max_faces);
     if (std::string fault = part_fault({surface, opposite}, surface.face.get<int>("part")); !fault.empty())
       throw GoalMissed(fault);
   }

@@ -253,19 +253,6 @@ std::vector<Topology> refreshed(const Work& work) {
   return is;
 }
 
-/// Hands slivers next to the cuts over, unless that makes a part too long.
-void drop_slivers(Work& work) {
-  const std::vector<int> before = work.surface.face.get<int>("part");
-  if (!hand_over_slivers({work.surface, work.opposite}, work.parts())) return;
-  std::vector<int>& part = work.surface.face.get<int>("part");
-  std::vector<Topology> now = topology_of_parts({work.surface, work.opposite}, part, work.parts());
-  if (std::all_of(now.begin(), now.end(),
-                  [&](const Topology& t) { return t.eta_geo <= work.options.max_aspect; }))
-    work.is = std::move(now);
-  else
-    part = before;
-}
-
 }  // namespace
 
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vector<MultiscaleCut>* cuts,
@@ -301,8 +288,6 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     cut_part(work, task, tasks);
   }
   if (work.parts() > std::max(given_parts, 2)) join_parts(work);
-  if (work.parts() > 1 && std::find(work.was_cut.begin(), work.was_cut.end(), 1) != work.was_cut.end())
-    drop_slivers(work);
   if (topology) *topology = refreshed(work);
   if (neighbors) *neighbors = std::move(work.opposite);
   return work.parts();
