@@ -25,6 +25,7 @@ constexpr double spacing = 1.5;    ///< target lengths between creases, on avera
 constexpr double sliver = 0.02;    ///< target lengths: thinner triangles do not show which way they face
 constexpr double long_chain = 5;   ///< mean edges of the input
 constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
+constexpr double short_rim = 0.5;  ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
@@ -41,6 +42,7 @@ struct Network {
   std::vector<char> anchor{};  ///< on a border of the surface or of a (former) patch: chains may end there
   double size = 0;             ///< target edge length
   double shortest = 0;         ///< pieces below this length are dropped
+  double shortest_rim = 0;     ///< closed smooth chains below this one
   double telling = 0;          ///< chains above this length show whether the surface is designed
 
   int from(int h) const { return origin(s.tris, h); }
@@ -118,7 +120,9 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
   // the input's own edges show whether it is designed, the target's which creases are worth keeping
   const double mean = n ? sum / n : 0, most = longest_chain * diagonal(s);
   net.telling = std::min(long_chain * mean, most);
-  net.shortest = std::min(short_chain * (options.size > 0 ? options.size : mean), most);
+  const double size = options.size > 0 ? options.size : mean;
+  net.shortest = std::min(short_chain * size, most);
+  net.shortest_rim = std::min(short_rim * size, most);
   return net;
 }
 
@@ -252,9 +256,16 @@ void keep_designed(Network& net, double strong, double weak) {
   }
 }
 
-/// Drops connected pieces of the network that are short in all and touch no border.
+/// Drops connected pieces of the network that are short in all and touch no border, as noise makes them. The
+/// rim of a hole is none: a smooth closed chain, which may be shorter.
 void drop_small_pieces(Network& net) {
   const int n = (int)net.s.points.size();
+  std::vector<char> rim(n, 0);
+  for (const Chain& chain : chains_of(net)) {
+    const bool closed = net.to(chain.back()) == net.from(chain[0]);
+    if (closed && length(net, chain) >= net.shortest_rim && roughness(net, chain) < smooth_turn)
+      for (int h : chain) rim[net.to(h)] = 1;
+  }
   std::vector<char> seen(n, 0);
   std::vector<int> piece;
   for (int seed = 0; seed < n; ++seed) {
@@ -264,7 +275,7 @@ void drop_small_pieces(Network& net) {
     double twice = 0;
     bool held = false;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-      held = held || net.anchor[piece[i]];
+      held = held || net.anchor[piece[i]] || rim[piece[i]];
       net.around(piece[i], [&](int h) {
         if (!net.on[h]) return;
         twice += net.length(h);

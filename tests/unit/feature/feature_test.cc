@@ -144,6 +144,32 @@ TEST(Feature, TheNormalOfAFlatTriangleIsThatOfItsNeighbor) {
   EXPECT_EQ(r.corners, 8);
 }
 
+//  a pit with 24 walls in a wide plate, from the side; rims of about 6.2
+//   ----.   .----
+//       |___|
+TEST(Feature, TheRimsOfAHoleAreKeptUnlessTheyAreMuchShorterThanAnEdge) {
+  Surface s;
+  constexpr int n = 24;
+  for (auto [radius, z] : {std::pair{100.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}})
+    for (int i = 0; i < n; ++i)
+      s.points.push_back({radius * std::cos(2 * M_PI * i / n), radius * std::sin(2 * M_PI * i / n), z});
+  s.points.push_back({0, 0, -1});
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    for (int ring : {0, n}) {
+      s.tris.push_back({ring + i, ring + j, ring + n + i});
+      s.tris.push_back({ring + j, ring + n + j, ring + n + i});
+    }
+    s.tris.push_back({2 * n + i, 2 * n + j, 3 * n});
+  }
+  s.face.rows = s.tris.size();
+  FeatureOptions options;
+  options.size = 5;  // other pieces would have to be longer than 15
+  EXPECT_EQ(mark_features(s, options).crease_edges, 2 * n);
+  options.size = 20;
+  EXPECT_EQ(mark_features(s, options).crease_edges, 0);
+}
+
 //  a flat plate of 12 triangles: its rim is a thousandth of the size, so top and bottom meet in one crease
 //  instead of two; where the mesh is as fine as the rim is high, in two
 TEST(Feature, TheRimOfAThinPlateIsOneCrease) {
