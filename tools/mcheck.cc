@@ -29,31 +29,37 @@ struct Options {
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
 
+/// The name of a patch as a user knows it: or its label.
+std::function<std::string(int)> namer(const Stream& stream) {
+  return [&stream](int label) {
+    const std::string name = stream.name_of(2, label);
+    return name.empty() ? std::to_string(label) : name;
+  };
+}
+
 Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   Surface& result = stream.surface;
-  std::vector<std::string> before;
+  const bool own = o.reference.empty();
+  Stream other;
   Lines lines;
   int opened = 0;
-  if (o.reference.empty()) {
+  if (own) {
     reference = read_reference(stream);
-    before = patch_names(stream, reference);
     if (stream.find("line_use")) lines = read_lines(stream);
   } else {
-    Stream other = io.read(o.reference);
-    before = patch_names(other, other.surface);
+    other = io.read(o.reference);
     reference = std::move(other.surface);
     opened = clean(reference).opened_edges;
     if (is_soup(result)) weld(result);
   }
   expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
-  Findings f = examine(result, reference, o.reference.empty() ? &lines : nullptr, o.samples);
+  Findings f = examine(result, reference, own ? &lines : nullptr, o.samples);
   f.opened = opened;
-  const std::vector<std::string> after = patch_names(stream, result);
+  const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
   // a file that holds one patch comes from a format without patches, as a rule
-  if (o.reference.empty() || after.size() > 1)
-    std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
-                        std::back_inserter(f.lost_patches));
+  if (own || patches.size() > 1)
+    f.patch_faults = compare_patches(patches_of(reference, {}, namer(own ? stream : other)), patches);
   return f;
 }
 

@@ -10,6 +10,7 @@
 
 #include "lib/check/distance.h"
 #include "lib/check/needles.h"
+#include "lib/check/patches.h"
 #include "lib/check/quality.h"
 #include "lib/check/soundness.h"
 #include "lib/lines/lines.h"
@@ -33,7 +34,9 @@ struct Findings {
   double kappa_off_corners = 0;  ///< see needles.h; kappa_min if no model edges are known
   int worst_off_corners = -1;
   std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
-  std::vector<std::string> lost_patches;
+  std::vector<std::string> patch_faults;                 ///< see compare_patches
+  std::vector<int> unmarked_borders;  ///< half-edges, where the reference's patches end at model edges
+  std::vector<int> reversed;          ///< a triangle of each component
   int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
@@ -43,9 +46,9 @@ struct Findings {
 /// voxels, terrain: 0.9); what is farther off is a limb, a component, or a spike that one of the two lacks.
 constexpr double most_deviation = 0.5;
 
-/// Measures everything but the patches and the cleaning. Reads, where present, the result's vertex columns
-/// `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it was
-/// before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
+/// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex
+/// columns `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it
+/// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
 /// `lines`: those that the result was made with, or null. `samples`: see distance_between.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples);
 

@@ -71,6 +71,11 @@ void judge_topology(const Findings& f, const Mesh& mesh, Facts& facts) {
                           std::to_string(needs) + where,
                       has);
   };
+  if (!f.reversed.empty())
+    facts.push_back(std::to_string(f.reversed.size()) +
+                        (f.reversed.size() == 1 ? " component is" : " components are") +
+                        " inside out, the first holds " + triangle(mesh, f.reversed[0]),
+                    (double)f.reversed.size(), f.reversed[0]);
   same("components", m.components, r.components, "; the smallest holds " + triangle(mesh, m.small_component));
   same("genus", m.genus, r.genus, "");
   same("boundary loops", m.loops, r.loops, m.loop < 0 ? "" : "; the shortest passes " + edge(mesh, m.loop));
@@ -94,7 +99,12 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
                           " folded, the first in " + edge(mesh, f.folds[0]),
                       (double)f.folds.size(), f.folds[0] / 3);
   } else {
-    for (const std::string& patch : f.lost_patches) facts.push_back("patch " + patch + " is lost");
+    for (const std::string& fault : f.patch_faults) facts.push_back(fault);
+    if (!f.unmarked_borders.empty())
+      facts.push_back(std::to_string(f.unmarked_borders.size()) +
+                          " edges between patches are no model edges, the first in " +
+                          edge(mesh, f.unmarked_borders[0]),
+                      (double)f.unmarked_borders.size(), f.unmarked_borders[0] / 3);
   }
 }
 

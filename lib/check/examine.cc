@@ -223,6 +223,17 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
     add_segments(reference_curves, given, [&](int h) { return marks[h / 3] >> h % 3 & 1; });
     f.features = curve_distance(reference_curves, curves) / unit;
   }
+  if (f.mesh.sound()) f.reversed = reversed_components(mesh, reference, reference_tree);
+  if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
+    f.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));
+    if (!f.unmarked_borders.empty()) {
+      const std::vector<int> opposite = opposite_halfedges(given.tris, (int)given.points.size());
+      if (!unmarked_borders({given, opposite, given.face.get<std::uint8_t>("model")},
+                            given.face.get<int>("patch"))
+               .empty())
+        f.unmarked_borders.clear();  // nothing that one could expect
+    }
+  }
   if (lines)
     std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(mesh, mesh_tree, f.quality, *lines, given);
   return f;

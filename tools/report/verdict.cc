@@ -28,20 +28,6 @@ std::string row(const std::string& label, const std::string& before, const std::
 
 }  // namespace
 
-std::vector<std::string> patch_names(const Stream& stream, const Surface& surface) {
-  std::vector<std::string> names;
-  if (!surface.face.has("patch")) return names;
-  std::vector<int> tags = surface.face.get<int>("patch");
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
-  for (int tag : tags) {
-    const std::string name = stream.name_of(2, tag);
-    names.push_back(name.empty() ? std::to_string(tag) : name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 std::vector<std::string> figure_table(const std::vector<Figure>& figures) {
   std::vector<std::string> lines{row("", "reference", "result")};
   for (const Figure& f : figures) {

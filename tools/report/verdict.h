@@ -9,10 +9,6 @@
 
 namespace meshpipe {
 
-/// The patches of a surface that have triangles, as a user knows them: by name, or by tag; sorted. The stream
-/// has their names.
-std::vector<std::string> patch_names(const Stream& stream, const Surface& surface);
-
 /// Returns the lines of a table of reference and result. Counts that are 0 in both are left out, except
 /// genus, loops and self-intersections.
 std::vector<std::string> figure_table(const std::vector<Figure>& figures);

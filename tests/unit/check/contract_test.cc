@@ -185,7 +185,7 @@ TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
 TEST(contract, a_crossing_and_a_lost_name) {
   const Mesh good = sphere(500);
   Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);
-  f.lost_patches = {"inlet"};
+  f.patch_faults = {"patch inlet is lost"};
   f.intersections = {{4, 9}, {5, 8}};
   f.new_intersections = {{4, 9}};
   f.reference_intersections = 1;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/check/patches.h"
+
+#include <algorithm>
+#include <map>
+
+#include "lib/core/number.h"
+#include "lib/core/topology.h"
+
+namespace meshpipe {
+namespace {
+
+/// How far the sides of two boxes are apart at most.
+double apart(const Box& a, const Box& b) {
+  double most = 0;
+  for (const Vec3& d : {a.lo - b.lo, a.hi - b.hi})
+    for (double x : {d.x, d.y, d.z}) most = std::max(most, std::abs(x));
+  return most;
+}
+
+}  // namespace
+
+std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& opposite,
+                              const std::function<std::string(int)>& name) {
+  std::vector<Patch> patches;
+  if (!surface.face.has("patch")) return patches;
+  const std::vector<int>& label = surface.face.get<int>("patch");
+  std::vector<int> labels = label;
+  std::sort(labels.begin(), labels.end());
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  std::map<std::string, int> number;  // in the order of the names
+  for (int l : labels) number[name(l)];
+  for (auto& [text, i] : number) {
+    i = (int)patches.size();
+    patches.push_back({text});
+  }
+  std::vector<int> patch_of_label;
+  for (int l : labels) patch_of_label.push_back(number[name(l)]);
+  for (int t = 0; t < (int)label.size(); ++t) {
+    const auto at = std::lower_bound(labels.begin(), labels.end(), label[t]);
+    Patch& p = patches[patch_of_label[at - labels.begin()]];
+    p.box = p.triangles++ ? join(p.box, box_of(surface, t)) : box_of(surface, t);
+    p.area += triangle_area(surface, t);
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double length = edge_length(surface, h);
+      p.edge = std::max(p.edge, length);
+      if (!opposite.empty() && (opposite[h] < 0 || label[opposite[h] / 3] != label[t])) p.perimeter += length;
+    }
+  }
+  return patches;
+}
+
+std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
+                                         const std::vector<Patch>& result) {
+  constexpr double rough =
+      0.5;  // of the area: steps of voxels have up to sqrt(3) times that of what they stand for
+  std::vector<std::string> faults;
+  auto before = [](const Patch& p, const std::string& name) { return p.name < name; };
+  for (const Patch& p : reference) {
+    const auto q = std::lower_bound(result.begin(), result.end(), p.name, before);
+    if (q == result.end() || q->name != p.name) {
+      faults.push_back("patch " + p.name + " is lost");
+      continue;
+    }
+    if (const double d = apart(p.box, q->box); !(d <= q->edge))
+      faults.push_back("patch " + p.name + " ends " + shown(d) +
+                       " from where the reference's does, edges are " + shown(q->edge) + " at most");
+    else if (!(std::abs(p.area - q->area) <= rough * p.area + 0.5 * q->edge * q->perimeter))
+      faults.push_back("patch " + p.name + " has area " + shown(q->area) + ", the reference's " +
+                       shown(p.area));
+  }
+  return faults;
+}
+
+std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector<int>& patch) {
+  std::vector<int> borders;
+  for (int h = 0; h < surface.n_half_edges(); ++h) {
+    const int g = surface.opposite[h];
+    if (g > h && patch[h / 3] != patch[g / 3] && !surface.is_model(h)) borders.push_back(h);
+  }
+  return borders;
+}
+
+std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh& tree) {
+  std::vector<int> component, reversed;
+  constexpr double majority = 0.5;  // less is undecided: between sheets closer than the result is rough
+  const int n = components(result.opposite, component), faces = (int)component.size();
+  std::vector<int> count(n, 0), first(n, -1), seen(n, 0);
+  for (int t = faces; t-- > 0;) ++count[component[t]], first[component[t]] = t;
+  const int voters = std::max(9, 2000 / std::max(1, n));  // of a component
+  std::vector<double> vote(n, 0), all(n, 0);
+  for (int t = 0; t < faces; ++t) {
+    const int c = component[t];
+    if (seen[c]++ % (1 + count[c] / voters)) continue;
+    const Vec3 normal = result.area_vector(t);
+    const auto hit = tree.nearest(centroid(result.mesh, t));
+    vote[c] += dot(normal, normalized(area_vector(reference, hit.place.face)));
+    all[c] += norm(normal);
+  }
+  for (int c = 0; c < n; ++c)
+    if (vote[c] < -majority * all[c]) reversed.push_back(first[c]);
+  return reversed;
+}
+
+}  // namespace meshpipe
