@@ -63,6 +63,27 @@ void solve_patches(const SubMesh& part, const Disk& disk, int rings, std::vector
   solve_dirichlet(tris, weights, fixed, uv);
 }
 
+/// A map to try where the one asked for, and its repair, is not one-to-one.
+struct Fallback {
+  MapKind kind;
+  double bend = 0;  ///< of a conformal map's border, towards a circle
+};
+
+/// What is tried, in order. A circle can shrink a limb below what doubles hold, so that conformal maps, whose
+/// border is free, come first where they were asked for, and last where they were not.
+std::vector<Fallback> fallbacks(const ParamOptions& asked) {
+  std::vector<Fallback> circle, conformal;
+  for (MapKind kind : {MapKind::harmonic, MapKind::convex})
+    if (kind > asked.map || (kind == asked.map && asked.neumann)) circle.push_back({kind});
+  for (double bend : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0})
+    if (bend > 0 || asked.map != MapKind::conformal || asked.form != ConformalForm::boundary_first)
+      conformal.push_back({MapKind::conformal, bend});
+  std::vector<Fallback>& first = asked.map == MapKind::conformal ? conformal : circle;
+  const std::vector<Fallback>& last = asked.map == MapKind::conformal ? circle : conformal;
+  first.insert(first.end(), last.begin(), last.end());
+  return first;
+}
+
 /// What maps of one part share, and the search for one that is one-to-one.
 class Search {
  public:
@@ -81,44 +102,79 @@ class Search {
                                                     : least_squares_map(part_, disk_, filled, &report_.time);
   }
 
+  /// The map asked for, its repair, or the first of the fallbacks that is one-to-one.
   std::vector<Vec2> run(double most_uneven) {
     report_ = {};
     report_.used = options_.map;
     report_.form = options_.form;
+    if (is_too_uneven(most_uneven)) return {};
+    std::vector<Vec2> uv = asked_for();
+    if (report_.flips_before > 0 || !report_.border_was_simple) {
+      if (options_.strict) refuse();
+      bool valid = !uv.empty() && repaired(uv);
+      report_.flips_after = uv.empty() ? report_.flips_before : count_inverted(part_.tris, uv);
+      for (const Fallback& next : fallbacks(options_))
+        if (!valid) valid = try_next(next, uv);
+      if (!valid) give_up(uv);
+    }
+    measure_distortion(part_, uv, report_);
+    // what is valid and poor costs the mesher more than a few steps here
+    constexpr int steps_if_poor = 20;
+    const bool improve = part_.tris.size() <= small && !options_.strict &&
+                         (report_.used != options_.map || options_.map == MapKind::conformal) &&
+                         (report_.anisotropy_p99 > poor || report_.anisotropy_mean > 1.5);
+    if (int steps = std::max(options_.optimize, improve ? steps_if_poor : 0); steps > 0) lower(uv, steps);
+    return uv;
+  }
+
+ private:
+  /// Is the area scale of the conformal map, known before it is solved for, above the limit?
+  bool is_too_uneven(double limit) {
+    if (options_.map != MapKind::conformal || options_.form != ConformalForm::boundary_first) return false;
+    try {
+      report_.area_scale = boundary_first().area_distortion();
+    } catch (const GoalMissed&) {  // singular to rounding
+    }
+    return report_.area_scale > limit;
+  }
+
+  /// The map asked for, as it comes; none if it is singular to rounding, or its border does not close.
+  std::vector<Vec2> asked_for() {
     std::vector<Vec2> uv;
     try {
-      if (options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first) {
-        report_.area_scale = boundary_first().area_distortion();
-        if (report_.area_scale > most_uneven) return {};
-      }
       uv = plain(options_.map);
-      report_.flips_before = count_inverted(part_.tris, uv);
-      report_.border_was_simple = border_is_simple({part_, disk_.opposite}, uv);
-      if (!report_.border_was_simple) report_.apart = sample(border_crossings({part_, disk_.opposite}, uv));
-    } catch (const GoalMissed&) {  // singular to rounding, or a border that does not close
+    } catch (const GoalMissed&) {
       report_.flips_before = (int)part_.tris.size();
+      return {};
     }
-    bool valid = report_.flips_before == 0 && report_.border_was_simple;
-    if (!valid) {
-      if (options_.strict) refuse();
-      valid = !uv.empty() && repaired(uv);
-      report_.flips_after = uv.empty() ? report_.flips_before : count_inverted(part_.tris, uv);
+    report_.flips_before = count_inverted(part_.tris, uv);
+    report_.border_was_simple = border_is_simple({part_, disk_.opposite}, uv);
+    if (!report_.border_was_simple) report_.apart = sample(border_crossings({part_, disk_.opposite}, uv));
+    return uv;
+  }
+
+  /// Replaces uv by this map if it is one-to-one, as it comes or repaired; by a circle map in any case.
+  bool try_next(const Fallback& next, std::vector<Vec2>& uv) {
+    const bool conformal = next.kind == MapKind::conformal;
+    report_.used = next.kind;
+    std::vector<Vec2> trial;
+    bool valid = false;
+    try {
+      trial = conformal ? bent(next.bend) : on_circle(next.kind, round());
+      valid = !trial.empty() && (valid_map(trial) || repaired(trial));
+    } catch (const GoalMissed&) {  // singular to rounding, or a border that does not close
     }
-    if (!valid && options_.map == MapKind::conformal) valid = try_bends(uv);
-    for (MapKind kind : {MapKind::harmonic, MapKind::convex})
-      if (!valid && (kind > options_.map || (kind == options_.map && options_.neumann)))
-        valid = try_circle(kind, uv);
-    if (!valid && options_.map != MapKind::conformal) {
-      // circles that shrink a limb below what doubles hold: a free border may not
-      std::vector<Vec2> other;
-      report_.used = MapKind::conformal;
-      if (try_bends(other)) {
-        uv = std::move(other);
-        valid = true;
-      }
+    if (valid && conformal) {
+      report_.bend = next.bend;
+      report_.form = ConformalForm::boundary_first;
     }
-    if (!valid) uv.resize(part_.points.size());  // none if every system of equations was singular
-    if (!valid && report_.apart.empty()) {
+    if (valid || (!conformal && !trial.empty())) uv = std::move(trial);
+    return valid;
+  }
+
+  [[noreturn]] void give_up(std::vector<Vec2>& uv) {
+    uv.resize(part_.points.size());  // none if every system of equations was singular
+    if (report_.apart.empty()) {
       // what has shrunk to nothing, from the border
       std::vector<std::array<int, 2>> pairs;
       for (const Tri& t : part_.tris)
@@ -126,20 +182,10 @@ class Search {
           pairs.push_back({t[0], origin(part_.tris, disk_.loops[0][0])});
       report_.apart = sample(pairs);
     }
-    if (!valid)
-      throw GoalMissed("no one-to-one map: " + std::to_string(count_inverted(part_.tris, uv)) + " of " +
-                       std::to_string(part_.tris.size()) + " triangles of the convex map inverted or flat");
-    measure_distortion(part_, uv, report_);
-    // what is valid and poor costs the mesher more than a few steps here
-    constexpr int steps_if_poor = 20;
-    bool improve = part_.tris.size() <= small && !options_.strict &&
-                   (report_.used != options_.map || options_.map == MapKind::conformal) &&
-                   (report_.anisotropy_p99 > poor || report_.anisotropy_mean > 1.5);
-    if (int steps = std::max(options_.optimize, improve ? steps_if_poor : 0); steps > 0) lower(uv, steps);
-    return uv;
+    throw GoalMissed("no one-to-one map: " + std::to_string(count_inverted(part_.tris, uv)) + " of " +
+                     std::to_string(part_.tris.size()) + " triangles of the convex map inverted or flat");
   }
 
- private:
   /// Lowers the distortion, unless that makes the map worse by its worst triangles.
   void lower(std::vector<Vec2>& uv, int steps) {
     std::vector<Vec2> better = uv;
@@ -230,32 +276,6 @@ class Search {
       uv = std::move(again);
       return true;
     } catch (const GoalMissed&) {  // singular to rounding
-      return false;
-    }
-  }
-
-  bool try_bends(std::vector<Vec2>& uv) {
-    try {
-      for (double bend : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0}) {
-        if (bend == 0 && options_.map == MapKind::conformal && options_.form == ConformalForm::boundary_first)
-          continue;  // that was the map asked for
-        uv = bent(bend);
-        if (uv.empty() || (!valid_map(uv) && !repaired(uv))) continue;
-        report_.bend = bend;
-        report_.form = ConformalForm::boundary_first;
-        return true;
-      }
-    } catch (const GoalMissed&) {
-    }
-    return false;
-  }
-
-  bool try_circle(MapKind kind, std::vector<Vec2>& uv) {
-    try {
-      report_.used = kind;
-      uv = on_circle(kind, round());
-      return valid_map(uv) || repaired(uv);
-    } catch (const GoalMissed&) {
       return false;
     }
   }
