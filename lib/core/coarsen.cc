@@ -95,10 +95,6 @@ Coarse coarsen(const Connectivity& c, int wanted, double most_turn) {
     coarse.face.push_back(t);
     const Tri& v = m.tris[t];
     coarse.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
-    if (c.model.empty()) continue;
-    std::uint8_t bits = 0;
-    for (int i = 0; i < 3; ++i) bits |= (m.hard[3 * t + i] && m.opp[3 * t + i] >= 0) << i;
-    coarse.model.push_back(bits);
   }
   return coarse;
 }

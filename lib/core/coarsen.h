@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A coarse model of a surface with the same topology, for decisions that need no detail.
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "lib/core/connectivity.h"
@@ -12,10 +11,9 @@ namespace meshpipe {
 /// vertices that have become one are connected, and what the coarse surface is cut into has the topology of
 /// what the surface is cut into along the same vertices.
 struct Coarse : Mesh {
-  std::vector<std::uint8_t> model;  ///< of each triangle, like face column `model`; empty if given so
-  std::vector<int> vertex;          ///< of each coarse vertex: the vertex that it is
-  std::vector<int> face;            ///< of each coarse triangle: the triangle that has become it
-  std::vector<int> of;              ///< of each vertex: the coarse vertex it has become
+  std::vector<int> vertex;  ///< of each coarse vertex: the vertex that it is
+  std::vector<int> face;    ///< of each coarse triangle: the triangle that has become it
+  std::vector<int> of;      ///< of each vertex: the coarse vertex it has become
 };
 
 /// Contracts short edges in rounds, in each of which a vertex takes in at most one other, until no more than

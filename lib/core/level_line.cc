@@ -108,8 +108,6 @@ class Pull {
     }
     for (int v = 0; v < (int)first_.size(); ++v)
       if (c_.sign[v] == 0 && first_[v] >= 0) on_.push_back(v);
-    for (int v = 0; v < (int)first_.size(); ++v)
-      if (hold[v] == Hold::joins && c_.sign[v] != 0 && first_[v] >= 0) put_on(v);
   }
 
   void sweep(double snap) {

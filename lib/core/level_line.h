@@ -21,9 +21,8 @@ struct LevelLine {
   std::vector<EdgeCrossing> crossing;  ///< sorted by the edge; one for each edge between unlike sides
 };
 
-/// What becomes of a vertex when a line is pulled straight: it keeps its side; it may change sides; the line
-/// is led through it first, where that keeps the line a curve, and stays.
-enum class Hold : char { stays, moves, joins };
+/// What becomes of a vertex when a line is pulled straight: it keeps its side, or it may change sides.
+enum class Hold : char { stays, moves };
 
 /// Pulls the line straight on the unfolded surface: `sweeps` times, each crossing moves along its edge to
 /// where the line is shortest between its neighbors (those on the mesh's border to where it meets that at a

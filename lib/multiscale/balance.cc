@@ -215,8 +215,8 @@ namespace {
 /// M / r^2 + K: around a tube it leaves, applied twice, a third of the first harmonic and a fifteenth of the
 /// second. `mass` receives the diagonal of M / r^2.
 Factorization<double> make_smoother(const FilledDisk& disk, const Branches& branches,
-                                    const std::vector<char>& crease, std::vector<double>& mass) {
-  constexpr double conductance = 0.7, across_crease = 0.1;
+                                    std::vector<double>& mass) {
+  constexpr double conductance = 0.7;
   const int n = disk.part_vertices;
   const std::vector<Tri>& tris = disk.tris;
   mass.assign(n, 0);
@@ -225,15 +225,11 @@ Factorization<double> make_smoother(const FilledDisk& disk, const Branches& bran
     for (int v : tris[t]) mass[v] += third;
   }
   for (int v = 0; v < n; ++v) mass[v] /= branches.radius[v] * branches.radius[v];
-  std::vector<char> on_crease(n, 0);
-  for (std::size_t h = 0; h < crease.size(); ++h)
-    if (crease[h]) on_crease[origin(tris, h)] = on_crease[target(tris, h)] = 1;
   Laplacian matrix(mass);
   matrix.reserve(3 * disk.part_tris);
   for (int h = 0; h < 3 * disk.part_tris; ++h) {
     const int a = origin(tris, h), b = target(tris, h);
-    const bool leaves_crease = on_crease[a] + on_crease[b] == 1;
-    matrix.add_edge(a, b, conductance * disk.weights[h] * (leaves_crease ? across_crease : 1));
+    matrix.add_edge(a, b, conductance * disk.weights[h]);
   }
   return matrix.factorize();
 }
@@ -287,11 +283,11 @@ int adopt_level(const Connectivity& part, const std::vector<int>& corner, const 
 }  // namespace
 
 void balance_sides(const FilledDisk& disk, const Connectivity& part, const Branches& branches,
-                   const std::vector<char>& crease, std::vector<double>& field, int rounds) {
+                   std::vector<double>& field, int rounds) {
   const int n = disk.part_vertices;
   const std::vector<int> corner = corners_of(disk);
   std::vector<double> mass, level(n);
-  const Factorization<double> smoother = make_smoother(disk, branches, crease, mass);
+  const Factorization<double> smoother = make_smoother(disk, branches, mass);
   auto smooth = [&] {
     for (int v = 0; v < n; ++v) level[v] *= mass[v];
     smoother.solve(level);

@@ -31,8 +31,8 @@ void reach_holes(const FilledDisk& disk, const Connectivity& part, std::vector<d
 /// signs of S^2 (1 - P) s, where S smooths over the radius and P takes the mean over the ring. On a tube that
 /// leaves mostly the first harmonic around it: two halves on opposite sides. Vertices change sides one by
 /// one, only where that keeps the topology of both, so that thin strips grow, and ends of the cut slide along
-/// borders. Half-edges with crease[h] != 0 (empty: none) conduct little, so that the cut stays at them.
+/// borders.
 void balance_sides(const FilledDisk& disk, const Connectivity& part, const Branches& branches,
-                   const std::vector<char>& crease, std::vector<double>& field, int rounds);
+                   std::vector<double>& field, int rounds);
 
 }  // namespace meshpipe

@@ -125,7 +125,7 @@ CutMaps best_cut_of(const Part& part, double share) {
     reach_holes(cut.disk, {part.mesh, part.opposite}, c.field);
     if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
     const Assessment before = assess(part, c.field);
-    balance_sides(cut.disk, {part.mesh, part.opposite}, branches, part.crease, c.field, rounds);
+    balance_sides(cut.disk, {part.mesh, part.opposite}, branches, c.field, rounds);
     drop_fragments(part, c.field);
     const Assessment after = assess(part, c.field);
     if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
@@ -138,17 +138,6 @@ CutMaps best_cut_of(const Part& part, double share) {
 }
 
 }  // namespace
-
-Part make_part(ConnectedPart from) {
-  Part part{{}, std::move(from.vertex), std::move(from.opposite), std::move(from.model), {}};
-  part.mesh = std::move(from);
-  for (std::size_t h = 0; h < 3 * part.model.size(); ++h) {
-    if (part.opposite[h] < 0 || !(part.model[h / 3] >> h % 3 & 1)) continue;
-    part.crease.resize(part.opposite.size(), 0);
-    part.crease[h] = 1;
-  }
-  return part;
-}
 
 Assessment assess(const Part& part, const std::vector<double>& field) {
   const std::vector<Vec3>& p = part.mesh.points;
@@ -191,18 +180,15 @@ CutMaps best_cut(const Part& part, double share, std::vector<double>& field) {
   const double n = (double)part.mesh.tris.size();
   Coarse coarse;
   if (n > worth * enough)
-    coarse = coarsen({part.mesh, part.opposite, part.model}, std::max(enough, (int)(n / at_most)), most_turn);
+    coarse = coarsen({part.mesh, part.opposite}, std::max(enough, (int)(n / at_most)), most_turn);
   if (coarse.tris.empty() || n < worth * (double)coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, share);
     field = cut.field;
     return cut;
   }
   // the sides that coarse vertices give to those that have become them have as many pieces
-  ConnectedPart model;
-  static_cast<Mesh&>(model) = coarse;
-  model.opposite = opposite_halfedges(coarse.tris, (int)coarse.points.size());
-  model.model = coarse.model;
-  CutMaps cut = best_cut_of(make_part(std::move(model)), share);
+  Part model{coarse, {}, opposite_halfedges(coarse.tris, (int)coarse.points.size())};
+  CutMaps cut = best_cut_of(model, share);
   field.clear();
   for (int v : coarse.of) field.push_back(cut.field[v]);
   return cut;

@@ -12,10 +12,7 @@ struct Part {
   Mesh mesh;
   std::vector<int> vertex;  ///< its vertices in the whole
   std::vector<int> opposite;
-  std::vector<std::uint8_t> model;  ///< face column; empty if there are no model edges
-  std::vector<char> crease;         ///< of half-edges: model edges inside the part; empty if there are none
 };
-Part make_part(ConnectedPart part);
 
 /// What the zero level of a field does to a part.
 struct Assessment {

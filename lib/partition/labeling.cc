@@ -22,11 +22,11 @@
 namespace meshpipe {
 namespace {
 
-/// Cuts are to follow creases: a model edge costs a fifth of its length, a sharp edge less than a smooth one.
+/// Cuts are to follow creases: a sharp edge costs less than a smooth one.
 std::vector<int> cut_weights(const Connectivity& view) {
   const Mesh& mesh = view.mesh;
   const std::vector<int>& opposite = view.opposite;
-  constexpr double model_factor = 0.2, sharp_factor = 0.4;
+  constexpr double sharp_factor = 0.4;
   std::vector<double> length(opposite.size(), 0);
   double sum = 0;
   std::size_t n = 0;
@@ -48,10 +48,7 @@ std::vector<int> cut_weights(const Connectivity& view) {
     int o = opposite[h];
     if (o < 0) continue;
     double f = 1;
-    if (view.is_model(h))
-      f = model_factor;
-    else if (dot(normal[h / 3], normal[o / 3]) < flat * size[h / 3] * size[o / 3])
-      f = sharp_factor;
+    if (dot(normal[h / 3], normal[o / 3]) < flat * size[h / 3] * size[o / 3]) f = sharp_factor;
     weight[h] = (int)std::clamp(std::round(100 * f * length[h] * n / sum), 1.0, 1e5);
   }
   return weight;
@@ -365,7 +362,7 @@ Labeling search(const Component& c, bool homology, int seed) {
 /// What all but the labeling of a component needs; once.
 void weigh(Component& c) {
   if (!c.weight.empty()) return;
-  c.weight = cut_weights({c.mesh, c.opposite, c.model});
+  c.weight = cut_weights({c.mesh, c.opposite});
   // METIS takes 0.7 us a node: aggregates of some triangles do as well on large surfaces, for the interface
   // is straightened afterwards
   const int n = (int)c.mesh.tris.size();
@@ -397,7 +394,6 @@ Component make_component(ConnectedPart part, const Region& whole) {
   Component c;
   c.whole = whole;
   c.mesh = std::move(part);
-  c.model = std::move(part.model);
   c.opposite = std::move(part.opposite);
   for (int t = 0; t < (int)c.mesh.tris.size(); ++t) c.area.push_back(triangle_area(c.mesh, t));
   return c;
@@ -409,14 +405,12 @@ Labeling best_labeling(Component& c, bool homology, int seed) {
   constexpr double most_turn = 60 * 3.14159265358979 / 180;
   const int n = (int)c.mesh.tris.size(), least = std::min(enough + a_handle * c.whole.genus(), most);
   Coarse coarse;
-  if (n > 2 * least)
-    coarse = coarsen({c.mesh, c.opposite, c.model}, std::clamp(n / at_most, least, most), most_turn);
+  if (n > 2 * least) coarse = coarsen({c.mesh, c.opposite}, std::clamp(n / at_most, least, most), most_turn);
   Labeling l;
   if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
     ConnectedPart part;
     static_cast<Mesh&>(part) = coarse;
     part.opposite = opposite_halfedges(coarse.tris, (int)coarse.points.size());
-    part.model = coarse.model;
     Component small = make_component(std::move(part), c.whole);
     small.of_fine = n;
     small.share = c.share;

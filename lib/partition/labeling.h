@@ -13,7 +13,6 @@ namespace meshpipe {
 /// their length.
 struct Component {
   Mesh mesh;
-  std::vector<std::uint8_t> model;  ///< face column, or empty
   std::vector<int> opposite;
   std::vector<double> area;  ///< of each triangle
   std::vector<int> weight;   ///< of each half-edge, as in the graph: the cost of a cut along it

@@ -22,25 +22,11 @@ struct Charts {
   std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
 };
 
-/// Has the part, as cuts of its neighbors have left it, an inner edge that is a model edge?
-bool has_model_edges(const Surface& surface, int part) {
-  if (!surface.face.has("model")) return false;
-  const auto& model = surface.face.get<std::uint8_t>("model");
-  const auto& label = surface.face.get<int>("part");
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
-  for (std::size_t h = 0; h < opposite.size(); ++h)
-    if (label[h / 3] == part && opposite[h] >= 0 && label[opposite[h] / 3] == part &&
-        (model[h / 3] >> h % 3 & 1))
-      return true;
-  return false;
-}
-
-/// Cuts a limb along its length if its triangles then keep their shape much better in every piece; not across
-/// model edges, which would meet the cut at any angle. Returns the new number of parts; n_parts, with nothing
-/// changed, if it did not.
+/// Cuts a limb along its length if its triangles then keep their shape much better in every piece. Returns
+/// the new number of parts; n_parts, with nothing changed, if it did not.
 int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts, const ParamOptions& options,
                    const ParamReport& whole) {
-  if (topology_of(mesh).eta_geo < limit::limb_aspect || has_model_edges(surface, part)) return n_parts;
+  if (topology_of(mesh).eta_geo < limit::limb_aspect) return n_parts;
   Surface trial = surface;
   const int n = cut_along_limbs(trial, part, n_parts);
   if (n == n_parts) return n_parts;

@@ -108,8 +108,6 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options, std::v
     }
     ConnectedPart sub{std::move(subs[i]), std::move(within[i]), {}};
     const std::vector<int> face = std::move(sub.face);
-    if (surface.face.has("model"))
-      for (int t : face) sub.model.push_back(surface.face.get<std::uint8_t>("model")[t]);
     Component c = make_component(std::move(sub), whole.region[i]);
     c.share = searching * (double)face.size() / (double)part.size();
     const Labeling l = label_component(c, options);

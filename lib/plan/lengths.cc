@@ -54,23 +54,6 @@ void measure_halves(Halves& halves) {
     halves.loops = halves.is[0].loops + halves.is[1].loops;
 }
 
-/// What holds the vertices of a part while a line is pulled straight: creases that it follows closely.
-std::vector<Hold> holds_of(const Part& part, const std::vector<double>& field, const LevelLine& level) {
-  const std::vector<Tri>& tris = part.mesh.tris;
-  std::vector<Hold> hold(field.size(), Hold::moves);
-  for (int h = 0; h < (int)part.crease.size(); ++h) {
-    const int u = origin(tris, h), v = target(tris, h), apex = target(tris, next(h));
-    if (!part.crease[h] || level.sign[u] != level.sign[v] || level.sign[u] == level.sign[apex]) continue;
-    // a triangle may reach far from its crease
-    auto reach = [&](int w) {
-      return field[w] / (field[w] - field[apex]) * norm(part.mesh.points[apex] - part.mesh.points[w]);
-    };
-    if (std::max(reach(u), reach(v)) < norm(part.mesh.points[v] - part.mesh.points[u]))
-      hold[u] = hold[v] = Hold::joins;
-  }
-  return hold;
-}
-
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight. A line
 /// that is snapped to vertices may touch itself there: then it is snapped less, until the halves have no more
 /// loops than expected. On a few coarse triangles it may be pulled off the part: at last it stays as it is.
@@ -81,7 +64,7 @@ Halves split(const Work& work, const Part& part, const std::vector<double>& fiel
     int sweeps;
   };
   const LevelLine level = zero_level(part.mesh, field);
-  const std::vector<Hold> hold = holds_of(part, field, level);
+  const std::vector<Hold> hold(field.size(), Hold::moves);
   Halves best;
   for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
@@ -136,7 +119,8 @@ Part take_part(const Work& work, int p, std::vector<char>& active) {
     active[t] = label[t] == p;
     mine[t] = active[t] ? 0 : -1;
   }
-  return make_part(select_part({work.surface, work.opposite, model_of(work.surface)}, mine, 0));
+  ConnectedPart part = select_part({work.surface, work.opposite}, mine, 0);
+  return {part, std::move(part.vertex), std::move(part.opposite)};
 }
 
 /// Cuts one part in two; adds the tasks of halves that are still too long. Nothing if it cannot be cut.

@@ -54,46 +54,12 @@ TEST(Coarsen, KeepsTheTopology) {
     EXPECT_EQ(after.components, 1);
     EXPECT_LT(coarse.tris.size(), mesh.tris.size() / 2);
     EXPECT_NEAR(after.area, before.area, 0.05 * before.area);
-    EXPECT_TRUE(coarse.model.empty());
     expect_same_cuts(mesh, coarse);
     // each triangle that is left is the image of the one it was
     for (std::size_t t = 0; t < coarse.tris.size(); ++t)
       for (int k = 0; k < 3; ++k) EXPECT_EQ(coarse.tris[t][k], coarse.of[mesh.tris[coarse.face[t]][k]]);
     for (std::size_t v = 0; v < coarse.vertex.size(); ++v) EXPECT_EQ(coarse.of[coarse.vertex[v]], (int)v);
   }
-}
-
-//   o---o---o---o---o
-//   | / | / | / | / |      n x n squares in a plane, with a model edge across the middle
-//   o===o===o===o===o
-//   | / | / | / | / |
-//   o---o---o---o---o
-TEST(Coarsen, KeepsModelEdgesInPlace) {
-  constexpr int n = 24;
-  Mesh mesh;
-  std::vector<std::uint8_t> model;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x) mesh.points.push_back({(double)x, (double)y, 0});
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const int a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
-      mesh.tris.push_back({a, b, d});
-      model.push_back(y == n / 2 ? 1 : 0);
-      mesh.tris.push_back({a, d, c});
-      model.push_back(y + 1 == n / 2 ? 2 : 0);
-    }
-  const Coarse coarse = coarsen({mesh, opposite_of(mesh), model}, 100, 0.45);
-  EXPECT_LT(coarse.tris.size(), mesh.tris.size() / 3);
-  double length = 0;
-  for (std::size_t h = 0; h < 3 * coarse.tris.size(); ++h) {
-    if (!(coarse.model[h / 3] >> h % 3 & 1)) continue;
-    const Vec3 a = coarse.points[origin(coarse.tris, h)], b = coarse.points[target(coarse.tris, h)];
-    EXPECT_EQ(a.y, n / 2);
-    EXPECT_EQ(b.y, n / 2);
-    length += norm(b - a);
-  }
-  EXPECT_DOUBLE_EQ(length, 2 * n);              // from both sides
-  EXPECT_GT(total_area(coarse), 0.95 * n * n);  // the corners of the border are none
 }
 
 TEST(Coarsen, KeepsThinTubes) {

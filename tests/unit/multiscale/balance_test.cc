@@ -67,7 +67,7 @@ TEST(Balance, AThinStripGrowsToHalfTheTube) {
   const Branches branches = find_branches(disk, laplace_levels(disk));
   std::vector<double> field;
   for (Vec3 p : mesh.points) field.push_back(p.x > 0.47 ? 1 : -1);
-  balance_sides(disk, {disk, opposite}, branches, {}, field, 20);
+  balance_sides(disk, {disk, opposite}, branches, field, 20);
   double positive = 0;
   for (double f : field) positive += f > 0;
   EXPECT_NEAR(positive / (double)field.size(), 0.5, 0.05);
@@ -102,51 +102,6 @@ TEST(Multiscale, HalvesOfATreeAreDisksOfLikeSize) {
   for (const Topology& t : halves) EXPECT_EQ(t.loops, 1);
   EXPECT_NEAR(halves[0].area / (halves[0].area + halves[1].area), 0.5, 0.05);
   EXPECT_LT(measure_interfaces(s).turning_angle, 25);
-}
-
-/// A long box without ends, 40 x 1 x 1, its four long edges marked, 8 squares a side: corners at j = 0, 8,
-/// 16, 24.
-Surface open_box() {
-  constexpr int side = 8, around = 4 * side, rows = 40 * side;
-  Surface s;
-  for (int i = 0; i <= rows; ++i)
-    for (int j = 0; j < around; ++j) {
-      const double t = (double)(j % side) / side;
-      const double x[] = {t, 1, 1 - t, 0}, y[] = {0, t, 1, 1 - t};
-      s.points.push_back({x[j / side], y[j / side], (double)i / side});
-    }
-  std::vector<std::uint8_t> model;
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < around; ++j) {
-      const int a = i * around + j, b = i * around + (j + 1) % around;
-      s.tris.push_back({a, b, b + around});
-      model.push_back((j + 1) % side == 0 ? 2 : 0);  // the edge from b up
-      s.tris.push_back({a, b + around, a + around});
-      model.push_back(j % side == 0 ? 4 : 0);  // the edge down to a
-    }
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
-  s.face.set("model", std::move(model));
-  s.face.set("part", std::vector<int>(s.tris.size(), 0));
-  return s;
-}
-
-TEST(Multiscale, CreasesAttractTheCut) {
-  Surface s = open_box();
-  ASSERT_EQ(multiscale_cut(s), 2);
-  EXPECT_EQ(part_fault(s), "");
-  const auto opposite = opposite_halfedges(s.tris, (int)s.points.size());
-  const auto& part = s.face.get<int>("part");
-  const auto& model = s.face.get<std::uint8_t>("model");
-  double on_crease = 0, total = 0;
-  for (std::size_t h = 0; h < opposite.size(); ++h) {
-    if (opposite[h] < 0 || part[h / 3] == part[opposite[h] / 3]) continue;
-    const double length = norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]);
-    total += length;
-    if (model[h / 3] >> h % 3 & 1) on_crease += length;
-  }
-  EXPECT_GT(on_crease / total, 0.9);
-  EXPECT_LT(total / 2, 82);
 }
 
 TEST(Multiscale, AThinRingIsCutIntoTwoFlatRings) {
