@@ -66,13 +66,13 @@ std::vector<RepairRow> repairs(const CleanReport& r, const CleanOptions& options
 std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
   std::vector<RepairRow> table = repairs(r, options);
   if (options.resolve == CleanOptions::none) return table;
-  char area[64];
-  std::snprintf(area, sizeof area, "pieces inside dropped, of area %.4g", r.resolved.dropped_area);
+  char area[96];
+  std::snprintf(area, sizeof area, "pieces dropped that do not bound the outside, of area %.4g",
+                r.resolved.dropped_area);
   for (RepairRow row :
        {RepairRow{"intersecting_pairs", r.resolved.pairs, "pairs of triangles that intersect"},
         {"intersection_vertices", r.resolved.new_vertices, "vertices added where they do"},
         {"dropped_pieces", r.resolved.dropped, area},
-        {"reversed_pieces", r.resolved.reversed, "pieces reversed, which were inside out"},
         {"intersecting_left", r.resolved.left, "pairs that still intersect"}})
     table.push_back(std::move(row));
   return table;

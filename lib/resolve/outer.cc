@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
@@ -12,12 +13,11 @@
 namespace meshpipe {
 namespace {
 
-constexpr int unknown = std::numeric_limits<int>::max();
-
 /// The sides of pieces: 2 t is the one that the normal of piece t points to, 2 t + 1 the other. Sides of one
-/// region that are connected along edges form a shell.
+/// region that are connected along edges form a shell; if only edges count that close, a level: all of it has
+/// one winding number.
 struct Sides {
-  UnionFind shell, component;
+  UnionFind shell, level, component;
   std::vector<char> open;  ///< per piece: it has an edge that does not close
 };
 
@@ -57,7 +57,8 @@ class Around {
 
 Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const ExactPoints& points) {
   const int n = (int)pieces.tris.size();
-  Sides s{UnionFind(2 * (std::size_t)n), UnionFind(n), std::vector<char>(n, 0)};
+  Sides s{UnionFind(2 * (std::size_t)n), UnionFind(2 * (std::size_t)n), UnionFind(n),
+          std::vector<char>(n, 0)};
   const Around around(pieces, tris, points);
   std::vector<int> edge;
   for_each_edge(pieces.tris, points.size(), [&](std::span<const EdgeUse> uses) {
@@ -71,8 +72,11 @@ Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const Ex
     }
     if (sum != 0) s.open[edge[0] / 3] = 1;
     if (edge.size() > 2) around.sort(edge);
-    for (std::size_t i = 0; i < edge.size(); ++i)
-      s.shell.join(around.side(edge[i]), around.side(edge[(i + 1) % edge.size()], true));
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      const int a = around.side(edge[i]), b = around.side(edge[(i + 1) % edge.size()], true);
+      s.shell.join(a, b);
+      if (sum == 0) s.level.join(a, b);
+    }
   });
   return s;
 }
@@ -149,56 +153,131 @@ std::vector<int> outer_shells(const Pieces& pieces, const ExactPoints& points, S
   return outer;
 }
 
+constexpr int unknown = std::numeric_limits<int>::max();
+
+/// Winding numbers, which go from level to level through the pieces.
+class Winding {
+ public:
+  Winding(const Pieces& pieces, Sides& sides)
+      : pieces_(pieces), sides_(sides), number_(2 * pieces.tris.size(), unknown) {
+    for_each_level(pieces, sides);
+  }
+  int at(int side) const { return number_[sides_.level.find(side)]; }
+  /// Gives the level of a side a number, and all that are connected with it. Returns whether they agree.
+  bool spread(int side, int number);
+
+ private:
+  void for_each_level(const Pieces& pieces, Sides& sides);
+  const Pieces& pieces_;
+  Sides& sides_;
+  std::vector<int> number_;        ///< by the side that names the level
+  std::vector<int> first_, next_;  ///< the sides of a level: by its name, and by side
+};
+
+void Winding::for_each_level(const Pieces& pieces, Sides& sides) {
+  const int n = 2 * (int)pieces.tris.size();
+  first_.assign(n, -1);
+  next_.assign(n, -1);
+  for (int side = n - 1; side >= 0; --side) next_[side] = std::exchange(first_[sides.level.find(side)], side);
+}
+
+bool Winding::spread(int side, int number) {
+  bool agree = true;
+  std::vector<int> todo{sides_.level.find(side)};
+  number_[todo[0]] = number;
+  while (!todo.empty()) {
+    const int level = todo.back();
+    todo.pop_back();
+    for (int s = first_[level]; s >= 0; s = next_[s]) {
+      const int other = sides_.level.find(s ^ 1), weight = pieces_.weight[s / 2];
+      const int there = number_[level] + (s % 2 ? -weight : weight);
+      if (number_[other] == unknown) {
+        number_[other] = there;
+        todo.push_back(other);
+      }
+      agree = agree && number_[other] == there;
+    }
+  }
+  return agree;
+}
+
+/// Numbers the components.
+void number_components(const Pieces& pieces, Sides& sides, Hull& hull) {
+  const int n = (int)pieces.tris.size();
+  std::vector<int> number(n, -1);
+  for (int t = 0; t < n; ++t) {
+    int& c = number[sides.component.find(t)];
+    if (c < 0) c = (int)hull.open.size(), hull.open.push_back(0);
+    hull.component[t] = c;
+    if (sides.open[t]) hull.open[c] = 1;
+  }
+}
+
+/// Twice the area of each piece.
+std::vector<double> areas(const Pieces& pieces, const ExactPoints& points) {
+  std::vector<double> area;
+  for (const auto& [a, b, c] : pieces.tris)
+    area.push_back(norm(area_vector(points.near(a), points.near(b), points.near(c))));
+  return area;
+}
+
+/// Flags open components of which most bounds a region: what they enclose is solid.
+std::vector<char> enclosing(const Pieces& pieces, const std::vector<double>& area, Sides& sides,
+                            const std::vector<int>& outer, const Hull& hull) {
+  constexpr double most = 2;  // times the area with the outside on both sides; fins are less
+  std::vector<double> more(hull.open.size(), 0);
+  for (int t = 0; t < (int)pieces.tris.size(); ++t) {
+    const int o = outer[hull.component[t]];
+    const int outside = (sides.shell.find(2 * t) == o) + (sides.shell.find(2 * t + 1) == o);
+    if (outside) more[hull.component[t]] += outside == 1 ? area[t] : -most * area[t];
+  }
+  std::vector<char> flags(more.size());
+  for (std::size_t c = 0; c < more.size(); ++c) flags[c] = hull.open[c] && more[c] > 0;
+  return flags;
+}
+
 }  // namespace
 
 Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
                 const ExactPoints& points) {
   const int n = (int)pieces.tris.size();
   Sides sides = connect_sides(pieces, tris, points);
-  Hull hull{std::vector<signed char>(n, 0), std::vector<int>(n), {}};
-  std::vector<int> number(n, -1);
-  for (int t = 0; t < n; ++t) {
-    int& c = number[sides.component.find(t)];
-    if (c < 0) c = (int)hull.open.size(), hull.open.push_back(0);
-    hull.component[t] = c;
-  }
-  for (int t = 0; t < n; ++t)
-    if (sides.open[t]) hull.open[hull.component[t]] = 1;
-  Mesh mesh;
+  Hull hull{std::vector<signed char>(n, 0), std::vector<int>(n), {}, {}};
+  number_components(pieces, sides, hull);
+  hull.ambiguous.assign(hull.open.size(), 0);
+  Mesh mesh{{}, tris};
   for (int p = 0; p < points.size() && points.is_vertex(p); ++p) mesh.points.push_back(points.near(p));
-  mesh.tris = tris;
   const std::vector<int> around = surrounding(mesh, weight, pieces, points, hull);
   const std::vector<int> outer = outer_shells(pieces, points, sides, hull);
-  // winding numbers go from shell to shell through the pieces
-  std::vector<int> winding(2 * (std::size_t)n, unknown);
-  for (std::size_t c = 0; c < outer.size(); ++c) winding[outer[c]] = around[c];
-  std::vector<std::vector<int>> through;  // pieces of each shell
-  std::vector<int> shell_number(2 * (std::size_t)n, -1), todo;
-  for (int side = 0; side < 2 * n; ++side) {
-    int& k = shell_number[sides.shell.find(side)];
-    if (k < 0) k = (int)through.size(), through.emplace_back();
-    through[k].push_back(side);
-  }
-  for (int o : outer) todo.push_back(o);
-  while (!todo.empty()) {
-    const int s = todo.back();
-    todo.pop_back();
-    for (int side : through[shell_number[s]]) {
-      const int t = side / 2, other = sides.shell.find(side ^ 1);
-      const int there = winding[s] + (side % 2 ? -pieces.weight[t] : pieces.weight[t]);
-      if (winding[other] == unknown) {
-        winding[other] = there;
-        todo.push_back(other);
-      } else if (winding[other] != there) {
-        hull.open[hull.component[t]] = 1;
-      }
+  Winding winding(pieces, sides);
+  for (std::size_t c = 0; c < outer.size(); ++c)
+    if (!hull.open[c] && !winding.spread(outer[c], around[c])) hull.open[c] = 1;
+  const std::vector<double> area = areas(pieces, points);
+  // sheets have no outside: it is in front of the level with most area, first, and of what is not connected
+  std::vector<double> front(2 * (std::size_t)n, 0);
+  std::vector<int> order;
+  for (int t = 0; t < n; ++t)
+    if (hull.open[hull.component[t]] && pieces.weight[t] != 0) {
+      const int side = sides.level.find(pieces.weight[t] > 0 ? 2 * t : 2 * t + 1);
+      if (front[side] == 0) order.push_back(side);
+      front[side] += area[t];
     }
-  }
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return front[a] > front[b]; });
+  std::vector<char> seen(hull.open.size(), 0);
+  for (int side : order)
+    if (const int c = hull.component[side / 2]; winding.at(side) == unknown)
+      if (!winding.spread(side, around[c]) || std::exchange(seen[c], 1)) hull.ambiguous[c] = 1;
+  const std::vector<char> solid = enclosing(pieces, area, sides, outer, hull);
   for (int t = 0; t < n; ++t) {
-    const bool front = winding[sides.shell.find(2 * t)] != 0,
-               back = winding[sides.shell.find(2 * t + 1)] != 0;
-    hull.keep[t] = hull.open[hull.component[t]] ? pieces.weight[t] != 0 : back - front;
+    const int c = hull.component[t];
+    auto inside = [&](int side) {
+      if (hull.ambiguous[c]) return around[c] > 0 || sides.shell.find(side) != outer[c];
+      return winding.at(side) > 0;
+    };
+    const bool all = hull.ambiguous[c] && !solid[c];
+    hull.keep[t] = all ? pieces.weight[t] != 0 : inside(2 * t + 1) - inside(2 * t);
   }
+  for (std::size_t c = 0; c < solid.size(); ++c) hull.ambiguous[c] = hull.ambiguous[c] && !solid[c];
   return hull;
 }
 

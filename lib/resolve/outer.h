@@ -12,11 +12,14 @@ struct Hull {
   std::vector<signed char> keep;  ///< 1 as it is, -1 reversed, 0 not at all
   std::vector<int> component;     ///< per piece: of pieces that meet along edges
   std::vector<char> open;         ///< per component: it has borders, or winds inconsistently
+  std::vector<char> ambiguous;    ///< per component: what is outside is not determined, all is kept
 };
 
-/// Finds the boundary between regions of winding number 0 and others, oriented away from the others. All
-/// pieces of open components are kept, and do not count for the winding number of others.
-/// Returns one row per piece. Source: Zhou, Grinspun, Zorin, Jacobson 2016, in exact arithmetic.
+/// Finds the boundary between regions of positive winding number and others, oriented away from the former.
+/// Open components have the outside in front, as far as that determines where they pass through each other.
+/// Where it does not, and most of them encloses regions, these are solid: what is not on their outside goes.
+/// Returns one row per piece. Source: Zhou, Grinspun, Zorin, Jacobson, Mesh Arrangements for Solid Geometry,
+/// 2016, for closed ones.
 Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
                 const ExactPoints& points);
 

@@ -35,23 +35,19 @@ std::vector<char> vertices_of(const PieceMesh& s, const std::vector<std::pair<in
   return hit;
 }
 
-/// Throws NotAdmissible if an open component intersects: it has no inside.
-void refuse_open(const Hull& hull, const Pieces& pieces, const PieceMesh& s,
-                 const std::vector<std::pair<int, int>>& pairs) {
+/// Throws NotAdmissible if a component intersects of which the outside is not determined.
+void refuse_ambiguous(const Hull& hull, const Pieces& pieces, const PieceMesh& s,
+                      const std::vector<std::pair<int, int>>& pairs) {
   int n = 0, first = -1;
   for (const auto& [t, u] : pairs)
-    for (int f : {t, u})
-      if (hull.open[hull.component[pieces.piece_of[f]]]) {
-        if (n++ == 0) first = f;
-        break;
-      }
+    if (hull.ambiguous[hull.component[pieces.piece_of[t]]] && n++ == 0) first = t;
   if (n == 0) return;
   const Vec3 p = s.points[s.pieces.tris[first][0]];
   char place[96];
   std::snprintf(place, sizeof place, "(%.6g %.6g %.6g)", p.x, p.y, p.z);
   throw NotAdmissible(std::to_string(n) + " of " + std::to_string(pairs.size()) +
                       " intersections, the first near " + place +
-                      ", are of components with borders, which have no inside: fill the holes (mclean "
+                      ", are of components with borders that have no inside: fill their holes (mclean "
                       "--fill-holes N), or run mwrap");
 }
 
@@ -63,8 +59,10 @@ void pass(PieceMesh& s, const std::vector<std::pair<int, int>>& pairs, const Res
   const std::vector<int> before = s.pieces.origin;
   if (options.keep == ResolveOptions::outer) {
     const Hull hull = outer_hull(pieces, s.pieces.tris, s.pieces.weight, points);
-    report.open = (int)std::count(hull.open.begin(), hull.open.end(), 1);
-    if (report.passes == 1) refuse_open(hull, pieces, s, pairs);
+    if (report.passes == 1) {
+      report.open = (int)std::count(hull.open.begin(), hull.open.end(), 1);
+      refuse_ambiguous(hull, pieces, s, pairs);
+    }
     int n = 0;
     for (std::size_t t = 0; t < pieces.tris.size(); ++t) {
       Tri tri = pieces.tris[t];
@@ -74,10 +72,10 @@ void pass(PieceMesh& s, const std::vector<std::pair<int, int>>& pairs, const Res
             0.5 * norm(area_vector(points.near(tri[0]), points.near(tri[1]), points.near(tri[2])));
         continue;
       }
-      if (hull.keep[t] < 0) std::swap(tri[1], tri[2]), ++report.reversed;
+      if (hull.keep[t] < 0) std::swap(tri[1], tri[2]);
       pieces.tris[n] = tri;
       pieces.origin[n] = pieces.origin[t];
-      pieces.weight[n++] = hull.open[hull.component[t]] ? pieces.weight[t] : 1;
+      pieces.weight[n++] = 1;
     }
     pieces.tris.resize(n);
     pieces.origin.resize(n);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "lib/clean/clean.h"
-#include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/topology.h"
 
@@ -191,12 +190,70 @@ TEST(Resolve, InterpolatesVertexData) {
   }
 }
 
-TEST(Resolve, RefusesBordersThatIntersect) {
+static const std::vector<Tri> square{{0, 1, 2}, {1, 3, 2}};
+
+TEST(Resolve, DropsWallsAndFinsOfSolids) {
   Surface s;
   add_box(s, zero, two);
-  s.tris.erase(s.tris.begin());
-  s.face = {"face", s.tris.size(), {}};
-  EXPECT_TRUE(resolve(s).nothing);
-  add_box(s, one, three);
-  EXPECT_THROW(resolve(s), NotAdmissible);
+  add(s, {{1, 0, 0}, {1, 2, 0}, {1, 0, 2}, {1, 2, 2}}, square, 2);
+  EXPECT_EQ(expect_resolved(s, 8).dropped_area, 4);
+  Surface fin;
+  add_box(fin, zero, two);
+  add(fin, {{1, 1, 0.5}, {3, 1, 0.5}, {1, 1, 1}, {3, 1, 1}}, square, 2);
+  EXPECT_EQ(expect_resolved(fin, 8).dropped_area, 1);
+}
+
+TEST(Resolve, KeepsSheetsInFrontOfOthers) {
+  Surface s;  // a box half sunk in the ground, whose front is above
+  add(s, {{-9, -9, 0}, {9, -9, 0}, {-9, 9, 0}, {9, 9, 0}}, square, 1);
+  add_box(s, {-1, -1, -1}, one, 2);
+  const ResolveReport r = resolve(s);
+  EXPECT_EQ(r.open, 1);
+  EXPECT_FALSE(r.closed);
+  EXPECT_TRUE(self_intersections(s).empty());
+  EXPECT_NEAR(total_area(s), 18 * 18 + 4 * 2, 1e-12);
+  EXPECT_EQ(topology_of(s).loops, 1);
+  for (Vec3 p : s.points) EXPECT_GE(p.z, 0);
+  Surface open;  // a box without a triangle is still in front of what is within it
+  add_box(open, zero, two);
+  open.tris.erase(open.tris.begin());
+  open.face = {"face", open.tris.size(), {}};
+  EXPECT_TRUE(resolve(open).nothing);
+  add_box(open, one, three);
+  EXPECT_EQ(resolve(open).dropped_area, 6);
+  EXPECT_EQ(topology_of(open).loops, 1);
+}
+
+TEST(Resolve, DropsFoldsThatAreInsideOut) {
+  Surface s;  // a prism; one of its edges has been pushed out through the opposite side
+  add(s,
+      {{0, 0, 0},
+       {4, 0, 0},
+       {4, 4, 0},
+       {2, -1, 0},
+       {0, 4, 0},
+       {0, 0, 1},
+       {4, 0, 1},
+       {4, 4, 1},
+       {2, -1, 1},
+       {0, 4, 1}},
+      {{0, 3, 1},
+       {1, 3, 2},
+       {0, 4, 3},
+       {5, 6, 8},
+       {6, 7, 8},
+       {5, 8, 9},
+       {0, 1, 6},
+       {0, 6, 5},
+       {1, 2, 7},
+       {1, 7, 6},
+       {2, 3, 8},
+       {2, 8, 7},
+       {3, 4, 9},
+       {3, 9, 8},
+       {4, 0, 5},
+       {4, 5, 9}},
+      1);
+  ASSERT_NEAR(volume(s), 6, 1e-12);
+  expect_resolved(s, 6.4);
 }
