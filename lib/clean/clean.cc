@@ -301,9 +301,27 @@ void clean_resolved(Surface& surface, CleanOptions options, CleanReport& report)
   after.holes = report.holes;
   after.nonorientable = std::move(report.nonorientable);
   after.offending = std::move(report.offending);
-  after.resolved = report.resolved;
   after.nothing = false;
   report = std::move(after);
+}
+
+/// Resolves a surface whose vertices are welded, but whose triangles are the input's: where sheets are
+/// counted with their orientation, even doubled ones and edges of many triangles may add up to something
+/// closed. Returns false if they do not.
+bool resolve_as_it_is(Surface& s, const CleanOptions& options, const ResolveOptions& how, CleanReport& report,
+                      ResolveReport& resolved) {
+  if (options.resolve != CleanOptions::outer) return false;
+  report = {};
+  report.input_vertices = (int)s.points.size();
+  report.input_triangles = (int)s.tris.size();
+  const std::vector<int> same = weld_vertices(s, options, report);
+  for (std::size_t v = 0; v < same.size(); ++v) s.points[v] = s.points[same[v]];
+  try {
+    resolved = resolve(s, how);
+  } catch (const NotAdmissible&) {  // after a repair this may be different
+    return false;
+  }
+  return resolved.closed;
 }
 
 }  // namespace
@@ -311,22 +329,25 @@ void clean_resolved(Surface& surface, CleanOptions options, CleanReport& report)
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   expect_measurable(surface);
   if (options.resolve == CleanOptions::none) return clean_once(surface, options, report);
-  CleanOptions first = options;
-  first.keep_components = 0;
-  first.sheets = CleanOptions::pair;
-  Surface s = surface;
-  clean_once(s, first, report);
   const ResolveOptions how{options.resolve == CleanOptions::all ? ResolveOptions::all
                                                                 : ResolveOptions::outer};
-  const ResolveReport resolved = resolve(s, how);
+  Surface s = surface;
+  ResolveReport resolved;
+  if (!resolve_as_it_is(s, options, how, report, resolved)) {
+    CleanOptions first = options;
+    first.keep_components = 0;
+    first.sheets = CleanOptions::pair;
+    s = surface;
+    clean_once(s, first, report);
+    resolved = resolve(s, how);
+  }
   if (resolved.nothing) {
     clean_once(surface, options, report);
-    report.resolved = resolved;
-    return;
+  } else {
+    clean_resolved(s, options, report);
+    surface = std::move(s);
   }
   report.resolved = resolved;
-  clean_resolved(s, options, report);
-  surface = std::move(s);
 }
 
 CleanReport clean(Surface& surface, const CleanOptions& options) {

@@ -100,7 +100,8 @@ int leaves(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 
 /// Per component: the winding number of all others that are closed, in the middle of its largest piece.
 std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, const Pieces& pieces,
-                             const ExactPoints& points, const Hull& hull) {
+                             const ExactPoints& points, const Hull& hull,
+                             const std::vector<signed char>& sign) {
   const std::vector<char>& open = hull.open;
   std::vector<int> sum(open.size(), 0);
   if (open.size() < 2) return sum;
@@ -120,10 +121,26 @@ std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, c
   for (int c = 0; c < (int)sum.size(); ++c) {
     const Vec3 p = place[c];
     tree.overlapping({p, {end, p.y, p.z}}, [&](int t) {
-      if (const int d = hull.component[pieces.piece_of[t]]; d == c || open[d]) return;
+      const int d = hull.component[pieces.piece_of[t]];
+      if (d == c || open[d]) return;
       const Tri& v = mesh.tris[t];
-      sum[c] += weight[t] * leaves(p, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+      sum[c] += sign[d] * weight[t] * leaves(p, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
     });
+  }
+  return sum;
+}
+
+/// The signed volume of each component, six times.
+std::vector<double> volumes(const Pieces& pieces, const ExactPoints& points, const Hull& hull) {
+  std::vector<int> seed(hull.open.size(), -1);
+  std::vector<double> sum(hull.open.size(), 0);
+  for (std::size_t t = 0; t < pieces.tris.size(); ++t) {
+    const auto [a, b, c] = pieces.tris[t];
+    int& o = seed[hull.component[t]];
+    if (o < 0) o = a;
+    const Vec3 p = points.near(o);
+    sum[hull.component[t]] +=
+        pieces.weight[t] * dot(points.near(a) - p, cross(points.near(b) - p, points.near(c) - p));
   }
   return sum;
 }
@@ -238,7 +255,7 @@ std::vector<char> enclosing(const Pieces& pieces, const std::vector<double>& are
 
 }  // namespace
 
-Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
+Hull outer_hull(Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
                 const ExactPoints& points) {
   const int n = (int)pieces.tris.size();
   Sides sides = connect_sides(pieces, tris, points);
@@ -247,8 +264,19 @@ Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::v
   hull.ambiguous.assign(hull.open.size(), 0);
   Mesh mesh{{}, tris};
   for (int p = 0; p < points.size() && points.is_vertex(p); ++p) mesh.points.push_back(points.near(p));
-  const std::vector<int> around = surrounding(mesh, weight, pieces, points, hull);
+  const std::vector<double> volume = volumes(pieces, points, hull);
+  std::vector<signed char> sign(hull.open.size(), 1);
+  std::vector<int> around;
+  for (int pass = 1; pass <= 3; ++pass) {  // one more where what is reversed encloses others
+    around = surrounding(mesh, weight, pieces, points, hull, sign);
+    bool reversed = false;
+    for (std::size_t c = 0; c < sign.size(); ++c)
+      if (!hull.open[c] && (around[c] < 0 || (around[c] == 0 && sign[c] * volume[c] < 0)))
+        sign[c] = -sign[c], reversed = true;
+    if (!reversed) break;
+  }
   const std::vector<int> outer = outer_shells(pieces, points, sides, hull);
+  for (int t = 0; t < n; ++t) pieces.weight[t] *= sign[hull.component[t]];
   Winding winding(pieces, sides);
   for (std::size_t c = 0; c < outer.size(); ++c)
     if (!hull.open[c] && !winding.spread(outer[c], around[c])) hull.open[c] = 1;

@@ -18,9 +18,9 @@ struct Hull {
 /// Finds the boundary between regions of positive winding number and others, oriented away from the former.
 /// Open components have the outside in front, as far as that determines where they pass through each other.
 /// Where it does not, and most of them encloses regions, these are solid: what is not on their outside goes.
-/// Returns one row per piece. Source: Zhou, Grinspun, Zorin, Jacobson, Mesh Arrangements for Solid Geometry,
-/// 2016, for closed ones.
-Hull outer_hull(const Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
+/// Weights change sign in closed components that are inside out. Returns one row per piece. Source: Zhou,
+/// Grinspun, Zorin, Jacobson, Mesh Arrangements for Solid Geometry, 2016, for closed ones.
+Hull outer_hull(Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
                 const ExactPoints& points);
 
 }  // namespace meshpipe

@@ -72,7 +72,7 @@ void pass(PieceMesh& s, const std::vector<std::pair<int, int>>& pairs, const Res
             0.5 * norm(area_vector(points.near(tri[0]), points.near(tri[1]), points.near(tri[2])));
         continue;
       }
-      if (hull.keep[t] < 0) std::swap(tri[1], tri[2]);
+      if (hull.keep[t] < 0) std::swap(tri[1], tri[2]), ++report.reversed;
       pieces.tris[n] = tri;
       pieces.origin[n] = pieces.origin[t];
       pieces.weight[n++] = 1;
@@ -196,7 +196,7 @@ ResolveReport resolve(Surface& surface, const ResolveOptions& options) {
     pass(s, pairs, options, report);
     normalize(s);
   }
-  report.nothing = report.pairs == 0 && s.pieces.tris.size() == surface.tris.size();
+  report.nothing = report.pairs == 0 && report.reversed == 0 && s.pieces.tris.size() == surface.tris.size();
   if (!report.nothing) take_over(s, surface, report);
   report.closed = is_closed(surface);
   return report;

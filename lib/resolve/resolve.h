@@ -18,6 +18,7 @@ struct ResolveReport {
   int new_vertices = 0;  ///< of the result, at intersections
   int dropped = 0;       ///< pieces that do not bound the outside
   double dropped_area = 0;
+  int reversed = 0;      ///< pieces kept that were inside out
   int passes = 0;        ///< arrangements, until rounded points intersected nowhere
   double removed = 0;    ///< height of slivers removed between passes
   int left = 0;          ///< pairs that still intersect

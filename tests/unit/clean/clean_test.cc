@@ -775,3 +775,19 @@ TEST(Clean, DetailIsNotWelded) {
   Surface both = surface(s.points, s.tris);
   EXPECT_EQ(clean(both).welded_near, 0);
 }
+
+TEST(Clean, ResolvesWhatIsClosedAsItIs) {
+  // tetrahedra one within the other, with a common triangle in the middle of both orders: three sheets there
+  Surface s = nested("++");
+  s.tris.insert(s.tris.end(), {{0, 2, 1}, {0, 1, 2}, {0, 2, 1}});  // and the last one is too many
+  s.tris.push_back({0, 1, 2});
+  s.face = {"face", s.tris.size(), {}};
+  s.face.set("patch", std::vector<int>(s.tris.size(), 1));
+  CleanOptions options;
+  options.resolve = CleanOptions::outer;
+  const CleanReport r = clean(s, options);
+  EXPECT_TRUE(r.resolved.closed);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_EQ(r.duplicate, 0);
+  expect_manifold(s);
+}

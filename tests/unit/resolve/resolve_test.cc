@@ -122,6 +122,8 @@ TEST(Resolve, DropsWhatIsInsideAndKeepsCavities) {
   add_box(cavity, one, two);
   for (std::size_t t = 12; t < 24; ++t) std::swap(cavity.tris[t][0], cavity.tris[t][1]);
   EXPECT_TRUE(resolve(cavity).nothing);
+  for (Tri& t : cavity.tris) std::swap(t[0], t[1]);
+  expect_resolved(cavity, 26);  // all inside out
   Surface twice;
   add_box(twice, zero, two);
   add_box(twice, zero, two);
