@@ -317,19 +317,6 @@ std::vector<char> input_border(const Surface& surface) {
   return found;
 }
 
-void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) {
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const Vec3 p = mesh.points[v];
-    const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const double spacing = std::nextafter(far, HUGE_VAL) - far;
-    if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
-    throw GoalMissed("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
-                     ", but coordinates there are " + shown(spacing) + " apart, and sizes of at least " +
-                     shown(least_spacings * spacing) +
-                     " are expected; move the surface to the origin, weld it, or ask for larger sizes");
-  }
-}
-
 std::vector<char> model_corners(const Surface& surface, double corner) {
   return mark_corners(surface, surface.vertex.get<double>("size"),
                       special_edges(surface, surface.face.get<int>("part")), corner);

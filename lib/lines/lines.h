@@ -4,6 +4,7 @@
 #pragma once
 #include "lib/core/chart.h"
 #include "lib/core/mesh.h"
+#include "lib/size/size.h"
 
 namespace meshpipe {
 
@@ -43,14 +44,6 @@ std::vector<char> model_corners(const Surface& surface, double corner = corner_t
 /// Marks the border vertices of the input, leaving out those where a cut divided a border edge: there both
 /// border edges belong to one triangle of face column `origin`, and are in line.
 std::vector<char> input_border(const Surface& surface);
-
-/// A size below this number of spacings of the coordinates is refused: lengths are rounded by a tenth there,
-/// and meshing need not end. A sphere of 1,500 triangles passes with 70 spacings, and hangs with 12.
-constexpr double least_spacings = 16;
-
-/// Throws GoalMissed naming a vertex whose size is too small for its coordinates. `size` is per vertex;
-/// values that are not positive are skipped.
-void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
 
 /// Chains border edges, edges between parts, and model edges into lines, which end at junctions, at
 /// model_corners and where `tag` (per half-edge, or null) changes. Divides each evenly in the integral of 1/h

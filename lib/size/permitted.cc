@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
-constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features
+constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
 constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do, some are larger
 constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
 constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
@@ -103,7 +103,7 @@ class Measure {
 
   const Connectivity& surface_;
   const std::vector<double>& asked_;
-  double least_width_;
+  double least_width_, largest_;
   std::vector<Vec3> normal_;         ///< of triangles
   std::vector<int> after_, before_;  ///< per half-edge on a line: its neighbors around the region; else -1
   Bvh tree_;
@@ -113,6 +113,7 @@ Measure::Measure(const Connectivity& surface, const std::vector<double>& asked)
     : surface_(surface),
       asked_(asked),
       least_width_(least_width * diagonal(surface.mesh)),
+      largest_(*std::max_element(asked.begin(), asked.end())),
       normal_(face_normals(surface.mesh)),
       after_(surface.n_half_edges(), -1),
       before_(surface.n_half_edges(), -1),
@@ -129,7 +130,7 @@ Measure::Measure(const Connectivity& surface, const std::vector<double>& asked)
 /// Whether q on the half-edge `other` is reached from p on h along the lines around their region, on a way
 /// that is short for the width between them.
 bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const {
-  const double most = std::max(per_width * width, asked(h));
+  const double most = std::max(per_width * width, largest_);
   for (bool forward : {true, false}) {
     double way = 0;
     bool sharp = false;
@@ -153,13 +154,14 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
       }
     }
     way += norm(q - x);
-    if (way <= per_width * width || (sharp && way <= asked(h))) return true;
+    if (way <= per_width * width || (sharp && way <= largest_)) return true;
   }
   return false;
 }
 
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
   double width = asked(h) / per_width;
+  const double least = surface_.length(h) < asked(h) ? least_width_ : 0;
   auto inward = [&](int g) {
     return normalized(
         cross(normal_[g / 3], surface_.point(surface_.to(g)) - surface_.point(surface_.from(g))));
@@ -174,7 +176,7 @@ SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
           const Vec3 q =
               nearest_on_segment(p, surface_.point(surface_.from(g)), surface_.point(surface_.to(g)));
           const double d = norm(q - p);
-          if (!(d < width) || d < least_width_ || dot(q - p, in) < opposed * d ||
+          if (!(d < width) || d <= least || dot(q - p, in) < opposed * d ||
               dot(p - q, inward(g)) < opposed * d || adjacent_along(h, p, g, q, d))
             continue;
           width = d;
@@ -244,12 +246,14 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
 /// Measures a half-edge between two parameters at points about as far apart as the sizes they permit.
 void measure_along(const Measure& measure, int h, double from, double to, double length, Search& search,
                    std::vector<SizeBound>& found) {
-  const SizeBound x = measure.at(h, 0.5 * (from + to), search);
+  SizeBound x = measure.at(h, 0.5 * (from + to), search);
   if (x.size == infinite) return;
+  x.length = measure.is_line(h) ? (to - from) * length : 0;
   if ((to - from) * length < x.size) return found.push_back(x);
   const int pieces = (int)std::min(std::ceil((to - from) * length / x.size), (double)most_pieces);
   for (int i = 0; i < pieces; ++i) {
-    const SizeBound y = measure.at(h, from + (to - from) * (i + 0.5) / pieces, search);
+    SizeBound y = measure.at(h, from + (to - from) * (i + 0.5) / pieces, search);
+    y.length = x.length / pieces;
     if (y.size < infinite) found.push_back(y);
   }
 }
@@ -269,6 +273,17 @@ void drop_intersecting(const Measure& measure, const Connectivity& surface, std:
 }
 
 }  // namespace
+
+double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
+  // one side of a strip of length l and width w has the area of l w / 2
+  const double share = 2 / std::sqrt(3.0);
+  double n = 0;
+  for (const SizeBound& x : bounds) {
+    const double h = std::min(x.size, most);
+    n += x.length / h * std::max(0.0, 1 - share * x.gap / h);
+  }
+  return n;
+}
 
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked) {
   const Measure measure(surface, asked);

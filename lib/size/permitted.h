@@ -12,8 +12,13 @@ struct SizeBound {
   int half_edge;
   Vec3 place;
   double size;
-  double gap;  ///< to the other line or sheet
+  double gap;         ///< to the other line or sheet
+  double length = 0;  ///< of the side of a strip that this bounds; 0 for sheets
 };
+
+/// Returns the number of triangles along strips beyond those that their area stands for, where the size is
+/// `most` or less as the bounds say: a strip takes one triangle per edge on its sides, whatever its width.
+double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);
 
 /// Measures where a surface comes so close to itself that edges of the length `asked` (per vertex) cannot be
 /// good: a strip between two lines (borders or model edges) permits a multiple of its width, and a bent sheet

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double met =
     0.01;  // of the number of triangles: the search for the scale ends within a tenth of it
+constexpr double more = 0.2;  // of the number of triangles: more is reported even if the user asked for none
 constexpr double much = 0.1;  // of the number of triangles: a smaller difference is not worth a line
 
 bool within(const SizeReport& r, const SizeOptions& o, double tolerance) {
@@ -42,7 +43,10 @@ std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, boo
                     " places: at " + shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' +
                     shown(r.narrow_at.z) + ", " + shown(r.narrow_gap) + " apart, it is lowered from " +
                     shown(r.narrow_from) + " to " + shown(r.narrow_to));
-  if (counted && !within(r, o, much))
+  if (o.triangles > 0 && r.narrow > 0 && r.triangles > (1 + more) * o.triangles)
+    lines.push_back("no fewer than about " + std::to_string(std::llround(r.triangles)) +
+                    " triangles are good there, instead of " + std::to_string(std::llround(o.triangles)));
+  else if (counted && !within(r, o, much))
     lines.push_back("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
                     " triangles instead of the requested " + std::to_string(std::llround(o.triangles)));
   if (o.size > 0 && r.smallest > o.size)

@@ -27,6 +27,8 @@ constexpr int most_passes = 12;            ///< of splitting edges; each halves 
 constexpr double interpolation_error = 0.15;  ///< of the size in the middle of an edge
 constexpr double excess_error = 0.5;          ///< the same near narrow places, where it only costs triangles
 constexpr double count_error = 1e-3;          ///< of the number of triangles asked for
+constexpr double most_times = 20;             ///< triangles of narrow strips, over those asked for,
+constexpr double many_triangles = 5e5;        ///< unless they are no more than this: a minute
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
 /// The field while it is made: wishes at the vertices, edges split where they are not linear.
@@ -159,7 +161,8 @@ void set_sizes(Field& f, double uniform, double scale) {
 void meet_count(Field& f) {
   auto count_at = [&](double x) {
     set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinite, x > 0 ? std::exp(x) : 1);
-    return std::log(count_for_size(f.s, f.size) / f.o.triangles);
+    const double strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
+    return std::log((count_for_size(f.s, f.size) + strips) / f.o.triangles);
   };
   constexpr double step = 0.3, most = 20;  // of x: sizes grow by a third a step, up to e^20 times
   double low = std::min(0.0, std::log(size_for_count(total_area(f.s), f.o.triangles) / f.diagonal)),
@@ -277,6 +280,18 @@ void convert_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Throws: GoalMissed if narrow strips ask for many times as many triangles as there should be.
+void refuse_costly_strips(const std::vector<SizeBound>& bounds, double triangles, const SizeReport& r) {
+  const double strips = triangles_of_strips(bounds, infinite);
+  if (strips <= std::max(most_times * triangles, many_triangles)) return;
+  throw GoalMissed(
+      "narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
+      shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow_gap) + " wide at " +
+      shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' + shown(r.narrow_at.z) +
+      "; merge what is thinner than it should be by mclean --weld, ask for as many, or bound the "
+      "sizes by --min");
+}
+
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
 /// of triangles to be met also where it permits less than sizes may grow to elsewhere.
 std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& opposite,
@@ -300,6 +315,7 @@ std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& op
     report.narrow_to = x.size;
   }
   if (report.narrow == 0) bounds.clear();
+  refuse_costly_strips(bounds, o.triangles > 0 ? o.triangles : count_for_size(s, size), report);
   return bounds;
 }
 
@@ -337,6 +353,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     follow_field();
   }
   if (!uniform) lower_where_narrow(f, report);
+  report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
   report.added = static_cast<int>(s.points.size() - n_before);
   report.scale = f.scale;
   return std::move(f.size);
@@ -353,6 +370,19 @@ void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, do
   std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, but memory holds about %.2g", smallest,
                 triangles, limit);
   throw GoalMissed(why);
+}
+
+void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) {
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Vec3 p = mesh.points[v];
+    const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    const double spacing = std::nextafter(far, HUGE_VAL) - far;
+    if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
+    throw GoalMissed("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                     ", but coordinates there are " + shown(spacing) + " apart, and sizes of at least " +
+                     shown(least_spacings * spacing) +
+                     " are expected; move the surface to the origin, weld it, or ask for larger sizes");
+  }
 }
 
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
@@ -397,11 +427,12 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   } else {
     size = make_field(surface, chart, options, may_split, report);
   }
-  report.triangles = count_for_size(surface, size);
+  report.triangles = count_for_size(surface, size) + report.strips;
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   report.smallest = *least;
   report.largest = *most;
   refuse_more_triangles(surface, size, options.most_triangles);
+  refuse_unresolved_sizes(surface, size);
   surface.vertex.set("size", std::move(size));
   return report;
 }

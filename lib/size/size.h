@@ -27,7 +27,8 @@ struct SizeOptions {
 
 struct SizeReport {
   double smallest = 0, largest = 0;
-  double triangles = 0;  ///< that the field asks for
+  double triangles = 0;  ///< that the field asks for, with those of `strips`
+  double strips = 0;     ///< more of them, as narrow strips have more than their area stands for
   double scale = 1;      ///< factor of the other sources where they ask for more than `triangles`
   int added = 0;         ///< vertices
   int lowered = 0;       ///< vertices where the local feature size is below the size that was asked for
@@ -55,6 +56,14 @@ std::vector<std::string> describe(const SizeReport& report, const SizeOptions& o
 /// Throws: GoalMissed, with both numbers, if a field asks for more triangles than `limit`. Fields with values
 /// that are not positive pass.
 void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit);
+
+/// A size below this number of spacings of the coordinates is refused: lengths are rounded by a tenth there,
+/// and meshing need not end. A sphere of 1,500 triangles passes with 70 spacings, and hangs with 12.
+constexpr double least_spacings = 16;
+
+/// Throws GoalMissed naming a vertex whose size is too small for its coordinates. `size` is per vertex;
+/// values that are not positive are skipped.
+void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
 
 /// Reduces sizes until they grow by at most `slope` per unit of length along every edge. Source: Borouchaki,
 /// Hecht and Frey, "Mesh gradation control", 1998.
