@@ -11,6 +11,7 @@
 #include "lib/clean/clean.h"
 #include "lib/core/number.h"
 #include "lib/core/weld.h"
+#include "lib/defeature/defeature.h"
 #include "tools/common.h"
 #include "tools/report/rounds.h"
 #include "tools/report/verdict.h"
@@ -37,6 +38,13 @@ std::function<std::string(int)> namer(const Stream& stream) {
   };
 }
 
+/// How far mfeature has moved points of the input, at most, in removing features.
+double moved(const Stream& stream) {
+  double sum = 0;
+  for (const std::string& remark : stream.remarks) sum += moved_by(remark);
+  return sum;
+}
+
 Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   Surface& result = stream.surface;
   const bool own = o.reference.empty();
@@ -56,6 +64,7 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   Findings f = examine(result, reference, own ? &lines : nullptr, o.samples);
   f.opened = opened;
+  if (own) f.distance.bound += moved(stream) / diagonal(reference);
   const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
   // a file that holds one patch comes from a format without patches, as a rule
   if (own || patches.size() > 1)
@@ -93,10 +102,14 @@ void warn_of_distance(Io& io, const Findings& f) {
          "): detail as fine as the size is lost; --max-error bounds the distance");
 }
 
-/// Reports what mclean has done to the input's topology, which the comparison with the cleaned input hides.
+/// Reports what mclean and mfeature have done to the input, which the comparison with their result hides.
 /// Returns the number of edges it has opened without being asked to.
 int say_cleaning(Io& io, const Stream& stream) {
   int opened = 0;
+  if (const double most = moved(stream); most > 0) {
+    io.say("mfeature has moved points by up to " + shown(most) + ": this is part of the distance at most");
+    io.report["moved"] = most;
+  }
   for (const std::string& text : stream.remarks) {
     const Remark r = parse_remark(text);
     if (r.opened + r.split + r.dropped == 0) continue;

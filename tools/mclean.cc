@@ -79,6 +79,11 @@ void write_offending(const Io& io, const std::string& path, const CleanReport& r
   io.write_to(path, stream);
 }
 
+/// What earlier runs of mclean and mfeature have done to a surface that is the input now.
+bool is_of_former_run(const std::string& remark) {
+  return remark.starts_with("clean ") || remark.starts_with("removed ");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -151,7 +156,7 @@ int main(int argc, char** argv) {
           for (const char* column : {"ref_face", "b1", "b2", "kind", "line"}) s.vertex.erase(column);
         }
         if (stream.input_triangles == 0 || !report.nothing) {
-          std::erase_if(stream.remarks, [](const std::string& r) { return r.starts_with("clean "); });
+          std::erase_if(stream.remarks, is_of_former_run);
           if (const std::string r = remark_of(report); r.size()) stream.remarks.push_back(r);
         }
         stream.input_triangles = (int)s.tris.size();

@@ -21,10 +21,13 @@ struct Options : FeatureOptions {
   bool merge_auto = false;
   double triangles = 0;
   bool keep_boundary = false;
+  double max_error = 0;
 };
 
 /// Target lengths: strips narrower than this only make needles.
 constexpr double default_tolerance = 0.05;
+/// Of the distance of --max-error: the rest is for the mesh.
+constexpr double error_share = 0.25;
 
 /// Gives the faces the patches that theirs have become, and the patches the names of their groups.
 void relabel(const Io& io, Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
@@ -60,26 +63,19 @@ PatchMerge merge_patches(const Io& io, Stream& stream, const Options& o, double 
   return merge;
 }
 
-/// Flags the half-edges that lie on segments.
-std::vector<char> flags_under(const Surface& surface, const ModelSegments& lines) {
-  std::vector<char> flags;
-  for (int segment : segments_under(surface, lines)) flags.push_back(segment >= 0);
-  return flags;
-}
-
-/// Flags the half-edges that lie on lines of the input, or of the file of --edges; the lines stay in the
-/// stream.
-std::vector<char> given_edges(const Io& io, Stream& stream, const std::string& edge_file) {
+/// Returns per half-edge the number of the line of the input, or of the file of --edges, on which it lies, or
+/// -1; the lines stay in the stream.
+std::vector<int> given_edges(const Io& io, Stream& stream, const std::string& edge_file) {
   const bool none = edge_file == "none", other = !edge_file.empty() && !none;
   ModelSegments lines = none ? ModelSegments() : read_model_edges(stream);
   const std::size_t n_own = lines.tris.size();
   if (other) append(lines, segments_of(io.read(edge_file)));
   drop_downstream(stream, Stage::features);
   write_model_edges(stream, lines);
-  const std::vector<int> under = segments_under(stream.surface, lines);
-  std::vector<char> given(under.size()), used(lines.tris.size());
-  for (std::size_t h = 0; h < given.size(); ++h)
-    if (under[h] >= 0) given[h] = used[under[h]] = 1;
+  const std::vector<int> given = segments_under(stream.surface, lines);
+  std::vector<char> used(lines.tris.size());
+  for (int segment : given)
+    if (segment >= 0) used[segment] = 1;
   if (const std::size_t n = lines.tris.size() - n_own; other)
     io.say(edge_file + ": " + std::to_string(n) + " lines" + (n ? ", " : "") +
            (n ? std::to_string(std::count(used.begin() + n_own, used.end(), 1)) +
@@ -107,21 +103,29 @@ void report(Io& io, const FeatureReport& r) {
 /// Removes what is narrower than the tolerance. Returns whether the surface has changed: then its edges are
 /// to be marked again. `before`, by face, and `given`, by half-edge, follow.
 bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<int>& before,
-               std::vector<char>& given) {
+               std::vector<int>& given) {
   const DefeatureReport r = remove_small_features(stream.surface, o, &given);
   report_removed(io, r, o.tolerance, stream);
+  if (r.removed.empty()) return false;
   std::erase_if(stream.names, [&](const Name& n) {
     return n.dim == 2 && std::binary_search(r.vanished.begin(), r.vanished.end(), n.tag);
   });
-  if (r.removed.empty()) return false;
+  stream.remarks.push_back(remark_of(r));
   drop_downstream(stream, Stage::parts);
   for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
   for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
-  given = flags_under(stream.surface, read_model_edges(stream));
+  write_model_edges(stream, moved_segments(read_model_edges(stream), given, stream.surface, r.given));
+  given = r.given;
   std::vector<int> labels;
   for (int t : r.face) labels.push_back(before.empty() ? 0 : before[t]);
   if (!before.empty()) before = std::move(labels);
   return true;
+}
+
+double tolerance_of(const Options& o, double length, double diagonal) {
+  if (o.tolerance != "auto") return *parse_length(o.tolerance, diagonal);
+  const double share = default_tolerance * length;
+  return o.max_error > 0 ? std::min(share, error_share * o.max_error * diagonal) : share;
 }
 
 void add_options(CLI::App& app, Options& o) {
@@ -145,6 +149,10 @@ void add_options(CLI::App& app, Options& o) {
          "remove features narrower than this, as a length or as P% of the diagonal; auto: a twentieth of "
          "the target edge length; 0: none")
       ->type_name("D|P%|auto");
+  app.add_option("--max-error", o.max_error,
+                 "an automatic tolerance is at most a quarter of this share of the diagonal")
+      ->check(positive_number())
+      ->type_name("E");
   app.add_flag("--keep-boundary", o.keep_boundary, "features are removed without moving the borders' points");
   app.add_flag("--merge-auto", o.merge_auto,
                "merge patches that are tangent to each other, or smaller than the mesh size");
@@ -167,11 +175,10 @@ void mark(Io& io, Options& o) {
   const PatchMerge merge = merge_patches(io, stream, o, length);
   io.report["patches_before"] = merge.patch.size();
   io.report["patches"] = merge.count();
-  std::vector<char> given = given_edges(io, stream, o.edge_file);
+  std::vector<int> given = given_edges(io, stream, o.edge_file);
   auto features = [&] { return mark_features(surface, o, before.empty() ? nullptr : &before, &given); };
   FeatureReport marked = features();
-  const double tolerance =
-      o.tolerance == "auto" ? default_tolerance * length : *parse_length(o.tolerance, diagonal(surface));
+  const double tolerance = tolerance_of(o, length, diagonal(surface));
   if (defeature(io, stream, {tolerance, o.keep_boundary}, before, given)) marked = features();
   report(io, marked);
   io.write(stream);

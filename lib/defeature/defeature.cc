@@ -2,6 +2,7 @@
 #include "lib/defeature/defeature.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
 
@@ -47,9 +48,10 @@ void take_rows(Table& table, const std::vector<int>& rows, const std::vector<Spl
   table.rows = rows.size();
 }
 
-/// The result, and per vertex of it the number in the zipper.
+/// The result; per triangle, vertex and half-edge of it the triangle of the input, the number in `z`, and the
+/// given line.
 Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int>& face,
-                  std::vector<int>& vertex) {
+                  std::vector<int>& vertex, std::vector<int>& given) {
   Surface s;
   s.vertex = before.vertex, s.face = before.face;
   std::vector<int> number(z.points.size(), -1);
@@ -69,8 +71,10 @@ Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int
     face.push_back(z.origin[t]);
     s.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
     std::uint8_t bits = 0;
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
+      given.push_back(z.lines.given[3 * t + i]);
       if (z.is_model(3 * t + i)) bits |= 1 << i;
+    }
     model.push_back(bits);
   }
   take_rows(s.vertex, vertex, z.added);
@@ -169,7 +173,7 @@ std::vector<int> labels(const Surface& s) {
 }  // namespace
 
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
-                                      const std::vector<char>* given) {
+                                      const std::vector<int>* given) {
   DefeatureReport report;
   if (!(options.tolerance > 0)) return report;
   std::vector<char> banned(surface.points.size(), 0);
@@ -181,9 +185,9 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
     for (int pass = 0; pass < most_passes; ++pass)
       if (z.contract_clusters() + z.close_strips() + z.contract_regions() == 0) break;
     if (z.merges.empty()) return report;
-    std::vector<int> face, vertex;
+    std::vector<int> face, vertex, lines;
     const std::vector<int> image = images(z);
-    Surface result = result_of(z, surface, face, vertex);
+    Surface result = result_of(z, surface, face, vertex, lines);
     std::vector<char> touched(z.points.size(), 0), changed(result.tris.size(), 0);
     for (const Merge& m : z.merges) touched[image[m.gone]] = 1;
     for (std::size_t t = 0; t < changed.size(); ++t)
@@ -198,6 +202,7 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
       std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
                           std::back_inserter(report.vanished));
       report.face = std::move(face);
+      report.given = std::move(lines);
       surface = std::move(result);
       return report;
     }
@@ -209,6 +214,18 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
   }
   report.stopped = true;
   return report;
+}
+
+std::string remark_of(const DefeatureReport& report) {
+  char text[64];
+  std::snprintf(text, sizeof text, "removed %zu moved %.17g", report.removed.size(), report.moved);
+  return text;
+}
+
+double moved_by(const std::string& remark) {
+  std::size_t n = 0;
+  double moved = 0;
+  return std::sscanf(remark.c_str(), "removed %zu moved %lg", &n, &moved) == 2 ? moved : 0;
 }
 
 }  // namespace meshpipe

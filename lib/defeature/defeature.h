@@ -2,6 +2,7 @@
 // Removal of features that are narrower than a tolerance: strips, steps, slots, sliver patches, short model
 // edges.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "lib/core/mesh.h"
@@ -21,8 +22,9 @@ struct DefeatureReport {
   int merged = 0;                       ///< vertices, in all
   double moved = 0;                     ///< no point of either surface is farther than this from the other
   std::vector<int> vanished;            ///< patches that have no face any more
-  std::vector<int> face;  ///< per triangle of the result, the one of the input that it is part of
-  bool stopped = false;   ///< nothing was removed, since the surface would intersect itself
+  std::vector<int> face;   ///< per triangle of the result, the one of the input that it is part of
+  std::vector<int> given;  ///< per half-edge of the result, the number of the given line on it, or -1
+  bool stopped = false;    ///< nothing was removed, since the surface would intersect itself
 };
 
 struct DefeatureOptions {
@@ -34,9 +36,15 @@ struct DefeatureOptions {
 /// short lines and small regions between corners: vertices across are merged, the weaker line into the
 /// stronger one. Every point stays within `tolerance` of its place, the topology stays, and so do strips from
 /// which the surface folds back, such as the rim of a thin plate and the bottom of a slot. Needs face column
-/// `model`, which is kept up to date; other columns follow. `given`: flags of half-edges whose lines are
-/// stronger than creases, or null. Throws: like opposite_halfedges.
+/// `model`, which is kept up to date; other columns follow. `given`: per
+/// half-edge the number of a line that is stronger than creases, or -1; or null. Throws: like
+/// opposite_halfedges.
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
-                                      const std::vector<char>* given = nullptr);
+                                      const std::vector<int>* given = nullptr);
+
+/// Returns what the verification of a later result needs: "removed FEATURES moved DISTANCE".
+std::string remark_of(const DefeatureReport& report);
+/// Returns the distance of such a remark; 0 of other texts.
+double moved_by(const std::string& remark);
 
 }  // namespace meshpipe

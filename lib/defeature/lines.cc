@@ -39,7 +39,7 @@ double MergedSurface::sharpest(int v) const {
   }
 }
 
-FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<char>* given,
+FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<int>* given,
                         const std::vector<char>& wrinkles) {
   const int n = (int)mesh.opp.size(), n_vertices = (int)surface.points.size();
   std::vector<int> count(n_vertices, 0);
@@ -63,6 +63,7 @@ FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std:
   }
   FeatureLines lines;
   lines.of.assign(n, -1);
+  lines.given = given ? *given : lines.of;
   std::vector<int> number(n, -1);
   const std::vector<int>* patch = surface.face.has("patch") ? &surface.face.get<int>("patch") : nullptr;
   for (int h = 0; h < n; ++h) {
@@ -77,7 +78,7 @@ FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std:
     if (o >= 0) lines.of[o] = l;
     lines.length[l] += norm(away(h, mesh.from(h)));
     if (node[mesh.from(h)] || node[mesh.to(h)]) lines.open[l] = 1;
-    const bool strong = o >= 0 && ((given && (*given)[h]) || (patch && (*patch)[h / 3] != (*patch)[o / 3]));
+    const bool strong = o >= 0 && (lines.given[h] >= 0 || (patch && (*patch)[h / 3] != (*patch)[o / 3]));
     lines.rank[l] = std::max<char>(lines.rank[l], o < 0 ? 3 : strong ? 2 : wrinkles[h] ? 0 : 1);
   }
   return lines;

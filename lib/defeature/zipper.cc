@@ -34,7 +34,7 @@ bool MergedSurface::is_sharp(int h) const {
   return mesh.opp[h] >= 0 && turn(normal(h / 3), normal(mesh.opp[h] / 3)) > sharp;
 }
 
-Zipper::Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<char>* given,
+Zipper::Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<int>* given,
                const std::vector<char>& banned)
     : MergedSurface{.mesh = {surface.tris, (int)surface.points.size(),
                              surface.face.get<std::uint8_t>("model")},
@@ -193,16 +193,17 @@ bool Zipper::may_merge(int h, int gone) const {
 }
 
 void Zipper::collapse(int h, int gone) {
+  auto strength = [&](int e) {
+    const int l = lines.of[e];
+    return l < 0 ? std::pair(-1, 0.0) : std::pair((int)lines.rank[l], lines.length[l]);
+  };
   for (int e : {h, mesh.opp[h]}) {
     if (e < 0) continue;
-    const int x = next(e), y = prev(e);
-    int l = lines.of[x];
-    const int m = lines.of[y];
-    if (l < 0 ||
-        (m >= 0 && std::pair(lines.rank[m], lines.length[m]) > std::pair(lines.rank[l], lines.length[l])))
-      l = m;
-    for (int side : {x, y})
-      if (const int o = mesh.opp[side]; o >= 0) lines.of[o] = l;
+    int strong = next(e), weak = prev(e);
+    if (strength(weak) > strength(strong)) std::swap(strong, weak);
+    const int line = lines.of[strong], given = lines.given[lines.given[strong] >= 0 ? strong : weak];
+    for (int side : {strong, weak})
+      if (const int o = mesh.opp[side]; o >= 0) lines.of[o] = line, lines.given[o] = given;
   }
   mesh.collapse(h, gone);
 }
@@ -224,8 +225,15 @@ bool Zipper::merge(int h) {
 }
 
 int Zipper::split(int h, double t) {
-  const int a = mesh.from(h), b = mesh.to(h), g = mesh.opp[h], n = (int)mesh.tris.size();
-  const int across = lines.of[h], right = lines.of[next(h)], low = g >= 0 ? lines.of[prev(g)] : -1;
+  const int a = mesh.from(h), b = mesh.to(h), g = mesh.opp[h];
+  for (std::vector<int>* column : {&lines.of, &lines.given}) {  // as EditMesh::split numbers half-edges
+    std::vector<int>& c = *column;
+    c.insert(c.end(), {c[h], c[next(h)], -1});
+    c[next(h)] = -1;
+    if (g < 0) continue;
+    c.insert(c.end(), {c[g], -1, c[prev(g)]});
+    c[prev(g)] = -1;
+  }
   const int m = mesh.split(h);
   points.push_back(lerp(points[a], points[b], t));
   drift.push_back((1 - t) * drift[a] + t * drift[b]);
@@ -233,13 +241,7 @@ int Zipper::split(int h, double t) {
   banned_.push_back(banned_[a] || banned_[b]);
   added.push_back({a, b, t});
   origin.push_back(origin[h / 3]);
-  lines.of.insert(lines.of.end(), {across, right, -1});
-  lines.of[next(h)] = -1;
-  if ((int)mesh.tris.size() > n + 1) {
-    origin.push_back(origin[g / 3]);
-    lines.of.insert(lines.of.end(), {across, -1, low});
-    lines.of[prev(g)] = -1;
-  }
+  if (g >= 0) origin.push_back(origin[g / 3]);
   return m;
 }
 

@@ -17,12 +17,13 @@ constexpr double strip_angle = 25 * std::numbers::pi / 180;
 /// bends.
 struct FeatureLines {
   std::vector<int> of;         ///< line of each half-edge, -1: not hard
+  std::vector<int> given;      ///< number of the given line on each half-edge, -1: none
   std::vector<double> length;  ///< per line
   std::vector<char> open;      ///< per line: it ends at nodes
   std::vector<char> rank;  ///< per line: 0 edge of a wrinkle, 1 crease, 2 given or between patches, 3 border
 };
 /// `wrinkles`: flags of half-edges that are no model edges.
-FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<char>* given,
+FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<int>* given,
                         const std::vector<char>& wrinkles);
 
 /// A vertex on an edge: a + t (b - a).
@@ -63,7 +64,7 @@ struct MergedSurface {
 class Zipper : public MergedSurface {
  public:
   /// `banned`: flags of vertices that take no part.
-  Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<char>* given,
+  Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<int>* given,
          const std::vector<char>& banned);
 
   /// Merges across strips and along short lines, narrowest first. Returns the number of merges, as the

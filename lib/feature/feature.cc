@@ -88,7 +88,7 @@ double length(const Network& net, const Chain& chain) {
 }
 
 Network find_edges(const Surface& s, const FeatureOptions& options, const std::vector<int>* before,
-                   const std::vector<char>* given, int& slivers) {
+                   const std::vector<int>* given, int& slivers) {
   Network net{.s = s, .opposite = opposite_halfedges(s.tris, (int)s.points.size())};
   const int n = (int)net.opposite.size();
   net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
@@ -112,7 +112,7 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
     if (o >= 0) net.angle[h] = angle(normal[h / 3], normal[o / 3]);
     const bool border = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
     const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
-    net.given[h] = o >= 0 && !merged && given && (*given)[h];
+    net.given[h] = o >= 0 && !merged && given && (*given)[h] >= 0;
     net.patch[h] = border || net.given[h];
     net.merged[h] = merged && options.mode == FeatureOptions::automatic && net.angle[h] <= step;
     if (o < 0 || net.patch[h] || net.merged[h]) net.anchor[v] = net.anchor[net.to(h)] = 1;
@@ -379,7 +379,7 @@ std::vector<Vec3> sound_normals(const Connectivity& surface, double thin) {
 }
 
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options, const std::vector<int>* before,
-                            const std::vector<char>* given) {
+                            const std::vector<int>* given) {
   FeatureReport report;
   Network net = find_edges(surface, options, before, given, report.slivers);
   if (options.mode != FeatureOptions::none) {

@@ -29,11 +29,11 @@ struct FeatureReport {
 /// sides. Model edges are borders between patches (column `patch`) and creases; automatic mode keeps the
 /// creases of components that look designed (keep_designed) and drops open or short chains.
 /// `before`: null, or the patches before some were merged; no crease follows a border that vanished unless it
-/// bends sharply. `given`: null, or flags of half-edges that are model edges in any mode.
-/// Throws: like opposite_halfedges.
+/// bends sharply. `given`: null, or per half-edge the number of a line that is a model edge in any mode, or
+/// -1. Throws: like opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
-                            const std::vector<char>* given = nullptr);
+                            const std::vector<int>* given = nullptr);
 
 /// Returns unit normals of the triangles. One too thin for single-precision coordinates, or thinner than
 /// `thin` and a twentieth of its length, takes the normal of the neighbor across its longest edge; the two

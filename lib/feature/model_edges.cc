@@ -25,4 +25,27 @@ std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments)
   return under;
 }
 
+ModelSegments moved_segments(const ModelSegments& segments, const std::vector<int>& under, const Mesh& after,
+                             const std::vector<int>& under_after) {
+  ModelSegments moved;
+  auto add = [&](int i, Vec3 a, Vec3 b) {
+    const int n = static_cast<int>(moved.points.size());
+    moved.points.insert(moved.points.end(), {a, b});
+    moved.tris.push_back({n, n + 1, n + 1});
+    moved.tag.push_back(segments.tag[i]);
+    moved.ridge.push_back(segments.ridge[i]);
+    moved.required.push_back(segments.required[i]);
+  };
+  std::vector<char> used(segments.tris.size(), 0);
+  for (int i : under)
+    if (i >= 0) used[i] = 1;
+  for (int i = 0; i < static_cast<int>(used.size()); ++i)
+    if (!used[i]) add(i, segments.points[segments.tris[i][0]], segments.points[segments.tris[i][1]]);
+  for (int h = 0; h < static_cast<int>(under_after.size()); ++h) {
+    const int a = origin(after.tris, h), b = target(after.tris, h);
+    if (under_after[h] >= 0 && a < b) add(under_after[h], after.points[a], after.points[b]);
+  }
+  return moved;
+}
+
 }  // namespace meshpipe

@@ -15,4 +15,10 @@ struct ModelSegments : Mesh {
 /// within a millionth of the diagonal of segments.
 std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments);
 
+/// Returns the segments for a mesh that has changed into `after`: those under edges become one per edge, with
+/// the same label and flags, the others stay. `under` and `under_after`: as from segments_under, for either
+/// mesh.
+ModelSegments moved_segments(const ModelSegments& segments, const std::vector<int>& under, const Mesh& after,
+                             const std::vector<int>& under_after);
+
 }  // namespace meshpipe

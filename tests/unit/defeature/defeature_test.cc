@@ -171,3 +171,43 @@ TEST(Defeature, LinesNeedNoVerticesOppositeEachOther) {
   EXPECT_NEAR(report.removed[0].length, 10, 0.05);
   for (std::size_t t = 0; t < s.tris.size(); ++t) EXPECT_GT(triangle_area(s, (int)t), 0.1);
 }
+
+TEST(Defeature, GivenLinesAreKeptOrFollow) {
+  Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
+  std::vector<int> given(3 * s.tris.size(), -1);  // line 7 along the lower edge of the step
+  for (int h = 0; h < (int)given.size(); ++h)
+    if (const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)]; a.x == 1 && b.x == 1)
+      if (a.z == 0 && b.z == 0) given[h] = 7;
+  s.face.erase("patch");
+  const DefeatureReport r = remove_small_features(s, {wide_enough}, &given);
+  double length = 0;
+  for (int h = 0; h < (int)r.given.size(); ++h)
+    if (r.given[h] == 7) {
+      EXPECT_EQ(s.points[origin(s.tris, h)].z, 0);
+      length += edge_length(s, h);
+    }
+  EXPECT_EQ(length, 8);  // on both sides
+}
+
+TEST(Defeature, TheRemarkHoldsTheDistance) {
+  DefeatureReport r;
+  r.moved = 0.1;
+  r.removed.resize(3);
+  EXPECT_EQ(moved_by(remark_of(r)), 0.1);
+  EXPECT_EQ(moved_by("clean opened 1 split 2 dropped 3"), 0);
+}
+
+TEST(Defeature, TheEndOfARodStays) {
+  Surface s;  // 0.008 x 0.008 x 1
+  for (int k = 0; k < 2; ++k)
+    for (int i : {0, 1, 3, 2}) s.points.push_back({0.008 * (i & 1), 0.008 * (i >> 1), (double)k});
+  s.tris = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    s.tris.push_back({i, j, j + 4});
+    s.tris.push_back({i, j + 4, i + 4});
+  }
+  s.vertex.rows = 8, s.face.rows = s.tris.size();
+  mark_features(s, {FeatureOptions::angles, 40, 20, 1e-3});
+  EXPECT_TRUE(removed(s, 2 * width).removed.empty());
+}

@@ -104,10 +104,8 @@ TEST(ModelEdges, GivenEdgesAreFoundWhenTheyAreCut) {
   const std::vector<int> under = segments_under(s, line);
   EXPECT_EQ(std::count(under.begin(), under.end(), 0), 20);  // from both sides
   EXPECT_EQ(std::count(under.begin(), under.end(), 1), 0);
-  std::vector<char> given;
-  for (int u : under) given.push_back(u >= 0);
   s.face.erase("patch");
-  const FeatureReport r = mark_features(s, {FeatureOptions::none, 40, 20, 0}, nullptr, &given);
+  const FeatureReport r = mark_features(s, {FeatureOptions::none, 40, 20, 0}, nullptr, &under);
   EXPECT_EQ(r.given_edges, 10);
   EXPECT_EQ(r.model_edges, 10);
 }
