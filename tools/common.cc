@@ -53,7 +53,10 @@ int report_failure(const Io& io, int status, const std::string& why, const std::
 
 /// Runs `work` and turns exceptions into a reported failure with its exit status.
 int guarded(const Io& io, const std::function<void()>& work) {
-  auto failed = [&](int status, const char* why) { return report_failure(io, status, why, io.program); };
+  auto failed = [&](int status, const char* why) {
+    if (status == 1 || status == 7) remove_file(io.finished_file);  // its report or verdict is missing
+    return report_failure(io, status, why, io.program);
+  };
   try {
     work();
     return 0;
@@ -100,12 +103,7 @@ void run_body(Io& io, const std::function<void(Io&)>& body, const Usage& usage) 
     write_report(io);
     throw;
   }
-  try {
-    write_report(io);
-  } catch (const CannotWrite&) {
-    remove_file(io.finished_file);
-    throw;
-  }
+  write_report(io);
 }
 
 /// The parser's message as one line that continues "PROGRAM: error: ".

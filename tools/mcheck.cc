@@ -2,6 +2,7 @@
 // mcheck: verify a result against the surface it was made from.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -140,7 +141,7 @@ class Verdict {
   Verdict(Io& io, const Options& o) : file_(o.verdict) {
     if (file_.empty()) return;
     io.expect_report("--verdict", file_);
-    if (std::filesystem::exists(file_)) before_ = Io::read_bytes(file_);
+    if (std::filesystem::is_regular_file(file_)) before_ = Io::read_bytes(file_);
     outcome.bounded_distance = o.max_error > 0;
     io.on_failure = [this, &io](int status, const std::string& why, const std::string& program) {
       outcome.status = status;
@@ -149,7 +150,7 @@ class Verdict {
       try {
         write();
       } catch (const CannotWrite& e) {
-        io.say(e.what());
+        std::fprintf(stderr, "mcheck: error: %s\n", e.what());
       }
       return !repeats();
     };
