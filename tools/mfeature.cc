@@ -24,8 +24,9 @@ struct Options : FeatureOptions {
   double max_error = 0;
 };
 
-/// Target lengths: strips narrower than this only make needles.
-constexpr double default_tolerance = 0.05;
+/// Target lengths. Measured on CAD with sliver faces: below 1/15 parts of them stay, which end in corners of
+/// 1 to 4 degrees (smallest kappa 0.11, or failure, instead of 0.32); clean CAD changes nowhere up to 1/10.
+constexpr double default_tolerance = 1.0 / 15;
 /// Of the distance of --max-error: the rest is for the mesh.
 constexpr double error_share = 0.25;
 
@@ -146,7 +147,7 @@ void add_options(CLI::App& app, Options& o) {
       ->type_name("FILE|none");
   app.add_option(
          "--tolerance", o.tolerance,
-         "remove features narrower than this, as a length or as P% of the diagonal; auto: a twentieth of "
+         "remove features narrower than this, as a length or as P% of the diagonal; auto: a fifteenth of "
          "the target edge length; 0: none")
       ->type_name("D|P%|auto");
   app.add_option("--max-error", o.max_error,
