@@ -41,9 +41,8 @@ Interfaces measure_interfaces(const Surface& surface);
 /// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h); where
 /// that fails, as on triangles much longer than wide, it is only pulled straight. All other parts only get
 /// split along. Model edges stay interfaces. An interface stays as it was where the result would be longer,
-/// or a part broken (broken_parts). With `chosen`, only the interfaces of the parts that it marks are moved.
+/// or a part broken (broken_parts).
 /// Requires: parts without fault.
-void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0,
-                           const std::vector<char>& chosen = {});
+void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0);
 
 }  // namespace meshpipe

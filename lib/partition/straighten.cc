@@ -428,7 +428,7 @@ std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector
 
 /// Triangles with two edges on an interface with one other part change to that, unless along creases: the
 /// interface takes the third edge. Neither part's topology changes.
-void trim_ears(const CutSurface& cut, const std::vector<char>& chosen, const Limits& limits) {
+void trim_ears(const CutSurface& cut, const Limits& limits) {
   Surface& s = cut.surface;
   const std::vector<int>& opposite = cut.opposite;
   std::vector<int>& part = s.face.get<int>("part");
@@ -440,7 +440,6 @@ void trim_ears(const CutSurface& cut, const std::vector<char>& chosen, const Lim
   auto is_ear = [&](int h) {
     const int mine = part[h / 3], theirs = other(h);
     if (theirs < 0 || theirs == mine || other(prev(h)) != theirs || other(next(h)) != mine) return false;
-    if (!chosen.empty() && !chosen[mine] && !chosen[theirs]) return false;
     if (limits.max_faces > 0 && faces[theirs] >= limits.max_faces) return false;
     if (is_crease(view, h) || is_crease(view, prev(h))) return false;
     int g = opposite[prev(h)];
@@ -465,17 +464,16 @@ void trim_ears(const CutSurface& cut, const std::vector<char>& chosen, const Lim
 
 /// Straightens what is still bent, one curve at a time: on fans of large triangles the bands of neighbors may
 /// have left no triangles to move in.
-void straighten_corners(const CutSurface& cut, const std::vector<char>& chosen, const Limits& limits) {
+void straighten_corners(const CutSurface& cut, const Limits& limits) {
   const Surface& surface = cut.surface;
   constexpr double bent = 0.5;
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
-  trim_ears(cut, chosen, limits);
+  trim_ears(cut, limits);
   std::vector<std::pair<double, Handle>> corners;
   auto crease = [&](int h) { return is_crease(cut.connectivity(), h); };
   for (const Curve& c : find_curves(cut))
-    if (chosen.empty() || chosen[c.a] || chosen[c.b])
-      if (const double turn = sharpest_turn(cut, c, crease); turn > bent)
-        corners.push_back({-turn, handle_of(surface, c)});
+    if (const double turn = sharpest_turn(cut, c, crease); turn > bent)
+      corners.push_back({-turn, handle_of(surface, c)});
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
   for (const auto& [turn, one] : corners)
@@ -485,8 +483,7 @@ void straighten_corners(const CutSurface& cut, const std::vector<char>& chosen, 
 
 }  // namespace
 
-void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces,
-                           const std::vector<char>& chosen) {
+void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces) {
   const Limits limits{n_parts, snap, max_faces};
   const std::vector<PairColor> pairs = color_pairs(cut.surface, find_curves(cut));
   constexpr double straight = 0.05;  // as a closed shortest line is
@@ -498,7 +495,7 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
     std::vector<Handle> open;
     for (const Curve& c : find_curves(cut))
       for (const PairColor& p : pairs)
-        if (p.a == c.a && p.b == c.b && p.color == color && (chosen.empty() || chosen[p.a] || chosen[p.b]) &&
+        if (p.a == c.a && p.b == c.b && p.color == color &&
             !std::all_of(c.half_edges.begin(), c.half_edges.end(), model) &&
             !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
           open.push_back(handle_of(surface, c));
@@ -508,7 +505,7 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
     for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits);
     add_progress(0.2 / n_colors);
   }
-  straighten_corners(cut, chosen, limits);
+  straighten_corners(cut, limits);
 }
 
 }  // namespace meshpipe

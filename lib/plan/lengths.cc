@@ -167,17 +167,6 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   }
 }
 
-/// Straightens the interfaces of the parts that were joined, unless that makes a part too long.
-void straighten_unions(Work& work, int n, const std::vector<char>& is_union) {
-  Surface straight = work.surface;
-  std::vector<int> after = work.opposite;
-  straighten_interfaces({straight, after}, n, limit::snap, 0, is_union);
-  const std::vector<Topology> is = topology_of_parts({straight, after}, straight.face.get<int>("part"), n);
-  if (std::all_of(is.begin(), is.end(),
-                  [&](const Topology& t) { return admissible(t, work.options.max_aspect); }))
-    work.surface = std::move(straight), work.opposite = std::move(after);
-}
-
 /// Joins neighbors one of which was cut here while the union is admissible: a ring's two long arcs, each cut
 /// lengthwise, make two flat rings.
 void join_parts(Work& work) {
@@ -211,13 +200,9 @@ void join_parts(Work& work) {
   for (int p = 0; p < n_before; ++p)
     if (becomes[p] == p) number[p] = n++;
   for (int& l : label) l = number[l];
-  std::vector<char> is_union(n, 0);
-  for (int p = 0; p < n_before; ++p)
-    if (becomes[p] != p) is_union[number[becomes[p]]] = 1;
   if (work.cuts)
     for (MultiscaleCut& c : *work.cuts)
       for (int* p : {&c.part, &c.halves[0], &c.halves[1]}) *p = number[becomes[*p]];
-  if (n <= limit::straightened_unions) straighten_unions(work, n, is_union);
   work.is.assign(n, {});
 }
 

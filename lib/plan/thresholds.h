@@ -14,9 +14,6 @@ constexpr int large_component = 300000, faces_of_large = 100000;
 /// Cuts within cuts of one part, after which it counts as one that does not get shorter. Effect: 4 levels
 /// are the most, on 2 surfaces.
 constexpr int cut_depth = 12;
-/// Parts up to which the interfaces of joined ones are straightened again: each attempt copies the surface.
-/// Effect: halves are joined on 5 surfaces, straightened on 1.
-constexpr int straightened_unions = 8;
 /// Fraction of an edge within which a cut is moved to the edge's end: no slivers.
 constexpr double snap = 0.1;
 
