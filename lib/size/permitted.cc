@@ -14,9 +14,11 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
-constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do, some are larger
+constexpr double most_sag =
+    0.3;  ///< of the gap; triangles sag by 4/3 of what edges do, and edges grow nearby
 constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
 constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
+constexpr double lowered = 0.62;          ///< of the size asked for: sheets that permit more have not failed
 constexpr double opposed = 0.5;           ///< least cosine between the way across and the sides that face it
 constexpr double sharp_turn = 2.6;        ///< radians: a line that turns back by more ends in a sharp corner
 constexpr double least_bend = 1e-3;       ///< radians: edges across flatter ones hardly sag
@@ -221,7 +223,7 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   // a chord of the size asked sags to the side where the surface is hollow, at most by this
   const double sag = std::min(0.125 * most * most * std::abs(bend) / (heights / 3), 0.5 * most);
   const Vec3 normal = normalized(normal_[s] + normal_[t]), up = bend > 0 ? -1.0 * normal : normal;
-  double gap = sag / most_sag;
+  double gap = lowered * lowered * sag / most_sag;
   int other = -1;
   const Vec3 r{gap, gap, gap};
   tree_.overlapping({p - r, p + r}, [&](int u) {
@@ -237,8 +239,9 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   if (other < 0) return none;
   const double size =
       std::max({2 * until_sag(h, p, up, most_sag * gap, search), least_height * heights, least_share * most});
-  if (size >= most || joins(
-                          h, p, size, [&](int u) { return u == other; }, search))
+  // what is connected within the size is a fold that a mesh of this size leaves out
+  if (size > lowered * most || joins(
+                                   h, p, most, [&](int u) { return u == other; }, search))
     return none;
   return {h, p, size, gap};
 }

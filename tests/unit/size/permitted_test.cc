@@ -67,7 +67,7 @@ TEST(Permitted, ChordsOfASheetStayOffTheNext) {
   ASSERT_GT(bounds.size(), 1000u);
   for (const SizeBound& b : bounds) {
     EXPECT_NEAR(std::hypot(b.place.x, b.place.y), 1, 1e-3) << "the inner tube's chords sag away";
-    EXPECT_NEAR(b.size, std::sqrt(8 * 0.45 * 0.02), 0.03);
+    EXPECT_NEAR(b.size, std::sqrt(8 * 0.3 * 0.02), 0.03);
     EXPECT_NEAR(b.gap, 0.02, 1e-3);
   }
   EXPECT_TRUE(bounds_of(mesh, 0.2).empty());
