@@ -283,12 +283,33 @@ void clean_once(Surface& surface, const CleanOptions& options, CleanReport& repo
   label_caps(surface, cap, report);
 }
 
+void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {
+  int n = 0;
+  const std::vector<char> gone = find_crumbs(surface, input, n);
+  if (n == 0) return;
+  Repair r;
+  for (int t = 0; t < (int)gone.size(); ++t)
+    if (!gone[t]) r.tris.push_back(surface.tris[t]), r.face.push_back(t);
+  r.vertex.resize(surface.points.size());
+  std::iota(r.vertex.begin(), r.vertex.end(), 0);
+  number_by_first_use(r);
+  std::vector<Vec3> points;
+  for (int v : r.vertex) points.push_back(surface.points[v]);
+  surface.points = std::move(points);
+  surface.tris = std::move(r.tris);
+  take_rows(surface.vertex, r.vertex);
+  take_rows(surface.face, r.face);
+  report.resolved.crumbs = n;
+  report.components -= n;
+}
+
 /// Repairs a resolved surface: `report` is that of the repair before, and keeps what concerns the input.
-void clean_resolved(Surface& surface, CleanOptions options, CleanReport& report) {
+void clean_resolved(Surface& surface, const Mesh& input, CleanOptions options, CleanReport& report) {
   options.weld = 0;  // vertices at intersections may be as close as rounding permits
   options.fill_holes = 0;
   CleanReport after;
   clean_once(surface, options, after);
+  if (options.sheets != CleanOptions::keep) drop_crumbs(surface, input, after);
   after.input_vertices = report.input_vertices;
   after.input_triangles = report.input_triangles;
   after.welded = report.welded;
@@ -344,7 +365,8 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
   if (resolved.nothing) {
     clean_once(surface, options, report);
   } else {
-    clean_resolved(s, options, report);
+    clean_resolved(s, surface, options, report);
+    resolved.crumbs = report.resolved.crumbs;
     surface = std::move(s);
   }
   report.resolved = resolved;

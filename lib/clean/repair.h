@@ -106,6 +106,10 @@ std::vector<int> caps_of(const Repair& r);
 /// own (reported). `apart` has the connectivity of the sheets. Returns whether anything was changed.
 bool mark_sheets(Surface& surface, const Repair& apart, CleanReport& report);
 
+/// Flags the triangles of closed components that have vertices the input has not, and hardly any volume.
+/// Returns one flag per triangle, and the number of such components. Requires: an oriented manifold.
+std::vector<char> find_crumbs(const Mesh& mesh, const Mesh& input, int& n_crumbs);
+
 /// Returns one line: how many triangles there were, and why none is left.
 std::string describe_nothing_left(const CleanReport& report);
 

@@ -16,7 +16,8 @@ struct ResolveReport {
   int pairs = 0;         ///< triangles of the input that intersect, touch or overlap
   int triangles = 0;     ///< of the input, in such pairs
   int new_vertices = 0;  ///< of the result, at intersections
-  int dropped = 0;       ///< pieces that do not bound the outside
+  int crumbs = 0;   ///< closed components of almost no volume, cut off at intersections, which are dropped
+  int dropped = 0;  ///< pieces that do not bound the outside
   double dropped_area = 0;
   int reversed = 0;      ///< pieces kept that were inside out
   int passes = 0;        ///< arrangements, until rounded points intersected nowhere
