@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lib/clean/clean.h"
+#include "lib/core/number.h"
+#include "lib/defeature/defeature.h"
 #include "tools/report/histogram.h"
 
 namespace meshpipe {
@@ -26,7 +29,85 @@ std::string row(const std::string& label, const std::string& before, const std::
   return s;
 }
 
+/// What mclean has done to the input; all 0 if nothing.
+Remark cleaning_of(const Stream& stream) {
+  Remark cleaning;
+  for (const std::string& text : stream.remarks)
+    if (const Remark r = parse_remark(text); r.opened + r.split + r.dropped > 0) cleaning = r;
+  return cleaning;
+}
+
 }  // namespace
+
+std::function<std::string(int)> namer(const Stream& stream) {
+  return [&stream](int label) {
+    const std::string name = stream.name_of(2, label);
+    return name.empty() ? std::to_string(label) : name;
+  };
+}
+
+int opened_unasked(const Stream& stream) {
+  for (const Provenance& p : stream.history)
+    if (p.program == "mclean" && p.arguments.find("--sheets") != p.arguments.npos) return 0;
+  return cleaning_of(stream).opened;
+}
+
+double moved_in(const Stream& stream) {
+  double sum = 0;
+  for (const std::string& remark : stream.remarks) sum += moved_by(remark);
+  return sum;
+}
+
+std::vector<std::string> warnings_of(const Findings& f, const Stream& stream) {
+  std::vector<std::string> lines;
+  if (const Deviation& d = f.distance.deviation; d.worst > 1)
+    lines.push_back("the surfaces are " + shown(most_deviation * d.worst) + " of the local size apart at (" +
+                    shown(d.place.x) + " " + shown(d.place.y) + " " + shown(d.place.z) +
+                    "): detail as fine as the size is lost; --max-error bounds the distance");
+  if (const double most = moved_in(stream); most > 0)
+    lines.push_back("mfeature has moved points by up to " + shown(most) +
+                    ": this is part of the distance at most");
+  if (const Remark r = cleaning_of(stream); r.opened + r.split + r.dropped > 0)
+    lines.push_back("of the input, mclean has opened " + std::to_string(r.opened) + " edges, split " +
+                    std::to_string(r.split) + " vertices, dropped " + std::to_string(r.dropped) +
+                    " triangles");
+  return lines;
+}
+
+nlohmann::ordered_json report_of(const Findings& f, const Stream& stream) {
+  auto report = nlohmann::ordered_json::object(), reference = report;
+  for (const Figure& x : figures(f))
+    for (auto [where, value] : {std::pair{&report, x.result}, std::pair{&reference, x.reference}}) {
+      if (std::isnan(value)) continue;
+      if (x.decimals == count_figure)
+        (*where)[x.key] = (long long)value;
+      else
+        (*where)[x.key] = value;
+    }
+  const Soundness &m = f.mesh, &r = f.reference;
+  report["topology_same"] =
+      m.sound() && r.sound() && m.components == r.components && m.genus == r.genus && m.loops == r.loops;
+  for (auto [where, q] : {std::pair{&report, &f.quality}, std::pair{&reference, &f.reference_quality}}) {
+    (*where)["kappa_histogram"] = bins(q->kappas, 0, 1, 50);
+    (*where)["angle_histogram"] = q->angle_histogram;
+  }
+  report["reference"] = reference;
+  if (const double most = moved_in(stream); most > 0) report["moved"] = most;
+  if (const Remark c = cleaning_of(stream); c.opened + c.split + c.dropped > 0)
+    report["input"] = {{"opened", c.opened}, {"split", c.split}, {"dropped", c.dropped}};
+  return report;
+}
+
+nlohmann::ordered_json failures_json(const std::vector<Failure>& failures) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Failure& x : failures) list.push_back({{"requirement", x.requirement}, {"fact", x.fact}});
+  return list;
+}
+
+std::string summary_of(const std::vector<Failure>& failures) {
+  return "contract missed: " + failures[0].requirement + ": " + failures[0].fact +
+         (failures.size() > 1 ? " (and " + std::to_string(failures.size() - 1) + " more)" : "");
+}
 
 std::vector<std::string> figure_table(const std::vector<Figure>& figures) {
   std::vector<std::string> lines{row("", "reference", "result")};

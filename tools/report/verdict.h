@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A verdict as text and as a picture.
 #pragma once
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,26 @@
 #include "lib/check/check.h"
 
 namespace meshpipe {
+
+/// Returns what names a patch: its name, or its label. Keeps a reference to the stream.
+std::function<std::string(int)> namer(const Stream& stream);
+
+/// Returns the number of edges that mclean has opened without being asked to, by its option --sheets.
+int opened_unasked(const Stream& stream);
+
+/// Returns how far mfeature has moved points of the input, at most, in removing features.
+double moved_in(const Stream& stream);
+
+/// Returns lines on what the contract may allow: a distance above half the size; and what mclean and mfeature
+/// have done to the input's topology, which the comparison with the cleaned input hides.
+std::vector<std::string> warnings_of(const Findings& findings, const Stream& stream);
+
+/// Returns the figures, histograms and cleaning for --json.
+nlohmann::ordered_json report_of(const Findings& findings, const Stream& stream);
+nlohmann::ordered_json failures_json(const std::vector<Failure>& failures);
+
+/// Returns the first failure and the number of the others. Requires: there is one.
+std::string summary_of(const std::vector<Failure>& failures);
 
 /// Returns the lines of a table of reference and result. Counts that are 0 in both are left out, except
 /// genus, loops and self-intersections.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/round_file.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "lib/core/error.h"
+
+namespace meshpipe {
+
+RoundFile::RoundFile(Io& io, std::string file, bool bounded_distance) : file_(std::move(file)) {
+  if (file_.empty()) return;
+  io.expect_report("--verdict", file_);
+  if (std::filesystem::is_regular_file(file_)) before_ = Io::read_bytes(file_);
+  outcome.bounded_distance = bounded_distance;
+  io.on_failure = [this, &io](int status, const std::string& why, const std::string& program) {
+    outcome.status = status;
+    outcome.program = program;
+    outcome.message = why;
+    try {
+      write();
+    } catch (const CannotWrite& e) {
+      std::fprintf(stderr, "%s: error: %s\n", io.program.c_str(), e.what());
+    }
+    return !repeats();
+  };
+}
+
+void RoundFile::write() const {
+  if (!file_.empty()) Io::write_file(file_, before_ + verdict_block(before_, outcome));
+}
+
+}  // namespace meshpipe
