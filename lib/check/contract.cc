@@ -229,7 +229,8 @@ std::vector<Failure> judge(const Contract& contract, const Findings& findings, c
     failures.push_back({"topology",
                         std::to_string(findings.opened) + (findings.opened == 1 ? " edge" : " edges") +
                             " of more than two triangles of the input became borders; mclean --sheets split "
-                            "takes sheets apart on request, and mwrap closes the surface",
+                            "takes sheets apart on request, --resolve outer keeps what bounds the outside, "
+                            "and mwrap closes the surface",
                         (double)findings.opened});
   return failures;
 }
