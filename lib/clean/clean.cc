@@ -102,8 +102,10 @@ void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptio
         const std::size_t more = report.nonorientable.size() - 1;
         throw NotAdmissible(describe(report.nonorientable[0]) +
                             (more ? ", and " + std::to_string(more) + " more components" : "") +
-                            "; --resolve outer may find what bounds the outside, --drop-nonorientable "
-                            "leaves it out");
+                            (options.resolve == CleanOptions::none
+                                 ? "; --resolve outer may find what bounds the outside, "
+                                   "--drop-nonorientable leaves it out"
+                                 : ""));
       }
       r.opposite.clear();
       drop(r, gone);
