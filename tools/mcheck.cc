@@ -26,7 +26,15 @@ struct Options {
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
 
-Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
+/// The distance that the contract requires, over the diagonal; infinite if none.
+double required_distance(const Contract& contract) {
+  double most = std::numeric_limits<double>::infinity();
+  for (const Requirement& r : contract)
+    if (r.name == "hausdorff") most = std::min(most, r.limit);
+  return most;
+}
+
+Findings compare(Io& io, Stream& stream, const Options& o, const Contract& contract, Surface& reference) {
   Surface& result = stream.surface;
   const bool own = o.reference.empty();
   Stream other;
@@ -43,9 +51,11 @@ Findings compare(Io& io, Stream& stream, const Options& o, Surface& reference) {
   }
   expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
-  Findings f = examine(result, reference, own ? &lines : nullptr, o.samples);
+  const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
+  Findings f =
+      examine(result, reference, own ? &lines : nullptr, o.samples, required_distance(contract) - removed);
   f.opened = opened;
-  if (own) f.distance.bound += moved_in(stream) / diagonal(reference);
+  f.distance.bound += removed;
   const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
   // a file that holds one patch comes from a format without patches, as a rule
   if (own || patches.size() > 1)
@@ -80,7 +90,7 @@ void check(Io& io, const Options& o, RoundFile& verdict) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
-  Findings f = compare(io, stream, o, reference);
+  Findings f = compare(io, stream, o, contract, reference);
   f.opened += opened_unasked(stream);
   say(io, f, stream);
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));

@@ -49,8 +49,9 @@ constexpr double most_deviation = 0.5;
 /// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex
 /// columns `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it
 /// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
-/// `lines`: those that the result was made with, or null. `samples`: see distance_between.
-Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples);
+/// `lines`: those that the result was made with, or null. `samples`, `most`: see distance_between.
+Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
+                 double most = std::numeric_limits<double>::infinity());
 
 /// Finds the edges where two triangles turn by more than 150 degrees while the reference within an edge
 /// length has only one of their two orientations. Thin plates and sharp ridges are no folds.

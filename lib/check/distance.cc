@@ -57,6 +57,7 @@ struct Allowed {
   std::span<const double> at;  ///< none: anything
   bool from_mesh;
   double least = infinity;
+  double most = infinity;  ///< anywhere
 };
 
 /// One direction: the distances of one surface's points from the other.
@@ -92,8 +93,8 @@ class OneSided {
   };
 
   double limit() const {
-    const double d = std::max(largest, known);
-    return std::max((1 + relative) * d, d + absolute * diagonal_);
+    const double d = std::max(largest, known), about = std::max((1 + relative) * d, d + absolute * diagonal_);
+    return d < allowed_.most ? std::min(about, allowed_.most) : about;
   }
   void found(const Near& near, Vec3 p, int face) {
     if (near.distance > largest) largest = near.distance, place = p;
@@ -361,19 +362,20 @@ void OneSided::bound(int budget) {
 }  // namespace
 
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples, std::span<const double> allowed) {
+                          const Bvh& mesh_tree, int samples, std::span<const double> allowed, double most) {
   const double d = diagonal(reference), unit = d > 0 ? d : 1;
   // small meshes need no more than this for the mean to be right within a percent
   const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 4 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
-  OneSided there(mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least}),
-      back(reference, reference_tree, mesh, mesh_tree, d, {allowed, false, least});
+  OneSided there(mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least, most * unit}),
+      back(reference, reference_tree, mesh, mesh_tree, d, {allowed, false, least, most * unit});
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
-  there.bound(8 * samples);
+  const int budget = (most < infinity ? 64 : 8) * samples;
+  there.bound(budget);
   back.known = there.largest;
-  back.bound(8 * samples);
+  back.bound(budget);
   const OneSided& worse = there.largest >= back.largest ? there : back;
   Distance r;
   r.to_reference = there.largest / unit;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances between two surfaces.
 #pragma once
+#include <limits>
 #include <span>
 
 #include "lib/core/bvh.h"
@@ -31,9 +32,11 @@ struct Distance {
 /// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
 /// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
 /// the diagonal, where these suffice, and to the distance `allowed` at each triangle of the mesh (none: any).
+/// `most`, over the diagonal: a distance below it is bounded by it, with up to 64 `samples`.
 /// Deterministic at any thread count. Requires: both have triangles.
 Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
-                          const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {});
+                          const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {},
+                          double most = std::numeric_limits<double>::infinity());
 
 /// Returns the distance of each vertex of the mesh from a surface (0 for unused vertices). `mesh_tree` is the
 /// mesh's, `tree` the surface's.

@@ -160,7 +160,7 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
   return {mean(1), mean(0)};
 }
 
-Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples) {
+Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples, double most) {
   Findings f;
   Mesh reference;
   parallel_for(2, [&](int side) {
@@ -200,7 +200,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
   for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
   f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples,
-                                allowed_distances(result, size.empty() ? edges : size, smooth_off));
+                                allowed_distances(result, size.empty() ? edges : size, smooth_off), most);
   add_progress(0.4);
   for (std::size_t v = 0; v < f.off.size(); ++v)
     f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;

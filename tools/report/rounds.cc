@@ -47,8 +47,8 @@ std::vector<Score> scores_in(std::string_view verdict) {
   return rounds;
 }
 
-bool another_round(const std::vector<Score>& rounds) {
-  if ((int)rounds.size() >= most_rounds) return false;
+bool another_round(const std::vector<Score>& rounds, int most) {
+  if ((int)rounds.size() >= most) return false;
   std::map<std::string, double> best;
   int vain = 0;
   for (const Score& s : rounds) {
@@ -67,7 +67,7 @@ bool is_repeated(std::string_view verdict, const Outcome& outcome) {
   if (!outcome.refined || outcome.failures.empty()) return false;
   std::vector<Score> rounds = scores_in(verdict);
   rounds.push_back(score_of(outcome.failures[0]).value_or(Score{}));
-  return another_round(rounds);
+  return another_round(rounds, outcome.bounded_distance ? most_rounds_for_distance : most_rounds);
 }
 
 std::string verdict_block(std::string_view verdict, const Outcome& outcome) {

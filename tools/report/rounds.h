@@ -26,8 +26,9 @@ struct Outcome {
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
 
-/// The number of rounds of a chain at most: what is not met by then never was, in all surfaces tried.
-constexpr int most_rounds = 8;
+/// The number of rounds of a chain at most: the whole takes three times as long as the first. What is not met
+/// by then never was, in all surfaces tried, except a distance, which takes more.
+constexpr int most_rounds = 3, most_rounds_for_distance = 6;
 /// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
 /// sizes.
 constexpr int rounds_of_count = 2;
@@ -41,8 +42,8 @@ std::optional<Score> score_of(const Failure& failure);
 /// Returns the scores of the rounds in a verdict's text, an empty requirement where a round has none.
 std::vector<Score> scores_in(std::string_view verdict);
 
-/// Returns whether the last of these rounds is worth another.
-bool another_round(const std::vector<Score>& rounds);
+/// Returns whether the last of these rounds is worth another. `most`: how many there may be.
+bool another_round(const std::vector<Score>& rounds, int most);
 
 /// Returns whether the chain is to be repeated after this round, with refined sizes. `verdict` as below.
 bool is_repeated(std::string_view verdict, const Outcome& outcome);

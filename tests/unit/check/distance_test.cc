@@ -77,6 +77,15 @@ TEST(distance, the_truth_is_between_the_bounds) {
   }
 }
 
+TEST(distance, a_distance_below_what_is_asked_is_bounded_by_it) {
+  const Mesh a = sphere(500);
+  Mesh b = sphere(3000);
+  const double found = apart(a, b, 2000).hausdorff;
+  const Distance d = distance_between(a, Bvh(a), b, Bvh(b), 2000, {}, 1.002 * found);
+  EXPECT_LE(d.hausdorff + d.bound, 1.002 * found * (1 + 1e-12));
+  EXPECT_GE(d.hausdorff, found * (1 - 1e-12));
+}
+
 TEST(distance, mean_of_a_slope) {
   //  3---2   a square and the same rotated up about 0-3: distance from it z / sqrt(1 + 1/4), mean over y too
   //  | / |

@@ -16,10 +16,14 @@ Outcome missed(const std::string& requirement, double value) {
   return o;
 }
 
-/// The verdict after rounds that fail with these figures.
-std::string verdict_of(const std::vector<std::pair<const char*, double>>& rounds) {
+/// The verdict after rounds that fail with these figures; with a bounded distance there may be more of them.
+std::string verdict_of(const std::vector<std::pair<const char*, double>>& rounds, bool bounded = true) {
   std::string text;
-  for (const auto& [requirement, value] : rounds) text += verdict_block(text, missed(requirement, value));
+  for (const auto& [requirement, value] : rounds) {
+    Outcome o = missed(requirement, value);
+    o.bounded_distance = bounded;
+    text += verdict_block(text, o);
+  }
   return text;
 }
 
@@ -59,10 +63,13 @@ TEST(rounds, a_difference_beyond_six_digits_is_no_progress) {
 }
 
 TEST(rounds, requirements_without_a_score_go_on_until_the_rounds_are_over) {
-  std::vector<std::pair<const char*, double>> rounds(most_rounds - 1, {"vertices", 0.5});
-  EXPECT_TRUE(asks_for_another(verdict_of(rounds)));
-  rounds.push_back({"vertices", 0.1});
-  EXPECT_FALSE(asks_for_another(verdict_of(rounds)));
+  for (bool bounded : {false, true}) {
+    const int most = bounded ? most_rounds_for_distance : most_rounds;
+    std::vector<std::pair<const char*, double>> rounds(most - 1, {"vertices", 0.5});
+    EXPECT_TRUE(asks_for_another(verdict_of(rounds, bounded)));
+    rounds.push_back({"vertices", 0.1});
+    EXPECT_FALSE(asks_for_another(verdict_of(rounds, bounded)));
+  }
 }
 
 TEST(rounds, without_refined_sizes_there_is_no_other) {
@@ -73,7 +80,7 @@ TEST(rounds, without_refined_sizes_there_is_no_other) {
 
 TEST(rounds, the_count_is_given_up_after_two_rounds_or_for_a_distance) {
   EXPECT_NE(verdict_block("", missed("kappa", 0.01)).find("count=kept"), std::string::npos);
-  const std::string two = verdict_of({{"kappa", 0.01}, {"kappa", 0.02}});
+  const std::string two = verdict_of({{"kappa", 0.01}, {"kappa", 0.02}}, false);
   EXPECT_EQ(two.find("count=free"), std::string::npos);
   EXPECT_NE(verdict_block(two, missed("kappa", 0.03)).find("count=free"), std::string::npos);
   Outcome o = missed("hausdorff", 0.01);
