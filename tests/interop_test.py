@@ -362,7 +362,7 @@ def intermediates(programs, scratch):
     done = subprocess.run(["mremesh", "-q", "--keep", keep, tree, "-o", os.path.join(scratch, "mesh.vtu")], env=env,
                           stderr=subprocess.PIPE, check=False)
     check("mremesh on a small tree", (done.returncode, done.stderr.decode()), (0, ""))
-    return sorted(os.path.join(keep, name) for name in os.listdir(keep))
+    return sorted(os.path.join(keep, name) for name in os.listdir(keep) if name.endswith(".ply"))
 
 
 def main():

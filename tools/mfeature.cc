@@ -24,9 +24,12 @@ struct Options : FeatureOptions {
   double max_error = 0;
 };
 
-/// Target lengths. Measured on CAD with sliver faces: below 1/15 parts of them stay, which end in corners of
-/// 1 to 4 degrees (smallest kappa 0.11, or failure, instead of 0.32); clean CAD changes nowhere up to 1/10.
-constexpr double default_tolerance = 1.0 / 15;
+/// Target lengths. Measured on CAD with sliver faces: below it parts of them stay, which end in corners of 1
+/// to 4 degrees (smallest kappa 0.11, or failure, instead of 0.3); from 1/15 on the two sides of a thin
+/// place intersect. Clean CAD changes nowhere up to 1/10.
+constexpr double default_tolerance = 0.06;
+/// And at most this much of the diagonal: a size larger than the surface does not remove all of it.
+constexpr double most_of_diagonal = 0.01;
 /// Of the distance of --max-error: the rest is for the mesh.
 constexpr double error_share = 0.25;
 
@@ -125,7 +128,7 @@ bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<in
 
 double tolerance_of(const Options& o, double length, double diagonal) {
   if (o.tolerance != "auto") return *parse_length(o.tolerance, diagonal);
-  const double share = default_tolerance * length;
+  const double share = std::min(default_tolerance * length, most_of_diagonal * diagonal);
   return o.max_error > 0 ? std::min(share, error_share * o.max_error * diagonal) : share;
 }
 
@@ -145,10 +148,9 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--edges", o.edge_file,
                  "the lines of this mesh are model edges too; none: nor are those of the input's file")
       ->type_name("FILE|none");
-  app.add_option(
-         "--tolerance", o.tolerance,
-         "remove features narrower than this, as a length or as P% of the diagonal; auto: a fifteenth of "
-         "the target edge length; 0: none")
+  app.add_option("--tolerance", o.tolerance,
+                 "remove features narrower than this, as a length or as P% of the diagonal; auto: 0.06 of "
+                 "the target edge length; 0: none")
       ->type_name("D|P%|auto");
   app.add_option("--max-error", o.max_error,
                  "an automatic tolerance is at most a quarter of this share of the diagonal")

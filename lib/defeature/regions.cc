@@ -39,7 +39,7 @@ constexpr int least_corners = 3;                      ///< two are the ends of a
 /// many.
 std::vector<int> Zipper::ball(int center) const {
   std::vector<int> found{center};
-  for (std::size_t i = 0; i < found.size() && !found.empty(); ++i)
+  for (std::size_t i = 0; i < found.size() && (int)found.size() <= most_vertices; ++i)
     mesh.neighbors(found[i], [&](int v) {
       if (norm(points[v] - points[center]) > options_.tolerance / 2) return;
       if (std::find(found.begin(), found.end(), v) == found.end()) found.push_back(v);
