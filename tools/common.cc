@@ -12,8 +12,12 @@
 #include <limits>
 #include <new>
 
+#include "formats/stream/lift_tables.h"
+#include "lib/check/check.h"
+#include "lib/core/failure_facts.h"
 #include "tools/files.h"
 #include "tools/progress_line.h"
+#include "tools/report/way_out.h"
 
 namespace meshpipe {
 namespace {
@@ -85,6 +89,25 @@ void write_report(const Io& io) {
   if (!io.json.empty()) Io::write_file(io.json, io.report.dump(2) + '\n');
 }
 
+/// Returns what helps after a failure, "" or "; try ... (...)", for its message; the report gets it too.
+std::string way_out_of(Io& io, const std::exception& failure, int status) {
+  const bool remeshed = io.stream.find("ref_vertex");
+  // a mesh that mcheck compares with any other was not made by the chain
+  if (!io.names_way_out || io.stream.surface.tris.empty() || (status == 6 && !remeshed)) return "";
+  const FailureFacts facts = facts_of(failure);
+  Diagnosis found;
+  if (facts.nonorientable > 0 || (status > 4 && facts.least_size == 0 && facts.strip_width == 0)) {
+    const Surface reference = remeshed ? read_reference(io.stream) : Surface();
+    found = diagnose(remeshed ? reference : io.stream.surface, facts.place, facts.reach);
+  }
+  std::vector<Provenance> history = io.stream.history;
+  history.push_back({io.program, "", io.arguments});
+  const std::optional<WayOut> way = way_out(status, facts, history, found);
+  if (!way) return "";
+  io.report["way_out"] = {{"try", way->what}, {"because", way->why}};
+  return "; try " + way->what + " (" + way->why + ")";
+}
+
 /// Runs the body of a program between the checks of its files and its report.
 void run_body(Io& io, const std::function<void(Io&)>& body, const Usage& usage) {
   io.expect_report("-o", io.output, usage.writes_mesh);
@@ -93,15 +116,18 @@ void run_body(Io& io, const std::function<void(Io&)>& body, const Usage& usage) 
   try {
     const ProgressLine line(io.program, io.quiet);
     body(io);
-  } catch (const NotAdmissible&) {
+  } catch (const NotAdmissible& e) {
+    const std::string way = way_out_of(io, e, 4);
     if (io.report.size() > 1) write_report(io);  // it was measured before
-    throw;
-  } catch (const GoalMissed&) {
+    throw NotAdmissible(e.what() + way);
+  } catch (const GoalMissed& e) {
+    const std::string way = way_out_of(io, e, 5);
     write_report(io);
-    throw;
-  } catch (const ContractMissed&) {
+    throw GoalMissed(e.what() + way);
+  } catch (const ContractMissed& e) {
+    const std::string way = way_out_of(io, e, 6);
     write_report(io);
-    throw;
+    throw ContractMissed(e.what() + way);
   }
   write_report(io);
 }

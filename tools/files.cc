@@ -2,6 +2,7 @@
 #include "tools/files.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -161,6 +162,22 @@ void write_atomically(const std::string& name, const std::function<void(const Si
     partial_file_exists = false;
     throw;
   }
+}
+
+void append_line(const std::string& path, std::string_view heading, std::string_view line) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT, 0666);
+  if (fd < 0) throw CannotWrite(path + ": " + last_error());
+  std::string text(line);
+  struct stat info {};
+  ::flock(fd, LOCK_EX);  // of two that find it empty, one writes the heading
+  if (::fstat(fd, &info) == 0 && info.st_size == 0) text.insert(0, heading);
+  try {
+    write_all(fd, text, path);
+  } catch (...) {
+    ::close(fd);
+    throw;
+  }
+  if (::close(fd) != 0) throw CannotWrite(path + ": " + last_error());
 }
 
 void expect_writable(const std::string& name) {

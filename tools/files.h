@@ -38,6 +38,9 @@ void write_all(int fd, std::string_view bytes, const std::string& where);
 /// is complete; "-", devices and pipes are written to directly. Throws CannotWrite.
 void write_atomically(const std::string& path, const std::function<void(const Sink&)>& produce);
 
+/// Adds a line to a file at once, after the heading if the file is new or empty. Throws CannotWrite.
+void append_line(const std::string& path, std::string_view heading, std::string_view line);
+
 /// Checks before the work that write_atomically can write the file. Throws CannotWrite.
 void expect_writable(const std::string& path);
 

@@ -28,10 +28,10 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
 
 }  // namespace
 
-Stream Io::read() {
+Stream& Io::read() {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
-  Stream stream = read(input);
+  stream = read(input);
   set_phase(Phase::working);
   return stream;
 }

@@ -15,9 +15,9 @@ namespace meshpipe {
 /// Reads and writes as the common options ask.
 class Io : public CommonOptions {
  public:
-  /// Reads FILE or standard input, in any format.
+  /// Reads FILE or standard input, in any format, into `stream`, which outlives the body of the program.
   /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size.
-  Stream read();
+  Stream& read();
   /// Reads a second file of the user's, such as a reference.
   Stream read(const std::string& path) const;
   /// Returns the bytes of another file of the user's, or of standard input for "-".
@@ -45,6 +45,8 @@ class Io : public CommonOptions {
   std::string program;
   std::string arguments;  ///< that change the result, for the stream's history
   bool any_size = false;
+  Stream stream;                  ///< what read() has read, as far as the program has come with it
+  bool names_way_out = true;      ///< on a failure; not if it will be tried again
   nlohmann::ordered_json report;  ///< --json FILE gets it on success and on status 4 (if not empty), 5, 6
   /// Takes a failure in place of the line on standard error: status, message, and the program that failed.
   /// Returns whether the next program in the pipe learns of it.

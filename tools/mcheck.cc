@@ -17,7 +17,7 @@ using namespace meshpipe;
 namespace {
 
 struct Options {
-  std::string reference, require = default_contract, histogram, offending, refine, verdict;
+  std::string reference, require = default_contract, histogram, offending, refine, verdict, tsv;
   double max_error = 0;
   bool accept = false;
   int samples = 10000;
@@ -25,14 +25,6 @@ struct Options {
 
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
-
-/// The distance that the contract requires, over the diagonal; infinite if none.
-double required_distance(const Contract& contract) {
-  double most = std::numeric_limits<double>::infinity();
-  for (const Requirement& r : contract)
-    if (r.name == "hausdorff") most = std::min(most, r.limit);
-  return most;
-}
 
 Findings compare(Io& io, Stream& stream, const Options& o, const Contract& contract, Surface& reference) {
   Surface& result = stream.surface;
@@ -63,10 +55,12 @@ Findings compare(Io& io, Stream& stream, const Options& o, const Contract& contr
   return f;
 }
 
-void say(Io& io, const Findings& f, const Stream& stream) {
+void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
-  for (const std::string& line : warnings_of(f, stream)) io.say(line);
-  io.report.update(report_of(f, stream));
+  for (const std::string& line : warnings_of(f, io.stream)) io.say(line);
+  for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
+  io.report.update(report_of(f, io.stream));
+  io.report["failed"] = failures_json(failures);
 }
 
 /// Writes the result with sizes that may meet the contract. Returns whether any size changed: if not, nothing
@@ -80,38 +74,39 @@ bool write_refined(const Io& io, const Stream& stream, const std::string& file, 
   return true;
 }
 
-void check(Io& io, const Options& o, RoundFile& verdict) {
+void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   Contract contract = parse_contract(o.require);
   if (o.max_error > 0) contract.push_back({"hausdorff", o.max_error});
   if (!o.histogram.empty()) io.expect_report("--histogram", o.histogram);
   if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
   if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
-  Stream stream = io.read();
+  if (!o.tsv.empty()) io.expect_report("--tsv", o.tsv);
+  Stream& stream = read(io, summary);
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
   Findings f = compare(io, stream, o, contract, reference);
   f.opened += opened_unasked(stream);
-  say(io, f, stream);
+  const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
+  if (!o.refine.empty() && !failures.empty())
+    verdict.outcome.refined =
+        write_refined(io, stream, o.refine, smaller_sizes(contract, f, stream.surface, reference));
+  summary.failures = failures;
+  summary.figures = figures(f);
+  const bool last = io.names_way_out = summary.counts = !verdict.repeats();
+  if (last) say(io, f, failures);  // the figures of the last round are those of the result
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.offending.empty()) {
     Stream faulty;
     faulty.surface = offending_faces(contract, f, stream.surface);
     io.write_to(o.offending, faulty);
   }
-  const std::vector<Failure> failures = judge(contract, f, stream.surface);
-  for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
-  io.report["failed"] = failures_json(failures);
-  verdict.outcome.failures = failures;
-  if (!o.refine.empty() && !failures.empty())
-    verdict.outcome.refined =
-        write_refined(io, stream, o.refine, smaller_sizes(contract, f, stream.surface, reference));
-  if (verdict.repeats())
+  if (!last)
     io.json.clear();
   else if (failures.empty() || o.accept)
     io.write(stream);
   if (failures.empty()) return verdict.write();
-  throw ContractMissed(summary_of(failures));
+  throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface, f.opened));
 }
 
 }  // namespace
@@ -119,6 +114,7 @@ void check(Io& io, const Options& o, RoundFile& verdict) {
 int main(int argc, char** argv) {
   Options o;
   std::optional<RoundFile> verdict;  // outlives the body, which may fail
+  Summary summary;
   auto add_options = [&](CLI::App& app) {
     app.add_option("--reference", o.reference,
                    "the surface to compare with; without it the stream's own, from mlift")
@@ -140,13 +136,15 @@ int main(int argc, char** argv) {
         ->type_name("FILE");
     report("--verdict", o.verdict, "add the outcome as lines key=value, errors too: see mcheck(1)")
         ->type_name("FILE");
+    report("--tsv", o.tsv, "add the verdict to this table as a line, tab-separated")->type_name("FILE");
     report("--culprits", o.offending, "write the triangles at fault")->type_name("FILE");
   };
-  return run_tool(
+  const int status = run_tool(
       argc, argv, "mcheck",
       "Verify a result: connectivity, self-intersections, quality, and distance to the surface it was "
       "made from.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/11-relax.ply -o checked.ply\n"
       "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 --json tree.json -o tree.ply",
-      add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0)); });
+      add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0), summary); });
+  return o.tsv.empty() ? status : add_to_table(o.tsv, summary, status);
 }

@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
         o.sheets = o.how == "keep" ? o.keep : o.how == "split" ? o.split : o.pair;
         o.resolve = o.resolving == "all" ? o.all : o.resolving == "outer" ? o.outer : o.none;
         if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
-        Stream stream = io.read();
+        Stream& stream = io.read();
         Surface& s = stream.surface;
         if (!o.data.empty()) expect_data(s, o.data);
         o.weld = o.within == "auto" ? -1 : *parse_length(o.within, diagonal(s));

@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
         if (o.polydata && !io.output.ends_with(".vtk"))
           throw BadUsage("--polydata is for -o FILE.vtk, not '" + io.output + "'");
         if (!o.feature_edges.empty()) io.expect_report("--feature-edges", o.feature_edges);
-        Stream stream = io.read();
+        Stream& stream = io.read();
         if (!o.feature_edges.empty())
           Io::write_file(o.feature_edges, write_feature_edges(stream, o.feature_edges));
         if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     view.edges = !smooth;
     std::vector<Stream> meshes;
-    meshes.push_back(io.read());
+    meshes.push_back(std::move(io.read()));
     for (const std::string& path : others) meshes.push_back(io.read(path));
     for (const Stream& s : meshes) add_to_frame(frame, s.surface, view);
     std::vector<Image> images;

@@ -167,7 +167,7 @@ void mark(Io& io, Options& o) {
     throw BadUsage("--tolerance: expected auto, a length or a percentage, found '" + o.tolerance + "'");
   if (!o.group_file.empty()) expect_readable(o.group_file);
   if (!o.edge_file.empty() && o.edge_file != "none") expect_readable(o.edge_file);
-  Stream stream = io.read();
+  Stream& stream = io.read();
   Surface& surface = stream.surface;
   const bool asked = o.size > 0 || o.triangles > 0;
   if (o.triangles == 0)

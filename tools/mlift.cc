@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
   };
   auto body = [&](Io& io) {
-    Stream stream = io.read();
+    Stream& stream = io.read();
     std::vector<Chart> charts = read_charts(stream);
     const std::vector<PlaneMesh> meshes = read_plane_meshes(stream, charts);
     for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);

@@ -12,7 +12,7 @@ using namespace meshpipe;
 int main(int argc, char** argv) {
   bool keep_boundary = false;
   auto body = [&](Io& io) {
-    Stream stream = io.read();
+    Stream& stream = io.read();
     const Table& vertex = stream.surface.vertex;
     if (vertex.has("size"))
       refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());

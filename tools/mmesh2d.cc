@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
         ->group("Reports");
   };
   auto body = [&](Io& io) {
-    Stream stream = io.read();
+    Stream& stream = io.read();
     std::vector<Chart> charts = read_charts(stream);
     const Lines lines = read_lines(stream);
     if (!stream.surface.vertex.has("size"))

@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     if (method == "maxcut") options.method = CutMethod::maxcut;
     options.keep_maps = !directory.empty();
-    Stream stream = io.read();
+    Stream& stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     std::vector<MultiscaleCut> cuts;
     std::vector<Topology> topology;

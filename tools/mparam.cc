@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     if (!svg.empty()) io.expect_report("--svg", svg);
-    Stream stream = io.read();
+    Stream& stream = io.read();
     Surface& surface = stream.surface;
     if (!surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     const int n_before = count_parts(surface);

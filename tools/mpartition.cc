@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     options.homology = method == "homology";
-    Stream stream = io.read();
+    Stream& stream = io.read();
     std::vector<int> opposite;
     const int n_parts = partition_to_disks(stream.surface, options, &opposite);
     const Interfaces cut = measure_interfaces({stream.surface, opposite, model_of(stream.surface)},

@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
         ->group("Reports");
   };
   auto body = [&](Io& io) {
-    Stream stream = io.read();
+    Stream& stream = io.read();
     LiftedMesh mesh;
     Surface reference;
     std::vector<int> kinds;

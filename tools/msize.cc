@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
     // before the input, since mremesh checks the options without one; but a pipe can be read only once
     if (!field.empty() && can_be_read_again(file_and_column(field).first))
       tree = read_field(io, field, sizes);
-    Stream stream = io.read();
+    Stream& stream = io.read();
     Surface& s = stream.surface;
     if (!field.empty() && !tree) tree = read_field(io, field, sizes);
     o.at_curvature = expression && expression->uses("curvature");

@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
       },
       [&](Io& io) {
         if (!tsv_file.empty()) io.expect_report("--tsv", tsv_file);
-        Stream stream = io.read();
+        Stream& stream = io.read();
         Surface& s = stream.surface;
         const bool cleaned = stream.input_triangles > 0;
         std::vector<int> component;

@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
             ->type_name("LENGTH");
       },
       [&](Io& io) {
-        Stream stream = io.read();
+        Stream& stream = io.read();
         const Mesh soup = std::move(static_cast<Mesh&>(stream.surface));
         const double size = soup.tris.empty() ? 0 : diagonal(soup);
         WrapOptions o;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "lib/core/error.h"
+#include "tools/files.h"
 
 namespace meshpipe {
 
@@ -28,6 +29,29 @@ RoundFile::RoundFile(Io& io, std::string file, bool bounded_distance) : file_(st
 
 void RoundFile::write() const {
   if (!file_.empty()) Io::write_file(file_, before_ + verdict_block(before_, outcome));
+}
+
+Stream& read(Io& io, Summary& summary) {
+  summary.output = io.output;
+  try {
+    return io.read();
+  } catch (const UpstreamFailed&) {
+    summary.counts = true;
+    throw;
+  }
+}
+
+int add_to_table(const std::string& file, const Summary& summary, int status) {
+  if (!summary.counts) return status;
+  try {
+    append_line(file, summary_heading(), summary_line(summary, status));
+    return status;
+  } catch (const CannotWrite& e) {
+    std::fprintf(stderr, "mcheck: error: %s\n", e.what());
+  }
+  if (status != 0) return status;
+  remove_file(summary.output);
+  return 7;
 }
 
 }  // namespace meshpipe

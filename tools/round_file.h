@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file with the outcomes of a chain's rounds.
+// The file with the outcomes of a chain's rounds, and the table with those of many chains.
 #pragma once
 #include <string>
 
 #include "tools/io.h"
 #include "tools/report/rounds.h"
+#include "tools/report/summary.h"
 
 namespace meshpipe {
 
@@ -23,5 +24,12 @@ class RoundFile {
  private:
   std::string file_, before_;
 };
+
+/// Reads the result. A program before this one that has failed counts in the summary, too.
+Stream& read(Io& io, Summary& summary);
+
+/// Adds the line of a finished run to a table, if it counts. Returns the run's status, or 7 if a success
+/// cannot be added: then the result is removed.
+int add_to_table(const std::string& file, const Summary& summary, int status);
 
 }  // namespace meshpipe

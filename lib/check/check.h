@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lib/check/diagnosis.h"
 #include "lib/check/distance.h"
 #include "lib/check/needles.h"
 #include "lib/check/patches.h"

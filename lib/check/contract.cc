@@ -228,9 +228,7 @@ std::vector<Failure> judge(const Contract& contract, const Findings& findings, c
   if (topology && findings.opened > 0)
     failures.push_back({"topology",
                         std::to_string(findings.opened) + (findings.opened == 1 ? " edge" : " edges") +
-                            " of more than two triangles of the input became borders; mclean --sheets split "
-                            "takes sheets apart on request, --resolve outer keeps what bounds the outside, "
-                            "and mwrap closes the surface",
+                            " of more than two triangles of the input became borders",
                         (double)findings.opened});
   return failures;
 }

@@ -6,6 +6,7 @@
 
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
+#include "lib/core/failure_facts.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
@@ -100,12 +101,12 @@ void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptio
       if (!options.drop_nonorientable) {
         sort_offending(report);
         const std::size_t more = report.nonorientable.size() - 1;
-        throw NotAdmissible(describe(report.nonorientable[0]) +
-                            (more ? ", and " + std::to_string(more) + " more components" : "") +
-                            (options.resolve == CleanOptions::none
-                                 ? "; --resolve outer may find what bounds the outside, "
-                                   "--drop-nonorientable leaves it out"
-                                 : ""));
+        FailureFacts facts;
+        for (const Nonorientable& c : report.nonorientable) facts.nonorientable += c.triangles;
+        facts.orientable = facts.nonorientable < (int)r.tris.size();
+        throw Informed<NotAdmissible>(describe(report.nonorientable[0]) +
+                                          (more ? ", and " + std::to_string(more) + " more components" : ""),
+                                      facts);
       }
       r.opposite.clear();
       drop(r, gone);

@@ -7,12 +7,20 @@
 #include <string>
 
 #include "lib/core/error.h"
+#include "lib/core/failure_facts.h"
 #include "lib/core/number.h"
 
 namespace meshpipe {
 namespace {
 
 std::string show(Vec2 p) { return "(" + shown(p.x) + ", " + shown(p.y) + ")"; }
+
+[[noreturn]] void fail_at(const std::string& what, Vec2 p, const std::string& more = "") {
+  FailureFacts facts;
+  facts.place = {p.x, p.y, 0};
+  facts.in_plane = true;
+  throw Informed<GoalMissed>(what + show(p) + more, facts);
+}
 
 /// Returns the place of a square on Hilbert's curve of order 16.
 std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
@@ -219,7 +227,7 @@ void insert_all(Cdt& cdt) {
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
   }
   double extent = std::max(hi.x - lo.x, hi.y - lo.y);
-  if (!(extent > 0)) throw GoalMissed("all points are at " + show(lo));
+  if (!(extent > 0)) fail_at("all points are at ", lo);
   std::vector<int> order = insertion_order(cdt.points, lo, extent);
   std::vector<Vec2> input = std::move(cdt.points);
   Vec2 c = 0.5 * (lo + hi);
@@ -242,7 +250,7 @@ void insert_all(Cdt& cdt) {
       return incircle(cdt.points[cdt.tris[s][0]], cdt.points[cdt.tris[s][1]], cdt.points[cdt.tris[s][2]], p) >
              0;
     });
-    if (!new_point) throw GoalMissed("two points at " + show(p));
+    if (!new_point) fail_at("two points at ", p);
     // fill appends; here the vertex has its number already
     int v = cavity.fill(cdt, p);
     cdt.points.pop_back();
@@ -260,8 +268,7 @@ void insert_all(Cdt& cdt) {
 void recover(Cdt& cdt, int a, int b, std::uint8_t kind) {
   const std::vector<Vec2>& points = cdt.points;
   auto fail = [&](const char* what, int v) {
-    throw GoalMissed("the segment " + show(points[a]) + " " + show(points[b]) + " " + what + " " +
-                     show(points[v]));
+    fail_at("the segment " + show(points[a]) + " " + show(points[b]) + " " + what + " ", points[v]);
   };
   if (a == b) fail("has no length at", a);
   int h = cdt.half_edge(a, b);
@@ -340,7 +347,7 @@ void carve(Cdt& cdt, int n) {
         side[u] = s;
         todo.push_back(u);
       } else if (side[u] != s) {
-        throw GoalMissed("the border is not closed at " + show(cdt.points[cdt.origin(h)]));
+        fail_at("the border is not closed at ", cdt.points[cdt.origin(h)]);
       }
     }
   }
@@ -348,7 +355,7 @@ void carve(Cdt& cdt, int n) {
   int m = 0;
   for (std::size_t t = 0; t < cdt.tris.size(); ++t)
     if (side[t] == 1) number[t] = m++;
-  if (m == 0) throw GoalMissed("no region inside the border at " + show(cdt.points[0]));
+  if (m == 0) fail_at("no region inside the border at ", cdt.points[0]);
   std::fill(cdt.at.begin(), cdt.at.end(), -1);
   for (std::size_t t = 0; t < cdt.tris.size(); ++t) {
     int k = number[t];
@@ -368,7 +375,7 @@ void carve(Cdt& cdt, int n) {
   cdt.points.resize(n);
   cdt.at.resize(n);
   for (int v = 0; v < n; ++v)
-    if (cdt.at[v] < 0) throw GoalMissed("the point " + show(cdt.points[v]) + " lies outside the border");
+    if (cdt.at[v] < 0) fail_at("the point ", cdt.points[v], " lies outside the border");
 }
 
 }  // namespace

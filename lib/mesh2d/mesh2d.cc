@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lib/core/error.h"
+#include "lib/core/failure_facts.h"
 #include "lib/core/number.h"
 #include "lib/mesh2d/adapt.h"
 #include "lib/mesh2d/plane_metric.h"
@@ -43,10 +44,11 @@ void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
     const double stretch = std::exp(0.25 * (m.a + m.c) + 0.5 * std::hypot(0.5 * (m.a - m.c), m.b));
     const double spacing = (std::nextafter(far, HUGE_VAL) - far) * stretch * site.size;
     if (!(site.size < least_spacings * spacing)) continue;
-    throw GoalMissed("vertex " + std::to_string(chart.mesh.vertex[v]) + " has size " + shown(site.size) +
-                     ", but points of the map are " + shown(spacing) +
-                     " apart there, and sizes of at least " + shown(least_spacings * spacing) +
-                     " are expected; ask for larger sizes");
+    throw Informed<GoalMissed>("vertex " + std::to_string(chart.mesh.vertex[v]) + " has size " +
+                                   shown(site.size) + ", but points of the map are " + shown(spacing) +
+                                   " apart there, and sizes of at least " + shown(least_spacings * spacing) +
+                                   " are expected",
+                               sizes_from(2 * least_spacings * spacing));
   }
 }
 
@@ -209,12 +211,28 @@ PartLines::PartLines(const Lines& given, int n_parts)
   }
 }
 
+/// Turns the place of a failure from one in the plane into the one on the surface that is mapped there.
+static void place_on_surface(const Chart& chart, FailureFacts& facts) {
+  const Place at = locate(chart, {facts.place.x, facts.place.y}, 0);
+  const Tri& t = chart.mesh.tris[at.face];
+  const Vec3 a = chart.mesh.points[t[0]], b = chart.mesh.points[t[1]], c = chart.mesh.points[t[2]];
+  facts.place = at.b0 * a + at.b1 * b + at.b2 * c;
+  facts.reach = std::max({norm(b - a), norm(c - b), norm(a - c)});
+}
+
 PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
                      Mesher mesher) {
   try {
     return mesh(chart, size, lines, part, mesher);
   } catch (const GoalMissed& e) {
-    throw GoalMissed("part " + std::to_string(part) + ": " + e.what());
+    FailureFacts facts = facts_of(e);
+    std::string where;
+    if (std::exchange(facts.in_plane, false)) {
+      place_on_surface(chart, facts);
+      where = " in the plane, (" + shown(facts.place.x) + " " + shown(facts.place.y) + " " +
+              shown(facts.place.z) + ") on the surface";
+    }
+    throw Informed<GoalMissed>("part " + std::to_string(part) + ": " + e.what() + where, facts);
   } catch (const NotAdmissible& e) {
     throw NotAdmissible("part " + std::to_string(part) + ": " + e.what());
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "lib/core/error.h"
+#include "lib/core/failure_facts.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
@@ -29,6 +30,7 @@ constexpr double excess_error = 0.5;          ///< the same near narrow places, 
 constexpr double count_error = 1e-3;          ///< of the number of triangles asked for
 constexpr double most_times = 20;             ///< triangles of narrow strips, over those asked for,
 constexpr double many_triangles = 5e5;        ///< unless they are no more than this: a minute
+constexpr double wide_strip = 0.1;            ///< over the size: beyond what mfeature removes unasked
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
 /// The field while it is made: wishes at the vertices, edges split where they are not linear.
@@ -281,15 +283,22 @@ void convert_data(Surface& s, const std::string& name) {
 }
 
 /// Throws: GoalMissed if narrow strips ask for many times as many triangles as there should be.
-void refuse_costly_strips(const std::vector<SizeBound>& bounds, double triangles, const SizeReport& r) {
+void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const SizeReport& r) {
   const double strips = triangles_of_strips(bounds, infinite);
-  if (strips <= std::max(most_times * triangles, many_triangles)) return;
-  throw GoalMissed(
-      "narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
-      shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow_gap) + " wide at " +
-      shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' + shown(r.narrow_at.z) +
-      "; merge what is thinner than it should be by mclean --weld, ask for as many, or bound the "
-      "sizes by --min");
+  const double limit = std::max(most_times * triangles, many_triangles);
+  if (strips <= limit) return;
+  FailureFacts facts;
+  facts.strip_width = std::max(wide_strip * r.narrow_from, 2 * r.narrow_gap);
+  auto left = [&] {
+    std::erase_if(bounds, [&](const SizeBound& x) { return x.gap < facts.strip_width; });
+    return triangles_of_strips(bounds, infinite);
+  };
+  while (left() > limit) facts.strip_width *= 2;
+  throw Informed<GoalMissed>("narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
+                                 shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow_gap) +
+                                 " wide at " + shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' +
+                                 shown(r.narrow_at.z),
+                             facts);
 }
 
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
@@ -369,7 +378,8 @@ void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, do
   char why[120];
   std::snprintf(why, sizeof why, "size %.6g asks for %.3g triangles, but memory holds about %.2g", smallest,
                 triangles, limit);
-  throw GoalMissed(why);
+  // on a uniform mesh; a tenth is left for what narrow places take
+  throw Informed<GoalMissed>(why, sizes_from(size_for_count(total_area(mesh), 0.9 * limit)));
 }
 
 void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) {
@@ -378,10 +388,11 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
     const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     const double spacing = std::nextafter(far, HUGE_VAL) - far;
     if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
-    throw GoalMissed("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
-                     ", but coordinates there are " + shown(spacing) + " apart, and sizes of at least " +
-                     shown(least_spacings * spacing) +
-                     " are expected; move the surface to the origin, weld it, or ask for larger sizes");
+    throw Informed<GoalMissed>("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                                   ", but coordinates there are " + shown(spacing) +
+                                   " apart, and sizes of at least " + shown(least_spacings * spacing) +
+                                   " are expected; move the surface to the origin, or ask for larger sizes",
+                               sizes_from(2 * least_spacings * spacing));
   }
 }
 

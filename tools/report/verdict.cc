@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "lib/clean/clean.h"
 #include "lib/core/number.h"
@@ -58,6 +59,13 @@ double moved_in(const Stream& stream) {
   return sum;
 }
 
+double required_distance(const Contract& contract) {
+  double most = std::numeric_limits<double>::infinity();
+  for (const Requirement& r : contract)
+    if (r.name == "hausdorff") most = std::min(most, r.limit);
+  return most;
+}
+
 std::vector<std::string> warnings_of(const Findings& f, const Stream& stream) {
   std::vector<std::string> lines;
   if (const Deviation& d = f.distance.deviation; d.worst > 1)
@@ -107,6 +115,19 @@ nlohmann::ordered_json failures_json(const std::vector<Failure>& failures) {
 std::string summary_of(const std::vector<Failure>& failures) {
   return "contract missed: " + failures[0].requirement + ": " + failures[0].fact +
          (failures.size() > 1 ? " (and " + std::to_string(failures.size() - 1) + " more)" : "");
+}
+
+FailureFacts facts_about(const Failure& f, const Mesh& mesh, int opened) {
+  FailureFacts facts;
+  facts.opened = opened;
+  facts.requirement = f.requirement;
+  facts.value = f.value;
+  facts.place = f.place;
+  if (f.triangle < 0 || std::isnan(f.place.x)) return facts;
+  const Tri& t = mesh.tris[f.triangle];
+  for (int i = 0; i < 3; ++i)
+    facts.reach = std::max(facts.reach, norm(mesh.points[t[(i + 1) % 3]] - mesh.points[t[i]]));
+  return facts;
 }
 
 std::vector<std::string> figure_table(const std::vector<Figure>& figures) {

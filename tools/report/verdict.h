@@ -8,6 +8,7 @@
 
 #include "formats/stream.h"
 #include "lib/check/check.h"
+#include "lib/core/failure_facts.h"
 
 namespace meshpipe {
 
@@ -20,6 +21,9 @@ int opened_unasked(const Stream& stream);
 /// Returns how far mfeature has moved points of the input, at most, in removing features.
 double moved_in(const Stream& stream);
 
+/// Returns the distance that the contract requires, over the diagonal; infinite if none.
+double required_distance(const Contract& contract);
+
 /// Returns lines on what the contract may allow: a distance above half the size; and what mclean and mfeature
 /// have done to the input's topology, which the comparison with the cleaned input hides.
 std::vector<std::string> warnings_of(const Findings& findings, const Stream& stream);
@@ -30,6 +34,9 @@ nlohmann::ordered_json failures_json(const std::vector<Failure>& failures);
 
 /// Returns the first failure and the number of the others. Requires: there is one.
 std::string summary_of(const std::vector<Failure>& failures);
+
+/// Returns what a way out is chosen by. `opened`: Findings::opened.
+FailureFacts facts_about(const Failure& failure, const Mesh& mesh, int opened);
 
 /// Returns the lines of a table of reference and result. Counts that are 0 in both are left out, except
 /// genus, loops and self-intersections.

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/check/diagnosis.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "lib/core/error.h"
+#include "lib/core/intersect.h"
+#include "lib/core/topology.h"
+#include "lib/core/weld.h"
+
+namespace meshpipe {
+namespace {
+
+/// Edges are short if they are below this share of the median, and another one is not for a factor of `gap`.
+constexpr double short_share = 0.01, gap = 10;
+
+bool has_sound_indices(const Mesh& mesh) {
+  for (const Tri& t : mesh.tris)
+    for (int v : t)
+      if (v < 0 || v >= (int)mesh.points.size()) return false;
+  return !mesh.tris.empty();
+}
+
+/// Returns the edges of all triangles, sorted.
+std::vector<std::pair<int, int>> sorted_edges(const Mesh& mesh) {
+  std::vector<std::pair<int, int>> edges;
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) edges.push_back(std::minmax({t[i], t[(i + 1) % 3]}));
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+void find_short_edges(const Mesh& mesh, Diagnosis& d) {
+  auto edges = sorted_edges(mesh);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<double> length;
+  for (const auto& [a, b] : edges) length.push_back(norm(mesh.points[b] - mesh.points[a]));
+  if (length.empty()) return;
+  std::sort(length.begin(), length.end());
+  const double most = short_share * length[length.size() / 2];
+  double widest = gap;
+  for (std::size_t i = 0; i + 1 < length.size() && length[i] < most; ++i)
+    if (length[i] > 0 && length[i + 1] >= widest * length[i]) {
+      widest = length[i + 1] / length[i];
+      d.weld = 2 * length[i];  // more than a chain of short edges, less than any other edge
+      d.short_edges = i + 1;
+      d.next_edge = length[i + 1];
+    }
+}
+
+bool is_closed(Mesh mesh) {
+  weld(mesh);
+  const auto edges = sorted_edges(mesh);
+  for (std::size_t i = 0, end; i < edges.size(); i = end) {
+    for (end = i + 1; end < edges.size() && edges[end] == edges[i];) ++end;
+    if (end == i + 1 && edges[i].first != edges[i].second) return false;
+  }
+  return !edges.empty();
+}
+
+double distance_to_edge(const Mesh& mesh, int h, Vec3 p) {
+  const Vec3 a = mesh.points[origin(mesh.tris, h)], along = mesh.points[target(mesh.tris, h)] - a;
+  const double square = dot(along, along);
+  const double t = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
+  return norm(a + t * along - p);
+}
+
+void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const std::vector<int>* patch = s.face.has("patch") ? &s.face.get<int>("patch") : nullptr;
+  const auto* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    const int g = opposite[h];
+    const bool patches = g >= 0 && patch && (*patch)[h / 3] != (*patch)[g / 3];
+    const bool crease = g >= 0 && !patches && model && ((*model)[h / 3] >> h % 3 & 1);
+    if (!(g < 0 || patches || crease) || distance_to_edge(s, h, place) > reach) continue;
+    d.at_border |= g < 0;
+    d.at_patch_border |= patches;
+    d.at_crease |= crease;
+  }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
+  Diagnosis d;
+  if (!has_sound_indices(surface)) return d;
+  if (const auto pairs = self_intersections(surface); !pairs.empty()) {
+    d.intersections = pairs.size();
+    d.intersection = contacts(surface, {pairs[0]}).points.at(0);
+  }
+  find_short_edges(surface, d);
+  d.closed = is_closed(surface);
+  try {
+    if (reach > 0) find_lines_near(surface, place, reach, d);
+  } catch (const NotAdmissible&) {  // not a manifold: it has no borders to be near to
+  }
+  return d;
+}
+
+}  // namespace meshpipe

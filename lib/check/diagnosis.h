@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a surface has that meshes of good triangles fail on, measured after a failure.
+#pragma once
+#include <cstddef>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+struct Diagnosis {
+  std::size_t intersections = 0;  ///< pairs of triangles that intersect,
+  Vec3 intersection{};            ///< and where the first of them do
+  double weld = 0;                ///< tolerance that merges points almost at one place; 0: there are none
+  std::size_t short_edges = 0;    ///< edges no longer than that,
+  double next_edge = 0;           ///< and the shortest of all others
+  bool closed = false;            ///< no edge has one triangle only, where equal points are one
+  // Lines of the surface within `reach` of the place of the failure.
+  bool at_border = false, at_patch_border = false, at_crease = false;
+};
+
+/// Measures a surface. `place` and `reach`: where something failed, and the lengths of edges there; reach 0:
+/// unknown. Reads, where present, face columns `patch` and `model`.
+Diagnosis diagnose(const Surface& surface, Vec3 place, double reach);
+
+}  // namespace meshpipe

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/way_out.h"
+
+#include <gtest/gtest.h>
+
+using namespace meshpipe;
+
+namespace {
+
+constexpr int refused = 4, unreached = 5, missed = 6;
+
+std::string named(int status, const FailureFacts& facts, const Diagnosis& found,
+                  const std::vector<Provenance>& history = {}) {
+  const auto way = way_out(status, facts, history, found);
+  return way ? way->what : "";
+}
+
+}  // namespace
+
+TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
+  Diagnosis found;
+  EXPECT_EQ(named(missed, {}, found), "mwrap");
+  found.at_crease = true;
+  EXPECT_EQ(named(missed, {}, found), "--feature-angle none");
+  found.at_patch_border = true;
+  EXPECT_EQ(named(missed, {}, found), "--merge-auto");
+  found.intersections = 3;
+  EXPECT_EQ(named(missed, {}, found), "mclean --resolve outer");
+  found.weld = 2.3456e-7;
+  EXPECT_EQ(named(missed, {}, found), "mclean --weld 2.35e-07");
+}
+
+TEST(WayOut, NamesNothingThatWasTried) {
+  Diagnosis found;
+  found.weld = 1e-7;
+  found.intersections = 3;
+  found.at_crease = true;
+  std::vector<Provenance> history{{"mclean", "", "--weld=1e-06"}};
+  EXPECT_EQ(named(missed, {}, found, history), "mclean --resolve outer");
+  history.push_back({"mclean", "", "--resolve=outer"});
+  EXPECT_EQ(named(missed, {}, found, history), "mwrap");
+  history.push_back({"mwrap", "", ""});
+  EXPECT_EQ(named(missed, {}, found, history), "--feature-angle none");
+  history.push_back({"mfeature", "", "--feature-angle=none"});
+  EXPECT_EQ(named(missed, {}, found, history), "--accept");
+  EXPECT_EQ(named(unreached, {}, found, history), "");
+}
+
+TEST(WayOut, AsksToLeaveOutAnOptionThatStandsInTheWay) {
+  Diagnosis found;
+  found.at_border = true;
+  EXPECT_EQ(named(missed, {}, found, {{"mlines", "", "--keep-boundary"}}), "without --keep-boundary");
+  FailureFacts facts;
+  facts.requirement = "hausdorff";
+  facts.value = 0.0123456;
+  EXPECT_EQ(named(missed, facts, {}, {{"msize", "", "--size=1 --min=0.5"}}), "without --min");
+  EXPECT_EQ(named(missed, facts, {}, {{"mcheck", "", "--max-error=0.001"}}), "--max-error 0.0125");
+}
+
+TEST(WayOut, KnowsWhatCanBeMet) {
+  EXPECT_EQ(named(unreached, sizes_from(0.12345), {}), "--min 0.124");
+  FailureFacts facts;
+  facts.nonorientable = 5;
+  EXPECT_EQ(named(refused, facts, {}), "mwrap");
+  Diagnosis closed;
+  closed.closed = true;
+  EXPECT_EQ(named(refused, facts, closed), "mclean --resolve outer");
+  EXPECT_EQ(named(refused, facts, closed, {{"mclean", "", "--resolve=outer"}}), "mwrap");
+  facts.orientable = true;
+  EXPECT_EQ(named(refused, facts, {}), "mclean --drop-nonorientable");
+  EXPECT_EQ(named(refused, {}, {}), "");  // the message says which program to run first
+  EXPECT_EQ(named(3, {}, {}), "");
+}
+
+TEST(WayOut, TakesSheetsAtAnEdgeByWhatTheyEnclose) {
+  FailureFacts facts;
+  facts.requirement = "topology";
+  facts.opened = 3;
+  EXPECT_EQ(named(missed, facts, {}), "mwrap");
+  Diagnosis closed;
+  closed.closed = true;
+  EXPECT_EQ(named(missed, facts, closed), "mclean --resolve outer");
+  EXPECT_EQ(named(missed, facts, closed, {{"mclean", "", "--resolve=all"}}), "mwrap");
+}
+
+TEST(WayOut, RemovesStripsThatCostTooMuch) {
+  FailureFacts facts;
+  facts.strip_width = 0.02;
+  EXPECT_EQ(named(unreached, facts, {}), "mclean --weld 0.02");
+  EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--tolerance=0"}}), "--tolerance 0.02");
+  EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--size=1 --tolerance=0.01"}}), "--tolerance 0.02");
+  EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--tolerance=0.03"}}), "mclean --weld 0.02");
+}

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/way_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "lib/core/number.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int not_admissible = 4, goal_missed = 5, contract_missed = 6;
+
+/// A number as a message shows it, not below the value: what is at least that large still is.
+std::string at_least(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
+  return shown(std::ceil(x / unit) * unit);
+}
+
+std::string place(Vec3 p) {
+  std::string text = shown(p.x);
+  text += ' ' + shown(p.y) + ' ' + shown(p.z);
+  return text;
+}
+
+struct Case {
+  int status;
+  const FailureFacts& facts;
+  const std::vector<Provenance>& history;
+  const Diagnosis& found;
+
+  bool ran(const std::string& program) const {
+    return std::any_of(history.begin(), history.end(), [&](const auto& p) { return p.program == program; });
+  }
+  bool used(const std::string& program, const std::string& option) const {
+    return std::any_of(history.begin(), history.end(), [&](const Provenance& p) {
+      const std::string all = ' ' + p.arguments + ' ';
+      return p.program == program &&
+             (all.find(' ' + option + ' ') != all.npos || all.find(' ' + option + '=') != all.npos);
+    });
+  }
+  /// Was mfeature asked to remove less than this? What its own tolerance leaves a larger one does as well.
+  bool removed_less(double width) const {
+    const std::string option = "--tolerance=";
+    return std::any_of(history.begin(), history.end(), [&](const Provenance& p) {
+      const std::size_t at = p.program == "mfeature" ? p.arguments.find(option) : std::string::npos;
+      if (at == std::string::npos) return false;
+      char* end = nullptr;
+      return std::strtod(p.arguments.c_str() + at + option.size(), &end) < width && *end != '%';
+    });
+  }
+  bool missed(const char* requirement) const { return facts.requirement == requirement; }
+};
+
+/// The table: the first row that applies is named. Sizes and options that were asked for come first, then
+/// defects of the input, from those with the most specific repair to mwrap, which repairs all of them but
+/// loses patches, and at last what gives up a promise.
+struct Row {
+  bool (*applies)(const Case&);
+  WayOut (*way)(const Case&);
+};
+const Row table[] = {
+    {[](const Case& c) { return c.facts.least_size > 0; },
+     [](const Case& c) {
+       return WayOut{"--min " + at_least(c.facts.least_size), "smaller sizes cannot be met"};
+     }},
+    {[](const Case& c) { return c.facts.strip_width > 0 && c.removed_less(c.facts.strip_width); },
+     [](const Case& c) {
+       return WayOut{"--tolerance " + at_least(c.facts.strip_width), "narrower strips are removed"};
+     }},
+    {[](const Case& c) { return c.facts.strip_width > 0 && !c.used("mclean", "--weld"); },
+     [](const Case& c) {
+       return WayOut{"mclean --weld " + at_least(c.facts.strip_width),
+                     "the sides of narrower strips become one"};
+     }},
+    {[](const Case& c) {
+       return (c.facts.nonorientable > 0 || (c.missed("topology") && c.facts.opened > 0)) && c.found.closed &&
+              !c.used("mclean", "--resolve");
+     },
+     [](const Case&) {
+       return WayOut{"mclean --resolve outer", "the input is closed, and only what bounds the outside stays"};
+     }},
+    {[](const Case& c) { return c.facts.nonorientable > 0 && c.facts.orientable; },
+     [](const Case& c) {
+       return WayOut{"mclean --drop-nonorientable",
+                     std::to_string(c.facts.nonorientable) + " triangles go, the others are orientable"};
+     }},
+    {[](const Case& c) { return c.facts.nonorientable > 0; },
+     [](const Case&) {
+       return WayOut{"mwrap", "a wrap is orientable"};
+     }},
+    {[](const Case& c) { return c.missed("topology") && c.facts.opened > 0; },
+     [](const Case&) {
+       return WayOut{"mwrap", "a wrap is closed; mclean --sheets split accepts the borders"};
+     }},
+    {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
+     [](const Case&) {
+       return WayOut{"without --min", "smaller triangles come closer"};
+     }},
+    {[](const Case& c) { return c.missed("hausdorff") && c.used("mcheck", "--max-error"); },
+     [](const Case& c) {
+       return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "so close it came"};
+     }},
+    {[](const Case& c) { return c.status >= goal_missed && c.found.weld > 0 && !c.used("mclean", "--weld"); },
+     [](const Case& c) {
+       return WayOut{"mclean --weld " + at_least(c.found.weld),
+                     std::to_string(c.found.short_edges) +
+                         " edges of the input are shorter, and no other below " + shown(c.found.next_edge)};
+     }},
+    {[](const Case& c) { return c.status >= goal_missed && c.found.intersections > 0 && !c.ran("mwrap"); },
+     [](const Case& c) {
+       return WayOut{c.used("mclean", "--resolve") ? "mwrap" : "mclean --resolve outer",
+                     std::to_string(c.found.intersections) +
+                         " pairs of triangles of the input intersect, first at " +
+                         place(c.found.intersection)};
+     }},
+    {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
+     [](const Case&) {
+       return WayOut{"without --keep-boundary", "it is next to points of the border that are held"};
+     }},
+    {[](const Case& c) { return c.found.at_patch_border && !c.used("mfeature", "--merge-auto"); },
+     [](const Case&) {
+       return WayOut{"--merge-auto", "it is next to a border of patches"};
+     }},
+    {[](const Case& c) { return c.found.at_crease && !c.used("mfeature", "--feature-angle"); },
+     [](const Case&) {
+       return WayOut{"--feature-angle none", "it is next to a crease that is taken for a model edge"};
+     }},
+    {[](const Case& c) { return c.status >= goal_missed && c.used("msize", "--min"); },
+     [](const Case&) {
+       return WayOut{"without --min", "smaller triangles may fit"};
+     }},
+    {[](const Case& c) {
+       return c.status >= goal_missed && !c.ran("mwrap") && !c.used("mmultiscale", "--method");
+     },
+     [](const Case&) {
+       return WayOut{"mwrap", "a wrap has no details below its resolution"};
+     }},
+    {[](const Case& c) { return c.status == contract_missed; },
+     [](const Case&) {
+       return WayOut{"--accept", "the result is written as it is"};
+     }},
+};
+
+}  // namespace
+
+std::optional<WayOut> way_out(int status, const FailureFacts& facts, const std::vector<Provenance>& history,
+                              const Diagnosis& diagnosis) {
+  if (status < not_admissible || status > contract_missed) return {};
+  const Case c{status, facts, history, diagnosis};
+  for (const Row& row : table)
+    if (row.applies(c)) return row.way(c);
+  return {};
+}
+
+}  // namespace meshpipe
