@@ -23,6 +23,7 @@ constexpr double opposed = 0.5;           ///< least cosine between the way acro
 constexpr double sharp_turn = 2.6;        ///< radians: a line that turns back by more ends in a sharp corner
 constexpr double least_bend = 1e-3;       ///< radians: edges across flatter ones hardly sag
 constexpr double flat_triangle = 1e-7;    ///< height over length, below which rounding decides on the normal
+constexpr int most_looks = 1000;          ///< at triangles, for each half-edge in the mean
 constexpr int most_pieces = 1000;         ///< of an edge that are measured
 
 double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
@@ -54,6 +55,7 @@ class Search {
     for (int t : queue_) seen_[t] = turn_;
     for (std::size_t i = 0; i < queue_.size(); ++i) {
       const int t = queue_[i];
+      ++work;
       if (!visit(t)) return;
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         if (surface_.is_border(h) || !crosses(h)) continue;
@@ -64,6 +66,8 @@ class Search {
       }
     }
   }
+
+  long long work = 0;  ///< triangles that were looked at
 
  private:
   const Connectivity& surface_;
@@ -227,6 +231,7 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   int other = -1;
   const Vec3 r{gap, gap, gap};
   tree_.overlapping({p - r, p + r}, [&](int u) {
+    ++search.work;
     if (std::abs(dot(normal_[u], normal)) < opposed) return;
     const auto& [i, j, k] = surface_.mesh.tris[u];
     const auto w = closest_on_triangle(p, surface_.point(i), surface_.point(j), surface_.point(k));
@@ -297,14 +302,18 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
   {
     Search search(surface);
 #pragma omp for schedule(dynamic)
-    for (int c = 0; c < (int)found.size(); ++c)
-      for (int h = c * chunk; h < std::min(n, (c + 1) * chunk); ++h) {
-        if (h < surface.opposite[h] && !measure.is_line(h)) continue;
-        const double length = surface.length(h);
-        const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
-        for (int i = 0; i < pieces; ++i)
-          measure_along(measure, h, (double)i / pieces, (i + 1.0) / pieces, length, search, found[c]);
-      }
+    for (int c = 0; c < (int)found.size(); ++c) {
+      // fans of needles, of which each point sees all: strips are measured first, and sheets as time permits
+      const long long most = search.work + (long long)chunk * most_looks;
+      for (bool line : {true, false})
+        for (int h = c * chunk; h < std::min(n, (c + 1) * chunk) && search.work < most; ++h) {
+          if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
+          const double length = surface.length(h);
+          const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
+          for (int i = 0; i < pieces; ++i)
+            measure_along(measure, h, (double)i / pieces, (i + 1.0) / pieces, length, search, found[c]);
+        }
+    }
   }
   std::vector<SizeBound> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
