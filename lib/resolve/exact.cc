@@ -140,7 +140,7 @@ int ExactPoints::line_and_plane(int p, int q, const Tri& t) {
 
 int ExactPoints::line_and_line(int p, int q, int a, int b, View view) {
   const Homogeneous u = exact(p), v = exact(q), x = exact(a), y = exact(b);
-  const auto [i, j] = view;
+  const int i = view.i, j = view.j;
   const Int l = x[j] * y[3] - x[3] * y[j], m = x[3] * y[i] - x[i] * y[3], n = x[i] * y[j] - x[j] * y[i];
   auto value = [&](const Homogeneous& z) -> Int { return l * z[i] + m * z[j] + n * z[3]; };
   return number(between(u, v, value(u), value(v)));
