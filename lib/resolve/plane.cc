@@ -84,7 +84,7 @@ void TriangleArrangement::insert(int p, int q) {
 /// Goes on from p, on the line, to the next point on it: a vertex, or where a fixed edge is crossed. Makes
 /// the way there a fixed edge.
 int TriangleArrangement::step(int p, int on_line) {
-  const auto [first, last] = lines_[on_line];
+  const int first = lines_[on_line][0], last = lines_[on_line][1];
   auto side = [&](int v) { return turn(first, last, v); };
   int along = -1, crossing = -1;
   for_each_spoke(mesh_.opposite, mesh_.leaving(p), [&](int h) {
