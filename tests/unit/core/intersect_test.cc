@@ -26,6 +26,12 @@ TEST(intersect, without_shared_vertices_touching_counts) {
   EXPECT_FALSE(meet(base, {{{0, 0, 1}, {4, 0, 1}, {0, 4, 1}}}));   // parallel
 }
 
+TEST(intersect, ATriangleWithACornerTwiceMeetsNothingThatSharesIt) {
+  const Mesh m{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 2, 3}}};
+  EXPECT_FALSE(triangles_intersect(m, 0, 1));
+  EXPECT_FALSE(triangles_intersect(m, 1, 0));
+}
+
 TEST(intersect, coplanar) {
   EXPECT_TRUE(meet(base, {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}}));  // within
   EXPECT_TRUE(meet(base, {{{-9, -9, 0}, {40, -9, 0}, {-9, 40, 0}}}));
