@@ -140,7 +140,7 @@ bool triangles_intersect(const Mesh& mesh, int s, int t) {
         in_b[shared++] = j;
       }
   if (shared == 3) return true;
-  // a corner twice: no triangle, which is told elsewhere
+  // a corner twice: no triangle, which soundness reports
   if (shared == 2 && (in_a[0] == in_a[1] || in_b[0] == in_b[1])) return false;
   if (shared == 0) return disjoint_triangles_meet(corners(mesh, s), corners(mesh, t));
   const auto& p = mesh.points;
