@@ -7,24 +7,12 @@
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
 namespace meshpipe {
 namespace {
-
-/// Rearranges the rows of a table; rows may be left out or repeated.
-void take_rows(Table& table, const std::vector<int>& rows) {
-  for (Column& c : table.columns)
-    std::visit(
-        [&](auto& old) {
-          std::remove_reference_t<decltype(old)> values(rows.size());
-          for (std::size_t i = 0; i < rows.size(); ++i) values[i] = old[rows[i]];
-          old = std::move(values);
-        },
-        c.data);
-  table.rows = rows.size();
-}
 
 void sort_offending(CleanReport& report) {
   std::sort(report.offending.begin(), report.offending.end(),

@@ -4,22 +4,14 @@
 #include "lib/clean/repair.h"
 #include "lib/core/bvh.h"
 #include "lib/core/predicates.h"
+#include "lib/core/ray.h"
 
 namespace meshpipe {
 namespace {
 
-/// Whether the ray from p in direction x crosses the triangle. Symbolic perturbation (p moves a little in z,
-/// less in y) makes the count right where triangles share an edge or a vertex. `touches`: p lies on it.
+/// Whether the ray from p in direction x crosses the triangle. `touches`: p lies on it.
 bool crossed(Vec3 p, Vec3 a, Vec3 b, Vec3 c, bool& touches) {
-  const Vec3* corner[] = {&a, &b, &c};
-  bool inside = false;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 *low = corner[i], *high = corner[(i + 1) % 3];
-    if ((low->z > p.z) == (high->z > p.z)) continue;
-    if (low->z > high->z) std::swap(low, high);
-    inside ^= orient2d({low->y, low->z}, {high->y, high->z}, {p.y, p.z}) > 0;  // the edge is at larger y
-  }
-  if (!inside) return false;
+  if (!line_passes(p, a, b, c)) return false;
   double side = orient3d(a, b, c, p);
   if (side == 0) {
     touches = true;

@@ -8,6 +8,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/intersect.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/union_find.h"
 #include "lib/defeature/zipper.h"
 
@@ -27,25 +28,19 @@ std::vector<int> images(const MergedSurface& z) {
   return image;
 }
 
-/// Rows of a table for the vertices of the result: those of the input, and values between them.
-void take_rows(Table& table, const std::vector<int>& rows, const std::vector<SplitVertex>& added) {
+/// Appends rows between those of the input, for the vertices that splits have added.
+void add_rows(Table& table, const std::vector<SplitVertex>& added) {
   for (Column& column : table.columns)
     std::visit(
         [&](auto& all) {
-          using T = std::decay_t<decltype(all[0])>;
           for (const SplitVertex& s : added) {
-            if constexpr (std::is_same_v<T, double>)
+            if constexpr (std::is_same_v<std::decay_t<decltype(all[0])>, double>)
               all.push_back((1 - s.t) * all[s.a] + s.t * all[s.b]);
             else
               all.push_back(all[s.t < 0.5 ? s.a : s.b]);
           }
-          std::decay_t<decltype(all)> taken;
-          taken.reserve(rows.size());
-          for (int r : rows) taken.push_back(all[r]);
-          all = std::move(taken);
         },
         column.data);
-  table.rows = rows.size();
 }
 
 /// The result; per triangle, vertex and half-edge of it the triangle of the input, the number in `z`, and the
@@ -77,8 +72,9 @@ Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int
     }
     model.push_back(bits);
   }
-  take_rows(s.vertex, vertex, z.added);
-  take_rows(s.face, face, {});
+  add_rows(s.vertex, z.added);
+  take_rows(s.vertex, vertex);
+  take_rows(s.face, face);
   s.face.set("model", std::move(model));
   return s;
 }

@@ -8,6 +8,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
 #include "lib/core/predicates.h"
+#include "lib/core/ray.h"
 #include "lib/core/union_find.h"
 
 namespace meshpipe {
@@ -82,18 +83,9 @@ Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const Ex
 }
 
 /// Returns the sign of a crossing of the ray from p in direction x with a triangle: +1 if the ray leaves
-/// through it. Symbolic perturbation (p moves a little in z, less in y) makes sums right at edges and
-/// vertices.
+/// through it.
 int leaves(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
-  const Vec3* corner[] = {&a, &b, &c};
-  bool inside = false;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 *low = corner[i], *high = corner[(i + 1) % 3];
-    if ((low->z > p.z) == (high->z > p.z)) continue;
-    if (low->z > high->z) std::swap(low, high);
-    inside ^= orient2d({low->y, low->z}, {high->y, high->z}, {p.y, p.z}) > 0;
-  }
-  if (!inside) return 0;
+  if (!line_passes(p, a, b, c)) return 0;
   const int below = orient3d(a, b, c, p), turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});
   return below * turn > 0 ? turn : 0;
 }

@@ -11,6 +11,7 @@
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/predicates.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/weld.h"
 #include "lib/resolve/arrange.h"
 #include "lib/resolve/outer.h"
@@ -123,18 +124,6 @@ void interpolate(Table& table, const std::vector<Origin>& of, const Surface& inp
         },
         c.data);
   table.rows = of.size();
-}
-
-void take_rows(Table& table, const std::vector<int>& rows) {
-  for (Column& c : table.columns)
-    std::visit(
-        [&](auto& old) {
-          std::remove_reference_t<decltype(old)> values(rows.size());
-          for (std::size_t i = 0; i < rows.size(); ++i) values[i] = old[rows[i]];
-          old = std::move(values);
-        },
-        c.data);
-  table.rows = rows.size();
 }
 
 void take_over(const PieceMesh& s, Surface& surface, ResolveReport& report) {

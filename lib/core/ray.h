@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The line through a point along x, and triangles.
+#pragma once
+#include <utility>
+
+#include "lib/core/predicates.h"
+
+namespace meshpipe {
+
+/// Does the line from p along x, both ways, pass through the triangle? Symbolic perturbation (p moves a
+/// little in z, less in y) makes counts right where triangles share an edge or a vertex.
+inline bool line_passes(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3* corner[] = {&a, &b, &c};
+  bool inside = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 *low = corner[i], *high = corner[(i + 1) % 3];
+    if ((low->z > p.z) == (high->z > p.z)) continue;
+    if (low->z > high->z) std::swap(low, high);
+    inside ^= orient2d({low->y, low->z}, {high->y, high->z}, {p.y, p.z}) > 0;  // the edge is at larger y
+  }
+  return inside;
+}
+
+}  // namespace meshpipe
