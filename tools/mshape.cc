@@ -12,7 +12,7 @@ namespace {
 struct Options {
   std::string kind;
   int triangles = 0;  // 0: the usual number of the kind
-  double aspect = 0, ratio = 0, noise = 0, slivers = 0, dirt = 0;
+  double aspect = 0, ratio = 0, voxels = 0, noise = 0, slivers = 0, dirt = 0;
   int patches = 0;
   bool closed = false;
   int genus = 2, generations = 0, outlets = 0, seed = 1;
@@ -80,6 +80,9 @@ int main(int argc, char** argv) {
                    "tree: radius of a child over its parent's (default 0.8); torus: of the tube over the "
                    "ring's (0.4)")
         ->check(CLI::Range(0.05, 0.95));
+    app.add_option("--voxels", o.voxels,
+                   "as a segmentation shows it: the faces between voxels of this size; ends are closed")
+        ->check(positive_number());
     app.add_option("--noise", o.noise, "move vertices by up to this times the mean edge length")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--slivers", o.slivers, "split this fraction of the edges close to one end")
@@ -93,6 +96,11 @@ int main(int argc, char** argv) {
   };
   auto body = [&](Io& io) {
     Body shape = make(o);
+    if (o.voxels > 0) {
+      Body body{voxels(std::move(shape), o.voxels), {}, {}};
+      body.patch.assign(body.tris.size(), 0);
+      shape = std::move(body);
+    }
     Stream stream;
     static_cast<Mesh&>(stream.surface) = std::move(static_cast<Mesh&>(shape));
     Surface& s = stream.surface;

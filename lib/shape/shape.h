@@ -46,6 +46,11 @@ Mesh genus_surface(int g, int n);
 /// Throws: GoalMissed if tubes touch, or their radii differ too much for one grid.
 Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed, double aspect = 0);
 
+/// Returns the faces between voxels of side h whose center is inside the mesh and those outside, two
+/// triangles each. Loops are closed first, towards their centers. Edges and vertices where voxels touch
+/// diagonally are not manifold. Throws: GoalMissed with the number of voxels if there are too many.
+Mesh voxels(Mesh mesh, double h);
+
 /// Moves every vertex by a random vector of length up to amount times the mean edge length.
 void add_noise(Mesh& mesh, double amount, int seed);
 /// Splits a fraction of the edges close to one end, which leaves triangles with angles of about a degree.

@@ -2,8 +2,8 @@
 """What scripts/check holds the source to: the order of modules, words, and limits."""
 
 # A file may include headers of its own module and of those before it.
-MODULES = ["core", "numeric", "resolve", "clean", "wrap", "feature", "defeature", "param", "partition", "multiscale", "plan",
-           "size", "lines", "mesh2d", "lift", "relax", "check", "shape", "draw", "formats", "tools"]
+MODULES = ["core", "numeric", "resolve", "clean", "wrap", "smooth", "feature", "defeature", "param", "partition", "multiscale",
+           "plan", "size", "lines", "mesh2d", "lift", "relax", "check", "shape", "draw", "formats", "tools"]
 # modules without one header of their own: each of theirs is for everybody
 TOOLBOXES = ["core", "numeric", "formats", "tools"]
 # modules that decide where the surface is cut into parts

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Smoothing of segmentations within a bound: the stairs of voxels and marching cubes.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+struct SmoothOptions {
+  double within = 0;           ///< no vertex is farther than this from where it was; 0: the mean edge length
+  bool keep_features = false;  ///< vertices of model edges (face column `model`) stay
+};
+
+struct SmoothReport {
+  double within = 0;                         ///< the bound
+  double farthest = 0;                       ///< that a vertex was moved
+  Vec3 farthest_at{};                        ///< where that vertex was
+  double volume = 0, volume_change = 0;      ///< enclosed, ends closed by flat caps; after less before
+  double angle_before = 0, angle_after = 0;  ///< root mean square between adjacent triangles, degrees
+  int bounded = 0;                           ///< vertices that the bound holds back
+  int moved_back = 0;                        ///< vertices moved back where triangles would intersect
+  int planar_ends = 0, kept_ends = 0;        ///< border loops that slide in their plane, or stay
+};
+
+/// Smooths the surface, its volume kept within 0.1 %. Border loops in a plane stay in it, others and what
+/// `keep_features` names stay where they are; no two triangles intersect that did not do so before.
+/// Throws: NotAdmissible if there are no triangles, or if they are not an oriented manifold; GoalMissed with
+/// the expected number if `within` is too small to smooth anything, or to keep the volume.
+/// Source: the filter of Taubin, "A signal processing approach to fair surface design", 1995, with the
+/// normal displacement, averaged, in place of his negative steps.
+SmoothReport smooth(Surface& surface, const SmoothOptions& options);
+
+/// Returns lines for the user.
+std::vector<std::string> describe(const SmoothReport& report);
+
+}  // namespace meshpipe
