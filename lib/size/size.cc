@@ -43,9 +43,10 @@ struct Field {
   std::vector<int> opposite{};
   std::vector<double> curvature{};                ///< per triangle; empty if not needed
   std::vector<double> wish{}, size{}, permits{};  ///< per vertex: of the sources, the field, the surface
-  // Where the surface is near itself: the bounds by half-edge of the surface as it came, and which of its
-  // triangles each triangle is part of. Empty where nothing is bounded.
+  // Where the surface is near itself: the bounds by half-edge of the surface as it came and along it, the
+  // triangles of that, and which of them each triangle is part of. Empty where nothing is bounded.
   std::vector<SizeBound> bounds{};
+  std::vector<Tri> given{};
   std::vector<int> root{};
 };
 
@@ -120,14 +121,24 @@ double wish_between(const Field& f, int h) {
 /// Calls visit(bound) for the bounds on the given edge that half-edge h is part of.
 template <class Visit>
 void each_bound(const Field& f, int h, Visit visit) {
+  constexpr double slack = 1e-6;  // of the given edge, for rounding
   const Vec3 a = f.s.points[origin(f.s.tris, h)], b = f.s.points[target(f.s.tris, h)];
   const int t = f.root[h / 3];
-  auto first = std::lower_bound(f.bounds.begin(), f.bounds.end(), 3 * t,
-                                [](const SizeBound& x, int k) { return x.half_edge < k; });
-  for (; first != f.bounds.end() && first->half_edge / 3 == t; ++first) {
-    const Vec3 p = first->place;
-    // on the sub-edge: a way by p is no detour
-    if (norm(p - a) + norm(b - p) <= norm(b - a) * (1 + 1e-9)) visit(*first);
+  auto on_edge = [](const SizeBound& x, int k) { return x.half_edge < k; };
+  auto first = std::lower_bound(f.bounds.begin(), f.bounds.end(), 3 * t, on_edge);
+  while (first != f.bounds.end() && first->half_edge / 3 == t) {
+    const int g = first->half_edge;
+    const auto last = std::lower_bound(first, f.bounds.end(), g + 1, on_edge);
+    const Vec3 p = f.s.points[origin(f.given, g)], along = f.s.points[target(f.given, g)] - p;
+    const auto [from, to] = std::minmax({dot(a - p, along), dot(b - p, along)});
+    const double most = to + slack * dot(along, along);
+    first = std::lower_bound(
+        first, last, from - slack * dot(along, along),
+        [&](const SizeBound& x, double least) { return dot(x.place - p, along) < least; });
+    for (; first != last && dot(first->place - p, along) <= most; ++first)
+      // on the sub-edge: a way by the place is no detour
+      if (norm(first->place - a) + norm(b - first->place) <= norm(b - a) * (1 + 1e-9)) visit(*first);
+    first = last;
   }
 }
 
@@ -166,6 +177,9 @@ void meet_count(Field& f) {
     const double strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
     return std::log((count_for_size(f.s, f.size) + strips) / f.o.triangles);
   };
+  // without other sources all x > 0 are one: narrow places that ask for more there do so everywhere
+  if (!f.bounds.empty() && *std::min_element(f.wish.begin(), f.wish.end()) == infinite && count_at(0) > 0)
+    return;
   constexpr double step = 0.3, most = 20;  // of x: sizes grow by a third a step, up to e^20 times
   double low = std::min(0.0, std::log(size_for_count(total_area(f.s), f.o.triangles) / f.diagonal)),
          high = low;
@@ -357,6 +371,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   }
   if (!bounds.empty()) {
     f.bounds = std::move(bounds);
+    f.given = s.tris;
     f.root.resize(s.tris.size());
     std::iota(f.root.begin(), f.root.end(), 0);
     follow_field();
