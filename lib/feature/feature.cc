@@ -8,6 +8,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/number.h"
+#include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 
@@ -20,12 +21,15 @@ constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
-constexpr double gap = 0.05;       ///< edges between weak and strong, as a share of the strong ones' length
-constexpr double spacing = 1.5;    ///< target lengths between creases, on average
-constexpr double sliver = 0.02;    ///< target lengths: thinner triangles do not show which way they face
-constexpr double long_chain = 5;   ///< mean edges of the input
-constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
-constexpr double short_rim = 0.5;  ///< the same of the rim of a hole
+constexpr double gap = 0.05;         ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double spacing = 1.5;      ///< target lengths between creases, on average
+constexpr double sliver = 0.02;      ///< target lengths: thinner triangles do not show which way they face
+constexpr double slender = 0.05;     ///< height over length: other triangles have normals of their own
+constexpr double widest_band = 1.5;  ///< times `sliver`, to either side: what mfeature removes unasked
+constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
+constexpr double long_chain = 5;     ///< mean edges of the input
+constexpr double short_chain = 3;    ///< target lengths, or mean edges of the input
+constexpr double short_rim = 0.5;    ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
@@ -92,7 +96,7 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
   Network net{.s = s, .opposite = opposite_halfedges(s.tris, (int)s.points.size())};
   const int n = (int)net.opposite.size();
   net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
-  const std::vector<Vec3> normal = sound_normals({s, net.opposite}, sliver * net.size);
+  const std::vector<Vec3> normal = side_normals({s, net.opposite}, sliver * net.size);
   for (std::size_t t = 0; t < s.tris.size(); ++t) {
     const Tri& v = s.tris[t];
     const Vec3 own = area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]);
@@ -337,44 +341,68 @@ void parse_angles(const std::string& text, FeatureOptions& options) {
     throw BadUsage("--feature-angle " + text + " is not auto, none, A or A,B with 0 < B <= A < 180 degrees");
 }
 
-std::vector<Vec3> sound_normals(const Connectivity& surface, double thin) {
-  constexpr double slender = 0.05;   // height over length: other triangles have normals of their own
-  constexpr double rounding = 3e-6;  // of the diagonal: single-precision coordinates, with a margin
-  constexpr int most_steps = 16;     // through thin neighbors
+std::vector<Vec3> sound_normals(const Connectivity& surface) {
+  constexpr int most_steps = 16;  // through thin neighbors
   const double least_height = rounding * diagonal(surface.mesh);
   const int n = surface.n_tris();
-  const std::vector<int>& opposite = surface.opposite;
   std::vector<Vec3> normal(n);
-  std::vector<int> heir(n, -1), second(n, -1);  // the triangle whose normal is taken, or might be
+  std::vector<int> heir(n, -1);  // the triangle whose normal is taken
   for (int t = 0; t < n; ++t) {
     const Vec3 a = surface.area_vector(t);
-    int longest = 3 * t, other = 3 * t + 1;
-    double length = 0, shorter = 0;
-    for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      const double l = surface.length(h);
-      if (l > length) {
-        other = longest, longest = h;
-        shorter = length, length = l;
-      } else if (l > shorter) {
-        other = h, shorter = l;
-      }
-    }
+    int longest = 3 * t;
+    for (int h : {3 * t + 1, 3 * t + 2})
+      if (surface.length(h) > surface.length(longest)) longest = h;
     normal[t] = normalized(a);
-    const double least = std::max(least_height, std::min(thin, slender * length));
-    if (norm(a) >= least * length) continue;
-    heir[t] = opposite[longest] >= 0 ? opposite[longest] / 3 : -1;
-    second[t] = opposite[other] >= 0 ? opposite[other] / 3 : -1;
-  }
-  if (thin > 0) {  // the two halves of a thin strip go with its two sides
-    const std::vector<int> first = heir;
-    for (int t = 0; t < n; ++t)
-      if (first[t] >= 0 && first[first[t]] == t) heir[t] = second[t];
+    if (norm(a) >= least_height * surface.length(longest)) continue;
+    heir[t] = surface.opposite[longest] >= 0 ? surface.opposite[longest] / 3 : -1;
   }
   for (int t = 0; t < n; ++t) {
     int u = t;
     for (int steps = 0; heir[u] >= 0 && steps < most_steps; ++steps) u = heir[u];
     normal[t] = normal[u];
   }
+  return normal;
+}
+
+std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
+  const double least_height = rounding * diagonal(surface.mesh);
+  const int n = surface.n_tris();
+  std::vector<Vec3> normal(n);
+  std::vector<char> is_thin(n), has_none(n);
+  for (int t = 0; t < n; ++t) {
+    const Vec3 a = surface.area_vector(t);
+    const double length =
+        std::max({surface.length(3 * t), surface.length(3 * t + 1), surface.length(3 * t + 2)});
+    normal[t] = normalized(a);
+    has_none[t] = norm(a) < least_height * length;
+    is_thin[t] = has_none[t] || norm(a) < std::min(thin, slender * length) * length;
+  }
+  // from center to center, across the edges
+  auto half_way = [&](int h) {
+    return norm(surface.area_vector(h / 3)) / std::max(surface.length(h), 1e-300) / 3;
+  };
+  std::vector<int> from(n, -1), order, seeds;  // the triangle through which the nearest side is reached
+  std::vector<double> way(n, std::numeric_limits<double>::infinity()), whole(n, 0);
+  for (int h = 0; h < 3 * n; ++h) {
+    const int t = h / 3, o = surface.opposite[h];
+    if (!is_thin[t] || o < 0 || is_thin[o / 3] || !(half_way(h) < way[t])) continue;
+    if (from[t] < 0) seeds.push_back(t);
+    way[t] = half_way(h);
+    from[t] = o / 3;
+  }
+  shortest_paths(seeds, way, [&](int t, auto reach) {
+    order.push_back(t);
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (const int o = surface.opposite[h];
+          o >= 0 && is_thin[o / 3] && reach(o / 3, way[t] + half_way(h) + half_way(o)))
+        from[o / 3] = t;
+  });
+  for (auto t = order.rbegin(); t != order.rend(); ++t) {
+    whole[*t] = std::max(whole[*t], way[*t]);
+    whole[from[*t]] = std::max(whole[from[*t]], whole[*t]);
+  }
+  for (int t : order)
+    if (has_none[t] || whole[t] <= widest_band * thin) normal[t] = normal[from[t]];
   return normal;
 }
 

@@ -35,9 +35,13 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<int>* given = nullptr);
 
-/// Returns unit normals of the triangles. One too thin for single-precision coordinates, or thinner than
-/// `thin` and a twentieth of its length, takes the normal of the neighbor across its longest edge; the two
-/// halves of a strip (`thin` > 0) take those of the neighbors across their second longest edges.
-std::vector<Vec3> sound_normals(const Connectivity& surface, double thin = 0);
+/// Returns unit normals of the triangles. One too thin for single-precision coordinates takes the normal of
+/// the neighbor across its longest edge.
+std::vector<Vec3> sound_normals(const Connectivity& surface);
+
+/// Returns unit normals of the triangles. Those thinner than `thin` and a twentieth of their length take that
+/// of the nearest other triangle across them, where the band of such triangles is at most 3 `thin` wide, and
+/// those too thin for single-precision coordinates in any case.
+std::vector<Vec3> side_normals(const Connectivity& surface, double thin);
 
 }  // namespace meshpipe

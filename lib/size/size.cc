@@ -132,9 +132,9 @@ void each_bound(const Field& f, int h, Visit visit) {
     const Vec3 p = f.s.points[origin(f.given, g)], along = f.s.points[target(f.given, g)] - p;
     const auto [from, to] = std::minmax({dot(a - p, along), dot(b - p, along)});
     const double most = to + slack * dot(along, along);
-    first = std::lower_bound(
-        first, last, from - slack * dot(along, along),
-        [&](const SizeBound& x, double least) { return dot(x.place - p, along) < least; });
+    first =
+        std::lower_bound(first, last, from - slack * dot(along, along),
+                         [&](const SizeBound& x, double least) { return dot(x.place - p, along) < least; });
     for (; first != last && dot(first->place - p, along) <= most; ++first)
       // on the sub-edge: a way by the place is no detour
       if (norm(first->place - a) + norm(b - first->place) <= norm(b - a) * (1 + 1e-9)) visit(*first);

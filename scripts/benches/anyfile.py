@@ -3,7 +3,7 @@
 
 usage: scripts/bench anyfile [options] [FILE ...]
 
-Surfaces are made by number, each from its number alone: one of mshape's, a prism, a turned profile, a bundle of cones or
+Surfaces are made by number, each from its number alone: one of mshape's, a prism, a part from a lathe, a bundle of cones or
 voxels (or one of the given files), to which up to three things are done: decimated, roughened, rounded to few digits, cut
 by a plane, punctured, united with another, stretched, tilted, scaled, torn into a soup. One mremesh of each with its
 defaults; where two were united, every other time with --resolve outer. One row for each that is not status 0 in the first
@@ -13,6 +13,7 @@ round within the time allowed, then the shares.
   --limit S              seconds until one is killed (default 60)
   --allowed S            seconds beyond which one is in the table (default 3, and 1 per 3000 triangles of the result)
   --keep DIR             the surfaces stay there
+  --all                  a row for every surface
   --bin DIR              programs (default build/bin)
   --json FILE            all rows as JSON
 """
@@ -58,8 +59,8 @@ def shape(rng, work):
     return read(path, work)
 
 
-def turned(profile, m):
-    """The profile (radius, height), both ends on the axis, turned in m steps."""
+def revolved(profile, m):
+    """The profile (radius, height), both ends on the axis, revolved in m steps."""
     points = [(0.0, 0.0, profile[0][1])]
     for r, z in profile[1:-1]:
         points += [(r * math.cos(2 * math.pi * j / m), r * math.sin(2 * math.pi * j / m), z) for j in range(m)]
@@ -76,7 +77,7 @@ def turned(profile, m):
 
 
 def lathe(rng, _):
-    """A turned part: cylinders, cones, chamfers, grooves, some very narrow."""
+    """A part from a lathe: cylinders, cones, chamfers, grooves, some very narrow."""
     profile, r, z = [(0.0, 0.0)], rng.uniform(0.5, 1), 0.0
     profile.append((r, z))
     for _ in range(rng.randrange(1, 7)):
@@ -86,7 +87,7 @@ def lathe(rng, _):
         if rng.random() < 0.4:
             z += 10 ** rng.uniform(-3, -0.5)
         profile.append((r, z))
-    return turned([*profile, (0.0, z)], rng.choice([6, 16, 24, 48, 90]))
+    return revolved([*profile, (0.0, z)], rng.choice([6, 16, 24, 48, 90]))
 
 
 def prism(rng, _):
@@ -109,11 +110,11 @@ def prism(rng, _):
 
 
 def cones(rng, _):
-    """Thin cones from one place: they cross near their tips."""
+    """Thin cones from one place: they cross near the apex."""
     meshes = []
     for _ in range(rng.randrange(2, 6)):
         thick = 10 ** rng.uniform(-1.5, -0.3)
-        meshes.append(tilted(turned([(0.0, 0.0), (thick, 1.0), (0.0, 1.0)], rng.choice([5, 12, 32])), rng))
+        meshes.append(tilted(revolved([(0.0, 0.0), (thick, 1.0), (0.0, 1.0)], rng.choice([5, 12, 32])), rng))
     return joined(meshes)
 
 
@@ -237,7 +238,7 @@ def punctured(mesh, rng):
 
 
 def torn(mesh, rng):
-    """Every triangle with points of its own, in another order, some turned over."""
+    """Every triangle with points of its own, in another order, some reversed."""
     points, triangles, flips = [], [], rng.choice([0, 0, 0.1])
     for t in rng.sample(mesh[1], len(mesh[1])):
         n = len(points)
@@ -287,6 +288,7 @@ def main(words):
     p.add_argument("--limit", type=float, default=60)
     p.add_argument("--allowed", type=float, default=3)
     p.add_argument("--keep")
+    p.add_argument("--all", action="store_true")
     args = common.parse(p, words)
     rows, statuses = [], collections.Counter()
     with tempfile.TemporaryDirectory() as work:
@@ -306,7 +308,7 @@ def main(words):
             figures["late"] = run.cpu > args.allowed + figures["out"] / 3000
             statuses[run.status] += 1
             rows.append(figures)
-            if run.status or figures["rounds"] > 1 or figures["late"]:
+            if args.all or run.status or figures["rounds"] > 1 or figures["late"]:
                 row(number, figures["what"], figures["in"], figures["out"], run.status, figures["rounds"], f"{run.cpu:.1f}", figures["message"][:200])
     n = len(rows)
     share = lambda k: f"{k} ({100 * k / max(1, n):.0f} %)"

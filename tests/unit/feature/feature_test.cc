@@ -186,3 +186,31 @@ TEST(Feature, TheRimOfAThinPlateIsOneCrease) {
   EXPECT_EQ(r.slivers, 0);
   EXPECT_EQ(r.crease_edges, 12);
 }
+
+//  the same with a rim of four rows, with and without a step: top and bottom meet in its middle
+TEST(Feature, TheRimOfSeveralRowsIsOneCrease) {
+  for (double step : {0.0, 0.002}) {
+    Surface s;
+    const int rows = 4;
+    for (int i = 0; i <= rows; ++i)
+      for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+        const double side = 5 - (i > rows / 2 ? step : 0);
+        s.points.push_back({side * x, side * y, 0.005 * (i - (step > 0 && i > rows / 2 ? 1 : 0))});
+      }
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const int a = 4 * i + j, b = 4 * i + (j + 1) % 4;
+        s.tris.push_back({a, b, b + 4});
+        s.tris.push_back({a, b + 4, a + 4});
+      }
+    for (const Tri& t : {Tri{0, 2, 1}, {0, 3, 2}, {16, 17, 18}, {16, 18, 19}}) s.tris.push_back(t);
+    s.face.rows = s.tris.size();
+    FeatureOptions options;
+    options.size = 5;
+    const FeatureReport r = mark_features(s, options);
+    EXPECT_GE(r.crease_edges, 4);
+    EXPECT_LE(r.crease_edges, 8);
+    options.size = 0.01;  // a band of several sizes stays as it is
+    EXPECT_GE(mark_features(s, options).crease_edges, step > 0 ? 20 : 12);
+  }
+}
