@@ -1,81 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <queue>
 #include <tuple>
 
 #include "lib/clean/repair.h"
+#include "lib/core/least_area.h"
 #include "lib/core/predicates.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 
 namespace meshpipe {
 namespace {
-
-constexpr double impossible = std::numeric_limits<double>::infinity();
-/// Weight of squared edge lengths against the area, over the squared number of corners: decides between
-/// triangulations of a plane hole, which all have the same area unless they fold. A fold at the rim of n
-/// corners costs an area of 1/n of what it saves in lengths, times the angle of the rim there, about 1/n.
-constexpr double edge_weight = 1e-3;
-
-/// The best triangulation of a loop by dynamic programming: best[i][j] is the least cost of the polygon i,
-/// i+1 ... j.
-class Polygon {
- public:
-  Polygon(const std::vector<Vec3>& corners, const std::vector<char>& joined)
-      : p_(corners),
-        n_((int)corners.size()),
-        joined_(joined),
-        edge_weight_(edge_weight / n_ / n_),
-        cost_(n_ * n_, 0),
-        apex_(n_ * n_, -1) {}
-
-  /// Triangles as places in the loop; none if every triangulation needs an edge that the mesh has already.
-  std::vector<Tri> triangles() {
-    for (int span = 2; span < n_; ++span)
-      for (int i = 0; i + span < n_; ++i) {
-        const int j = i + span;
-        double least = impossible;
-        const bool chord = span < n_ - 1;  // the last edge, n-1 to 0, is the loop's own
-        if (!chord || !joined_[i * n_ + j])
-          for (int k = i + 1; k < j; ++k) {
-            const double c = cost_[i * n_ + k] + cost_[k * n_ + j] + cost(i, k, j);
-            if (c < least) {
-              least = c;
-              apex_[i * n_ + j] = k;
-            }
-          }
-        cost_[i * n_ + j] = least;
-      }
-    std::vector<Tri> tris;
-    if (cost_[n_ - 1] == impossible) return tris;
-    std::vector<std::array<int, 2>> stack{{0, n_ - 1}};
-    while (!stack.empty()) {
-      const auto [i, j] = stack.back();
-      stack.pop_back();
-      if (j - i < 2) continue;
-      const int k = apex_[i * n_ + j];
-      tris.push_back({i, k, j});
-      stack.push_back({i, k});
-      stack.push_back({k, j});
-    }
-    return tris;
-  }
-
- private:
-  double cost(int i, int k, int j) const {
-    const Vec3 a = p_[k] - p_[i], b = p_[j] - p_[k], c = p_[i] - p_[j];
-    return 0.5 * norm(cross(a, c)) + edge_weight_ * (dot(a, a) + dot(b, b) + dot(c, c));
-  }
-
-  const std::vector<Vec3>& p_;
-  const int n_;
-  const std::vector<char>& joined_;
-  const double edge_weight_;
-  std::vector<double> cost_;
-  std::vector<int> apex_;
-};
 
 /// Loops of more corners than this have ears cut off until they have no more: about a second of the
 /// optimization, which is cubic.
@@ -248,7 +184,7 @@ class HoleFiller {
         for (int j : {a, b})
           if (j >= 0 && number[j] >= 0) joined[i * m + number[j]] = joined[number[j] * m + i] = 1;
       });
-    const std::vector<Tri> inner = Polygon(corners, joined).triangles();
+    const std::vector<Tri> inner = least_area_triangles(corners, joined);
     if (inner.empty()) return {};
     for (const Tri& t : inner) tris.push_back({kept[t[0]], kept[t[1]], kept[t[2]]});
     return tris;

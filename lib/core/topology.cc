@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lib/core/edges.h"
+#include "lib/core/eigenvectors.h"
 #include "lib/core/error.h"
 #include "lib/core/parallel.h"
 
@@ -107,35 +108,12 @@ int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& op
 
 namespace {
 
-/// Computes the unit eigenvectors of a symmetric matrix by Jacobi rotations, which converge quadratically.
-std::array<Vec3, 3> eigenvectors(std::array<std::array<double, 3>, 3> m) {
-  constexpr int sweeps = 12;  // of which about six change anything
-  double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (int turn = 0; turn < 3 * sweeps; ++turn) {
-    const int p = turn % 3, q = (p + 1) % 3;
-    if (m[p][q] == 0) continue;
-    const double angle = 0.5 * std::atan2(2 * m[p][q], m[p][p] - m[q][q]);
-    const double c = std::cos(angle), s = std::sin(angle);
-    auto rotate = [&](double& x, double& y) {
-      const double before = x;
-      x = c * before + s * y;
-      y = c * y - s * before;
-    };
-    for (int k = 0; k < 3; ++k) rotate(m[k][p], m[k][q]);
-    for (int k = 0; k < 3; ++k) rotate(m[p][k], m[q][k]);
-    for (int k = 0; k < 3; ++k) rotate(axes[p][k], axes[q][k]);
-  }
-  std::array<Vec3, 3> vectors;
-  for (int k = 0; k < 3; ++k) vectors[k] = {axes[k][0], axes[k][1], axes[k][2]};
-  return vectors;
-}
-
 /// Longest side of the box along the principal axes of the points, which turns with them.
 double box_size(const std::vector<Vec3>& points) {
   Vec3 mean;
   for (Vec3 p : points) mean = mean + p;
   mean = (1.0 / (double)points.size()) * mean;
-  std::array<std::array<double, 3>, 3> inertia{};
+  Matrix3 inertia{};
   for (Vec3 p : points) {
     const double d[3] = {p.x - mean.x, p.y - mean.y, p.z - mean.z};
     for (int i = 0; i < 3; ++i)

@@ -2,7 +2,7 @@
 // The common ground of the three plane meshers: a triangulation in the plane whose vertices lie on the
 // surface, and operations on it that are judged in space.
 #pragma once
-#include "lib/mesh2d/cdt.h"
+#include "lib/core/cdt.h"
 #include "lib/mesh2d/plane_metric.h"
 
 namespace meshpipe {

@@ -2,8 +2,8 @@
 """What scripts/check holds the source to: the order of modules, words, and limits."""
 
 # A file may include headers of its own module and of those before it.
-MODULES = ["core", "numeric", "resolve", "clean", "wrap", "smooth", "feature", "defeature", "param", "partition", "multiscale",
-           "plan", "size", "lines", "mesh2d", "lift", "relax", "check", "shape", "draw", "formats", "tools"]
+MODULES = ["core", "numeric", "resolve", "clean", "wrap", "smooth", "cap", "feature", "defeature", "param", "partition",
+           "multiscale", "plan", "size", "lines", "mesh2d", "lift", "relax", "check", "shape", "draw", "formats", "tools"]
 # modules without one header of their own: each of theirs is for everybody
 TOOLBOXES = ["core", "numeric", "formats", "tools"]
 # modules that decide where the surface is cut into parts
@@ -16,7 +16,7 @@ LIMITS = {
     "functions": (0, "functions of more than 80 lines"),
     "comments": (0, "comments on a declaration of more than 8 lines"),
     "words": (0, "words with a better one in scripts/checks/tables.py"),
-    "lib-lines": (29450, "lines in lib/"),
+    "lib-lines": (31200, "lines in lib/"),
     "cutting-lines": (4590, "lines of the modules that cut: partition, multiscale, plan"),
     "cutting-in-param": (0, "includes of those in lib/param"),
     "eigen": (0, "includes of Eigen outside lib/numeric"),
@@ -59,6 +59,8 @@ WORD_EXCEPTIONS = [
     ("walls?", "CMakeLists.txt", "-Wall", "the compiler's option"),
     ("walls?", "scripts/benches/*", "", "time by the clock on the wall"),
     ("walls?", "lib/numeric/sparse.h", "wall", "time by the clock on the wall"),
+    ("walls?", "lib/cap/*", "", "real ones: of vessels"),
+    ("walls?", "tools/mcap.*", "", "real ones: of vessels"),
     ("walls?", "lib/shape/shape.cc", "", "real ones: of bodies"),
     ("walls?", "lib/check/examine.h", "thin walls", "real ones: of bodies"),
     ("walls?", "formats/*", "", "real ones: names of patches"),

@@ -3,13 +3,13 @@
 #include <benchmark/benchmark.h>
 
 #include "lib/core/bvh.h"
+#include "lib/core/cdt.h"
 #include "lib/core/chart.h"
 #include "lib/core/cut.h"
 #include "lib/core/edit_mesh.h"
 #include "lib/core/intersect.h"
 #include "lib/core/random.h"
 #include "lib/core/topology.h"
-#include "lib/mesh2d/cdt.h"
 #include "lib/numeric/laplacian.h"
 #include "lib/shape/shape.h"
 

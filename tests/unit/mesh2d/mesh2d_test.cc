@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
+#include "lib/core/cdt.h"
 #include "lib/core/error.h"
 #include "lib/core/predicates.h"
 #include "lib/core/topology.h"
-#include "lib/mesh2d/cdt.h"
 #include "lib/mesh2d/plane_metric.h"
 #include "lib/mesh2d/refine.h"
 

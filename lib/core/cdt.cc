@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/mesh2d/cdt.h"
+#include "lib/core/cdt.h"
 
 #include <algorithm>
 #include <deque>

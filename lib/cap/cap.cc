@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/cap/cap.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "lib/cap/steps.h"
+#include "lib/core/number.h"
+#include "lib/core/take_rows.h"
+#include "lib/core/topology.h"
+
+namespace meshpipe {
+namespace {
+
+/// Share of the diagonal by which a plane rim is off for the single precision of a file: caps make it plane.
+constexpr double rounding = 1e-6;
+/// Radii below the lowest vertex of a rim at which it is cut, if moving it would fold the wall.
+constexpr double below_rim = 0.1;
+
+/// Radii that a rim is moved at most to make it plane: one that is farther out is cut, or is no vessel's end
+/// but a hole in its wall.
+constexpr double most_moved = 0.25;
+
+using Planes = std::vector<std::optional<Plane>>;
+
+/// Runs the steps of treat_ends on one surface.
+struct Treatment {
+  Surface& surface;
+  std::vector<End>& ends;
+  const CapOptions& options;
+  std::vector<EndReport> reports;
+  Growth growth;
+  std::vector<int> owner;  ///< per triangle: the end that it was made for, -1: none
+  std::vector<int> like;   ///< per end: a triangle at its rim
+
+  int n() const { return (int)ends.size(); }
+  void measure_all() {
+    for (End& end : ends) measure(surface, end);
+  }
+
+  Planes trim() {
+    if (!(options.trim > 0)) return Planes(n());
+    std::vector<double> length;
+    for (const End& end : ends) length.push_back(options.trim * (options.trim_by_radius ? end.radius : 1));
+    const Planes planes = planes_within(surface, ends, length);
+    const std::vector<std::string> why = cut_ends(surface, ends, planes);
+    for (int i = 0; i < n(); ++i) {
+      if (!why[i].empty()) refuse(ends, i, why[i] + "; cut less");
+      reports[i].trimmed = length[i];
+    }
+    return planes;
+  }
+
+  /// Moves rims into the planes given; returns the ends that this would fold.
+  std::vector<char> flatten(const Planes& planes) {
+    const std::vector<double> moved = flatten_ends(surface, ends, planes);
+    std::vector<char> failed(n(), 0);
+    for (int i = 0; i < n(); ++i) {
+      failed[i] = moved[i] < 0;
+      reports[i].moved = std::max(reports[i].moved, moved[i]);
+    }
+    measure_all();
+    return failed;
+  }
+
+  /// Cuts off what of the ends flagged is not below all of their rims, and makes them plane. Where that would
+  /// remove a branch they stay as they are, for a cap that is not plane.
+  void cut_level(const std::vector<char>& flagged) {
+    Planes planes(n());
+    std::vector<double> depth(n(), 0);
+    for (int i = 0; i < n(); ++i) {
+      if (!flagged[i]) continue;
+      const Plane plane{ends[i].center, ends[i].normal};
+      double lowest = 0;
+      for (const std::vector<int>& rim : ends[i].rims)
+        for (int v : rim) lowest = std::min(lowest, plane.height(surface.points[v]));
+      depth[i] = below_rim * ends[i].radius - lowest;
+      planes[i] = Plane{plane.point - depth[i] * plane.normal, plane.normal};
+    }
+    for (bool again = true; again;) {
+      const std::vector<std::string> why = cut_ends(surface, ends, planes);
+      again = false;
+      for (int i = 0; i < n(); ++i) {
+        if (why[i].empty()) continue;
+        if (!options.cap || options.extend > 0)
+          refuse(ends, i,
+                 "its rim, which is " + shown(ends[i].planarity) +
+                     " out of its plane, cannot be made plane: " + why[i] +
+                     "; try --trim, or close it with mclean --fill-holes");
+        planes[i].reset();
+        again = true;
+      }
+    }
+    for (int i = 0; i < n(); ++i)
+      if (planes[i]) reports[i].trimmed = depth[i];
+    split_chords(surface, ends);
+    expect_none(flatten(planes));
+  }
+
+  void expect_none(const std::vector<char>& failed) {
+    for (int i = 0; i < n(); ++i)
+      if (failed[i])
+        refuse(ends, i,
+               "its rim, which is " + shown(ends[i].planarity) +
+                   " out of its plane, cannot be moved into it " +
+                   "without folding or intersecting the wall; try --trim");
+  }
+
+  void make_plane(const Planes& cuts) {
+    split_chords(surface, ends);
+    Planes planes = cuts;
+    const double noise = rounding * diagonal(surface);
+    const bool shapes = options.flatten || options.cap || options.extend > 0;
+    std::vector<char> winds(n(), 0);
+    for (int i = 0; i < n(); ++i) {
+      if (!shapes && !cuts[i]) continue;
+      winds[i] = !is_simple(i);
+      winds[i] |= ends[i].planarity > most_moved * ends[i].radius;
+      if (!cuts[i] && !winds[i] && (options.flatten || ends[i].planarity <= noise))
+        planes[i] = Plane{ends[i].center, ends[i].normal};
+    }
+    std::vector<char> failed = flatten(planes);
+    if (options.trim > 0) expect_none(failed);
+    for (int i = 0; i < n(); ++i) failed[i] |= winds[i];
+    if (options.flatten && std::count(failed.begin(), failed.end(), 1) > 0) cut_level(failed);
+  }
+
+  /// Returns whether a rim is a simple polygon as seen along its normal. Throws if it is not and may not be
+  /// cut.
+  bool is_simple(int i) const {
+    const End& end = ends[i];
+    if (!(end.area > 0)) refuse(ends, i, "its rim has no area; close it with mclean --fill-holes");
+    const std::optional<Vec3> place = crossing_of(surface, end);
+    if (place && (options.trim > 0 || !options.flatten))
+      refuse(ends, i,
+             std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
+                 ", seen along its normal, near " + shown(*place) + "; it is " + shown(end.planarity) +
+                 " out of its plane; try " + (options.trim > 0 ? "to cut more" : "--flatten or --trim"));
+    return !place;
+  }
+
+  void find_faces_like() {
+    const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+    std::vector<int> at(surface.points.size(), -1);
+    for (std::size_t h = 0; h < opposite.size(); ++h)
+      if (opposite[h] < 0) at[origin(surface.tris, (int)h)] = (int)h / 3;
+    for (int i = 0; i < n(); ++i) like[i] = at[ends[i].rims[0][0]];
+  }
+
+  void extend() {
+    for (int i = 0; i < n(); ++i) {
+      reports[i].extended = options.extend * ends[i].radius;
+      reports[i].extension = extend_end(surface, ends[i], reports[i].extended, growth);
+      owner.resize(surface.tris.size(), i);
+    }
+    std::vector<char> flagged(surface.tris.size(), 0);
+    for (std::size_t t = 0; t < owner.size(); ++t) flagged[t] = owner[t] >= 0;
+    for (const Collision& c : collisions(surface, flagged)) {
+      const int i = owner[c.triangle], j = owner[c.other];
+      refuse(ends, i,
+             "its extension meets " +
+                 (j == i  ? std::string("itself or its cap")
+                  : j < 0 ? std::string("the surface")
+                          : "that of " + title_of(ends, j)) +
+                 " near " + shown(c.place) + "; extend less");
+    }
+    measure_all();
+  }
+
+  /// Caps all ends, and those again that meet something, by least area. Throws if some still do.
+  void cap() {
+    const std::size_t before = surface.tris.size();
+    std::vector<char> least_area(n(), 0), flagged;
+    for (int i = 0; i < n(); ++i) least_area[i] = crossing_of(surface, ends[i]).has_value();
+    for (bool again = false;; again = true) {
+      surface.tris.resize(before);
+      owner.resize(before);
+      for (int i = 0; i < n(); ++i) {
+        reports[i].cap = cap_end(surface, ends[i], least_area[i]);
+        reports[i].flat = ends[i].planarity <= 1e-3 * rounding * diagonal(surface);
+        owner.resize(surface.tris.size(), i);
+      }
+      flagged.assign(before, 0);
+      flagged.resize(surface.tris.size(), 1);
+      const std::vector<Collision> found = collisions(surface, flagged);
+      if (found.empty() && std::none_of(reports.begin(), reports.end(), [](auto& r) { return r.cap == 0; }))
+        return;
+      for (const Collision& c : found) {
+        const int i = owner[c.triangle];
+        if (again || least_area[i] || reports[i].flat)
+          refuse(ends, i,
+                 "its cap would meet the surface near " + shown(c.place) + "; its rim is " +
+                     shown(ends[i].planarity) + " out of its plane; try " +
+                     (reports[i].flat || options.flatten ? "--trim" : "--flatten"));
+        least_area[i] = 1;
+      }
+      for (int i = 0; i < n(); ++i)
+        if (reports[i].cap == 0) refuse(ends, i, "its rim has too many vertices out of its plane for a cap");
+    }
+  }
+
+  /// Gives columns to all that was added, new patches, and model edges around them.
+  void finish() {
+    std::vector<int> rows(surface.vertex.rows);
+    std::iota(rows.begin(), rows.end(), 0);
+    rows.insert(rows.end(), growth.vertex_like.begin(), growth.vertex_like.end());
+    take_rows(surface.vertex, rows);
+    const std::size_t before = surface.face.rows;
+    rows.resize(before);
+    std::iota(rows.begin(), rows.end(), 0);
+    for (std::size_t t = before; t < surface.tris.size(); ++t) rows.push_back(like[owner[t]]);
+    take_rows(surface.face, rows);
+    if (!surface.face.has("model")) surface.face.set("model", std::vector<std::uint8_t>(surface.tris.size()));
+    std::vector<int>& patch = surface.face.get<int>("patch");
+    int next = patch.empty() ? 1 : std::max(0, *std::max_element(patch.begin(), patch.end())) + 1;
+    const int first_new = next;
+    for (EndReport& r : reports)
+      if (r.cap) r.cap_patch = next++;
+    for (EndReport& r : reports)
+      if (r.extension) r.extension_patch = next++;
+    std::size_t t = before;
+    for (const EndReport& r : reports)
+      for (int k = 0; k < r.extension; ++k) patch[t++] = r.extension_patch;
+    for (const EndReport& r : reports)
+      for (int k = 0; k < r.cap; ++k) patch[t++] = r.cap_patch;
+    if (t > before) mark_borders(first_new);
+  }
+
+  /// Marks the borders of patches from `first` on as model edges.
+  void mark_borders(int first) {
+    const auto& patch = surface.face.get<int>("patch");
+    auto& model = surface.face.get<std::uint8_t>("model");
+    for (std::size_t t = owner.size() - added(); t < owner.size(); ++t) model[t] = 0;
+    const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+    for (int h = 0; h < (int)opposite.size(); ++h) {
+      const int g = opposite[h];
+      if (g < 0 || patch[h / 3] == patch[g / 3] || std::max(patch[h / 3], patch[g / 3]) < first) continue;
+      model[h / 3] |= (std::uint8_t)(1 << h % 3);
+      model[g / 3] |= (std::uint8_t)(1 << g % 3);
+    }
+  }
+  std::size_t added() const {
+    std::size_t sum = 0;
+    for (const EndReport& r : reports) sum += (std::size_t)(r.extension + r.cap);
+    return sum;
+  }
+};
+
+}  // namespace
+
+std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, const CapOptions& options) {
+  const std::size_t n = ends.size();
+  Treatment work{surface, ends, options, std::vector<EndReport>(n), {}, {}, std::vector<int>(n, 0)};
+  if (!surface.face.has("patch")) surface.face.set("patch", std::vector<int>(surface.tris.size(), 1));
+  if (n == 0) return {};
+  work.make_plane(work.trim());
+  work.find_faces_like();
+  work.owner.assign(surface.tris.size(), -1);
+  if (options.extend > 0) work.extend();
+  if (options.cap) work.cap();
+  work.finish();
+  return work.reports;
+}
+
+}  // namespace meshpipe

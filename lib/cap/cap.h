@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The open ends of a surface, such as a vessel's: cut back, made planar, extended and capped.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// A border loop, or two of which one lies within the other, as at the end of a thick wall.
+struct End {
+  std::string name;
+  /// Vertices of each loop, the outer one first; it is counterclockwise as seen from outside.
+  std::vector<std::vector<int>> rims;
+  Vec3 center;           ///< mean over the length of the rims
+  Vec3 normal;           ///< outward unit vector along the loops' area vector, zero if that vanishes
+  double area = 0;       ///< length of the area vector: what a cap covers
+  double radius = 0;     ///< of the circle of the outer loop's area
+  double roundness = 0;  ///< 4 pi area / length^2 of the outer loop: 1 for a circle
+  double planarity = 0;  ///< largest distance of a rim's vertex from the plane of `center` and `normal`
+};
+
+/// Reverses all triangles if the surface, with its ends closed, has a negative volume. Returns whether it
+/// has. Throws like find_ends.
+bool orient_outward(Surface& surface);
+
+/// Returns the ends by area, the largest first, named inlet, outlet_1, outlet_2 ...
+/// Throws: NotAdmissible unless the surface is an oriented manifold without pinched vertices.
+std::vector<End> find_ends(const Mesh& mesh);
+
+/// A name for the end nearest to a place, or for the next in the order of area.
+struct EndName {
+  std::string text;
+  bool placed = false;
+  Vec3 place{};
+};
+/// Names ends: first those with a place, then the others in order; the rest keep their names, with another
+/// number if that is taken. Throws: NotAdmissible if there are more names than ends, or two for one end.
+void name_ends(std::vector<End>& ends, const std::vector<EndName>& names);
+
+/// Returns "end 3, outlet_2, at (x, y, z)" for messages; `i` counts from 0.
+std::string title_of(const std::vector<End>& ends, int i);
+
+struct CapOptions {
+  double trim = 0;              ///< cuts this length off each end; 0: nothing
+  bool trim_by_radius = false;  ///< `trim` is in radii of the end
+  bool flatten = false;         ///< moves the rims into planes
+  double extend = 0;            ///< straight extension, in radii of the end; 0: none
+  bool cap = false;             ///< closes the ends
+};
+
+/// What became of an end.
+struct EndReport {
+  double trimmed = 0;                      ///< length cut off along its axis
+  double moved = 0;                        ///< farthest that a vertex was moved to make the rim planar
+  double extended = 0;                     ///< length of the extension
+  int extension = 0, cap = 0;              ///< triangles
+  int extension_patch = 0, cap_patch = 0;  ///< new patches; 0: none
+  bool flat = false;                       ///< whether the cap is plane
+};
+
+/// Trims, flattens, extends and caps the ends, as far as asked. Extensions and caps are new patches; their
+/// borders are model edges (face column `model`). Measures of the ends follow. Face column `patch` is added
+/// if missing. Throws: NotAdmissible naming the end and the place where a rim crosses itself, where trimming
+/// would remove a branch, and where an extension or a cap would meet the surface.
+std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, const CapOptions& options);
+
+}  // namespace meshpipe

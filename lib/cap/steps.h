@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps of treat_ends, and what they share.
+#pragma once
+#include <optional>
+
+#include "lib/cap/cap.h"
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+
+struct Plane {
+  Vec3 point, normal;
+  double height(Vec3 p) const { return dot(p - point, normal); }
+};
+
+/// Coordinates in a plane, such that (right, up, normal) is right-handed.
+struct PlaneView {
+  Vec3 right, up, origin;
+  explicit PlaneView(const Plane& plane);
+  Vec2 operator()(Vec3 p) const { return {dot(p - origin, right), dot(p - origin, up)}; }
+};
+
+/// Computes all of an end that follows from its rims.
+void measure(const Mesh& mesh, End& end);
+End end_of(const Mesh& mesh, std::vector<int> rim);
+
+/// Returns the vertices of border loops, each counterclockwise as seen from outside.
+std::vector<std::vector<int>> rims_of(const Connectivity& c);
+
+/// Returns "(x, y, z)".
+std::string shown(Vec3 p);
+[[noreturn]] void refuse(const std::vector<End>& ends, int i, const std::string& why);
+
+/// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.
+std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end);
+
+/// A triangle of interest that meets another one, and where.
+struct Collision {
+  int triangle, other;
+  Vec3 place;
+};
+/// Returns the pairs of intersecting triangles at least one of which is flagged.
+std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& flagged);
+
+/// Splits the edges inside the surface that join two vertices of rims: what lies behind such an edge would be
+/// flat in a plane rim, and a cap might have the same edge.
+void split_chords(Surface& surface, const std::vector<End>& ends);
+
+/// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there.
+std::vector<std::optional<Plane>> planes_within(const Mesh& mesh, const std::vector<End>& ends,
+                                                const std::vector<double>& length);
+/// Cuts ends off: what is connected with their rims and lies above their planes. Ends without a plane stay.
+/// Numbers of vertices change, rims follow. Returns per end why it cannot be cut, as where a branch would go
+/// too; then nothing is changed. All are empty if it could.
+std::vector<std::string> cut_ends(Surface& surface, std::vector<End>& ends,
+                                  const std::vector<std::optional<Plane>>& planes);
+
+/// Moves rims into planes, and fades the movement out along the wall, such that no triangle folds or
+/// intersects. Ends without a plane stay. Returns, per end, how far a vertex moved; -1 if that was impossible
+/// and nothing moved.
+std::vector<double> flatten_ends(Mesh& mesh, const std::vector<End>& ends,
+                                 const std::vector<std::optional<Plane>>& planes);
+
+/// What has been added to a mesh, for its columns.
+struct Growth {
+  std::vector<int> vertex_like;  ///< per new vertex: the one whose data it copies
+};
+/// Extends the rims of an end by tubes that become circular; the rims are then the circles. Returns the
+/// number of triangles.
+int extend_end(Mesh& mesh, End& end, double length, Growth& growth);
+/// Closes an end by triangles between vertices of its rims: those of the Delaunay triangulation of the plane,
+/// which lies over the projected rims (expect_simple), or of least area. Returns their number, 0 if there are
+/// none of least area.
+int cap_end(Mesh& mesh, const End& end, bool least_area);
+
+}  // namespace meshpipe

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mcap: the open ends of a vessel listed, cut back, made planar, extended and capped.
+#include <algorithm>
+
+#include "formats/foreign/end_names.h"
+#include "formats/stream/model_edges.h"
+#include "lib/cap/cap.h"
+#include "lib/core/number.h"
+#include "tools/common.h"
+#include "tools/files.h"
+
+using namespace meshpipe;
+
+namespace {
+
+struct Options : CapOptions {
+  std::string length, name_file;
+  bool list = false;
+};
+
+/// Reads the value of --trim: a length, a share of the diagonal, or a number of radii.
+void parse_trim(Options& o, double diagonal) {
+  if (o.length.empty()) return;
+  o.trim_by_radius = o.length.back() == 'r';
+  const std::string number = o.length.substr(0, o.length.size() - o.trim_by_radius);
+  const std::optional<double> value = parse_length(number, diagonal);
+  if (!value || *value <= 0 || (o.trim_by_radius && number.ends_with('%')))
+    throw BadUsage("--trim: expected a length, a percentage or a number of radii such as 1.5r, found '" +
+                   o.length + "'");
+  o.trim = *value;
+}
+
+/// One line per end, columns separated by tabs, with a head.
+std::string table_of(const std::vector<End>& ends) {
+  std::string text = "end\tname\tx\ty\tz\tnx\tny\tnz\tarea\tradius\troundness\tplanarity\tvertices\tloops\n";
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const End& e = ends[i];
+    std::size_t vertices = 0;
+    for (const std::vector<int>& rim : e.rims) vertices += rim.size();
+    text += std::to_string(i + 1) + '\t' + e.name;
+    for (double x : {e.center.x, e.center.y, e.center.z, e.normal.x, e.normal.y, e.normal.z, e.area, e.radius,
+                     e.roundness, e.planarity})
+      text += '\t' + shown(x);
+    text += '\t' + std::to_string(vertices) + '\t' + std::to_string(e.rims.size()) + '\n';
+  }
+  return text;
+}
+
+void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done) {
+  io.report["ends"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const End& e = ends[i];
+    const EndReport& r = done[i];
+    io.report["ends"].push_back({{"name", e.name},
+                                 {"center", {e.center.x, e.center.y, e.center.z}},
+                                 {"normal", {e.normal.x, e.normal.y, e.normal.z}},
+                                 {"area", e.area},
+                                 {"radius", e.radius},
+                                 {"roundness", e.roundness},
+                                 {"planarity", e.planarity},
+                                 {"loops", e.rims.size()},
+                                 {"trimmed", r.trimmed},
+                                 {"moved", r.moved},
+                                 {"extended", r.extended},
+                                 {"cap_triangles", r.cap},
+                                 {"flat", r.flat}});
+    std::string line = e.name + ": at " + shown(e.center.x) + ' ' + shown(e.center.y) + ' ' +
+                       shown(e.center.z) + ", radius " + shown(e.radius);
+    if (r.trimmed > 0) line += ", cut back by " + shown(r.trimmed);
+    if (r.moved > 0) line += ", moved by " + shown(r.moved);
+    if (r.extended > 0) line += ", extended by " + shown(r.extended);
+    if (r.cap > 0) line += r.flat ? ", flat cap" : ", cap out of plane by " + shown(e.planarity);
+    if (r.cap > 0 && !r.flat)
+      io.say(line);
+    else
+      io.detail(line);
+  }
+}
+
+/// Names new patches after their ends, and a single one that is not named: wall.
+void name_patches(Stream& stream, const std::vector<End>& ends, const std::vector<EndReport>& done) {
+  const std::vector<int>& patch = stream.surface.face.get<int>("patch");
+  std::vector<int> added;
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (const auto& [tag, more] :
+         {std::pair{done[i].cap_patch, ""}, std::pair{done[i].extension_patch, "_extension"}})
+      if (tag > 0) {
+        stream.names.push_back({2, tag, ends[i].name + more});
+        added.push_back(tag);
+      }
+  if (added.empty()) return;
+  const int least = *std::min_element(added.begin(), added.end());
+  const bool one =
+      std::all_of(patch.begin(), patch.end(), [&](int p) { return p >= least || p == patch[0]; });
+  if (one && stream.name_of(2, patch[0]).empty()) stream.names.push_back({2, patch[0], "wall"});
+}
+
+void run(Io& io, Options& o) {
+  if (!o.length.empty()) parse_trim(o, 1);
+  if (!o.name_file.empty()) expect_readable(o.name_file);
+  Stream& stream = io.read();
+  Surface& surface = stream.surface;
+  parse_trim(o, diagonal(surface));
+  if (orient_outward(surface)) io.say("the surface was inside out: all triangles are reversed");
+  std::vector<End> ends = find_ends(surface);
+  if (!o.name_file.empty()) name_ends(ends, read_end_names(Io::read_bytes(o.name_file), o.name_file));
+  if (o.list && io.output == "-") {
+    report(io, ends, std::vector<EndReport>(ends.size()));
+    return io.write_bytes(table_of(ends));
+  }
+  io.say(std::to_string(ends.size()) + (ends.size() == 1 ? " open end" : " open ends"));
+  if (ends.empty() || !(o.trim > 0 || o.flatten || o.extend > 0 || o.cap)) {
+    report(io, ends, std::vector<EndReport>(ends.size()));
+  } else {
+    const double area = total_area(surface);
+    const ModelSegments lines = read_model_edges(stream);
+    const std::vector<EndReport> done = treat_ends(surface, ends, o);
+    report(io, ends, done);
+    name_patches(stream, ends, done);
+    // nothing that is known of the surface as it was holds; the number of triangles that stands for its size
+    // grows with it
+    stream.tables.clear();
+    write_model_edges(stream, lines);
+    for (const char* column : {"part", "origin"}) surface.face.erase(column);
+    for (const char* column : {"ref_face", "b1", "b2", "kind", "line"}) surface.vertex.erase(column);
+    if (stream.input_triangles > 0 && area > 0)
+      stream.input_triangles =
+          (int)std::min(7e8, stream.input_triangles * (total_area(surface) / area) + 0.5);
+  }
+  if (o.list) Io::write_file("-", table_of(ends));
+  io.write(stream);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  return run_tool(
+      argc, argv, "mcap",
+      "List the open ends of a surface, cut them back, make them planar, extend and cap them.\n\n"
+      "examples:\n  mclean tree.stl | mcap --list\n"
+      "  mclean tree.stl | mcap --flatten --cap -o closed.ply\n"
+      "  mclean tree.stl | mcap --trim 0.5r --extend 3 --cap -o model.ply",
+      [&](CLI::App& app) {
+        app.add_flag("--list", o.list,
+                     "write a table of the ends to standard output, and a surface only to -o FILE")
+            ->group("Reports");
+        app.add_option("--names", o.name_file,
+                       "names of ends: in each line NAME X Y Z for the nearest, or NAME for the next in the "
+                       "order of area (default inlet, outlet_1 ...)")
+            ->type_name("FILE");
+        app.add_option("--trim", o.length, "cut each end back by a length, or with r by radii of the end")
+            ->type_name("L|P%|Kr");
+        app.add_flag("--flatten", o.flatten, "move the rims into planes");
+        app.add_option("--extend", o.extend, "extend each end straight by K radii, to a circle")
+            ->check(positive_number())
+            ->type_name("K");
+        app.add_flag("--cap", o.cap, "close each end by a cap, a patch of the end's name");
+      },
+      [&](Io& io) { run(io, o); });
+}
