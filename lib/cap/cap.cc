@@ -169,14 +169,17 @@ struct Treatment {
 
   /// Caps all ends, and those again that meet something, by least area. Throws if some still do.
   void cap() {
-    const std::size_t before = surface.tris.size();
+    const std::size_t before = surface.tris.size(), points = surface.points.size();
+    const Growth extensions = growth;
     std::vector<char> least_area(n(), 0), flagged;
     for (int i = 0; i < n(); ++i) least_area[i] = crossing_of(surface, ends[i]).has_value();
     for (bool again = false;; again = true) {
       surface.tris.resize(before);
+      surface.points.resize(points);
+      growth = extensions;
       owner.resize(before);
       for (int i = 0; i < n(); ++i) {
-        reports[i].cap = cap_end(surface, ends[i], least_area[i]);
+        reports[i].cap = cap_end(surface, ends[i], least_area[i], growth);
         reports[i].flat = ends[i].planarity <= 1e-3 * rounding * diagonal(surface);
         owner.resize(surface.tris.size(), i);
       }

@@ -47,9 +47,39 @@ std::vector<Vec3> circle_of(const Mesh& mesh, const std::vector<int>& rim, Vec3 
   return circle;
 }
 
-/// Returns triangles of rim vertices over the projections of the rims, which must be simple.
-std::vector<Tri> plane_triangles(const Mesh& mesh, const End& end) {
-  const PlaneView flat({end.center, end.normal});
+/// Distance from an edge of a rim, in lengths of it, of the vertex inside the cap opposite the edge, and the
+/// least one from anything else. Without such vertices a cap would have triangles as thin as the arc over a
+/// few edges of the rim is high, which are features to be removed.
+constexpr double height_of_apex = 0.866, least_distance = 0.5;
+
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 along = b - a;
+  return norm(p - lerp(a, b, std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0)));
+}
+
+/// Inserts a vertex opposite a border edge if there is enough space. Returns it, or -1.
+int add_apex(Cdt& cdt, Cavity& cavity, int a, int b) {
+  const Vec2 pa = cdt.points[a], pb = cdt.points[b], along = pb - pa;
+  const double length = norm(along), least = least_distance * length;
+  const Vec2 p = lerp(pa, pb, 0.5) + height_of_apex * Vec2{-along.y, along.x};
+  const int h = cdt.half_edge(a, b);
+  const int t = h < 0 ? -1 : cdt.walk(p, h / 3);
+  auto conflict = [&](int s) {
+    const Tri& v = cdt.tris[s];
+    return incircle(cdt.points[v[0]], cdt.points[v[1]], cdt.points[v[2]], p) > 0;
+  };
+  if (t < 0 || !cavity.grow(cdt, p, t, conflict)) return -1;
+  for (int g : cavity.rim()) {
+    const Vec2 from = cdt.points[cdt.origin(g)], to = cdt.points[cdt.target(g)];
+    if (norm(p - from) < least || (cdt.fixed[g] && distance_to_segment(p, from, to) < least)) return -1;
+  }
+  return cavity.fill(cdt, p);
+}
+
+/// Adds triangles over the projections of the rims, which must be simple.
+void add_plane_triangles(Mesh& mesh, const End& end, Growth& growth) {
+  const Plane plane{end.center, end.normal};
+  const PlaneView flat(plane);
   std::vector<Vec2> points;
   std::vector<int> vertex;
   std::vector<FixedEdge> edges;
@@ -61,10 +91,19 @@ std::vector<Tri> plane_triangles(const Mesh& mesh, const End& end) {
       edges.push_back({first + k, first + (k + 1) % n, true});
     }
   }
-  std::vector<Tri> tris = Cdt(points, edges).tris;
-  for (Tri& t : tris)
-    for (int& v : t) v = vertex[v];
-  return tris;
+  Cdt cdt(points, edges);
+  Cavity cavity;
+  for (const FixedEdge& e : edges) {
+    const int v = add_apex(cdt, cavity, e.a, e.b);
+    if (v < 0) continue;
+    const Vec3 a = mesh.points[vertex[e.a]], b = mesh.points[vertex[e.b]];
+    const Vec2 p = cdt.points[v];
+    vertex.push_back((int)mesh.points.size());
+    growth.vertex_like.push_back(vertex[e.a]);
+    mesh.points.push_back(flat.origin + p.x * flat.right + p.y * flat.up +
+                          0.5 * (plane.height(a) + plane.height(b)) * plane.normal);
+  }
+  for (const Tri& t : cdt.tris) mesh.tris.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
 }
 
 }  // namespace
@@ -99,18 +138,17 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth) {
   return (int)(mesh.tris.size() - before);
 }
 
-int cap_end(Mesh& mesh, const End& end, bool least_area) {
-  std::vector<Tri> tris;
+int cap_end(Mesh& mesh, const End& end, bool least_area, Growth& growth) {
+  const std::size_t before = mesh.tris.size();
   if (!least_area) {
-    tris = plane_triangles(mesh, end);
+    add_plane_triangles(mesh, end, growth);
   } else if (const std::size_t n = end.rims[0].size(); end.rims.size() == 1 && n <= most_corners) {
     std::vector<Vec3> corners;
     for (int v : end.rims[0]) corners.push_back(mesh.points[v]);
     for (const Tri& t : least_area_triangles(corners, std::vector<char>(n * n, 0)))
-      tris.push_back({end.rims[0][t[0]], end.rims[0][t[1]], end.rims[0][t[2]]});
+      mesh.tris.push_back({end.rims[0][t[0]], end.rims[0][t[1]], end.rims[0][t[2]]});
   }
-  mesh.tris.insert(mesh.tris.end(), tris.begin(), tris.end());
-  return (int)tris.size();
+  return (int)(mesh.tris.size() - before);
 }
 
 }  // namespace meshpipe

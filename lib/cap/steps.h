@@ -68,9 +68,8 @@ struct Growth {
 /// Extends the rims of an end by tubes that become circular; the rims are then the circles. Returns the
 /// number of triangles.
 int extend_end(Mesh& mesh, End& end, double length, Growth& growth);
-/// Closes an end by triangles between vertices of its rims: those of the Delaunay triangulation of the plane,
-/// which lies over the projected rims (expect_simple), or of least area. Returns their number, 0 if there are
-/// none of least area.
-int cap_end(Mesh& mesh, const End& end, bool least_area);
+/// Closes an end by triangles that lie over its projected rims, which must be simple (crossing_of), or by
+/// those of least area between vertices of its only rim. Returns their number, 0 if there are none.
+int cap_end(Mesh& mesh, const End& end, bool least_area, Growth& growth);
 
 }  // namespace meshpipe
