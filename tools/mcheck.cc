@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "formats/stream/lift_tables.h"
-#include "formats/stream/line_tables.h"
 #include "lib/check/check.h"
-#include "lib/clean/clean.h"
-#include "lib/core/weld.h"
 #include "tools/common.h"
+#include "tools/compare.h"
 #include "tools/report/verdict.h"
 #include "tools/round_file.h"
 
@@ -22,38 +19,6 @@ struct Options {
   bool accept = false;
   int samples = 10000;
 };
-
-/// Files as STL hold every triangle on its own.
-bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
-
-Findings compare(Io& io, Stream& stream, const Options& o, const Contract& contract, Surface& reference) {
-  Surface& result = stream.surface;
-  const bool own = o.reference.empty();
-  Stream other;
-  Lines lines;
-  int opened = 0;
-  if (own) {
-    reference = read_reference(stream);
-    if (stream.find("line_use")) lines = read_lines(stream);
-  } else {
-    other = io.read(o.reference);
-    reference = std::move(other.surface);
-    opened = clean(reference).opened_edges;
-    if (is_soup(result)) weld(result);
-  }
-  expect_measurable(reference);
-  if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
-  const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
-  Findings f =
-      examine(result, reference, own ? &lines : nullptr, o.samples, required_distance(contract) - removed);
-  f.opened = opened;
-  f.distance.bound += removed;
-  const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
-  // a file that holds one patch comes from a format without patches, as a rule
-  if (own || patches.size() > 1)
-    f.patch_faults = compare_patches(patches_of(reference, {}, namer(own ? stream : other)), patches);
-  return f;
-}
 
 void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
@@ -85,8 +50,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
-  Findings f = compare(io, stream, o, contract, reference);
-  f.opened += opened_unasked(stream);
+  const Findings f = compare(io, stream, o.reference, contract, o.samples, reference);
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
   if (!o.refine.empty() && !failures.empty())
     verdict.outcome.refined =

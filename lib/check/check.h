@@ -92,6 +92,11 @@ extern const char* const default_contract;
 /// Parses a list such as "topology,intersections,kappa=0.1". Throws: BadUsage naming what is wrong in it.
 Contract parse_contract(const std::string& list);
 
+/// Returns whether a requirement's figure must be above its limit (kappa, angles), not within it.
+bool is_lower_limit(const Requirement& requirement);
+/// Returns the figure that a requirement bounds; NaN if it has none, as topology.
+double reached(const Requirement& requirement, const Findings& findings);
+
 /// A requirement that is not met. Figures are NaN where it has none.
 struct Failure {
   std::string requirement, fact;  ///< "kappa", "smallest is 0.03 in triangle 12 at (0 1 2), not above 0.1"

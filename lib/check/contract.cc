@@ -109,48 +109,35 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
 }
 
 void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Facts& facts) {
-  const Quality& q = f.quality;
   const Distance& d = f.distance;
-  auto above = [&](double value, int worst) {
+  const double value = reached(r, f);
+  auto above = [&](int worst) {
     if (value > r.limit) return;
     const std::string what =
         worst < 0 ? shown(value) : "smallest is " + shown(value) + " in " + triangle(mesh, worst);
     facts.push_back(what + ", not above " + shown(r.limit), value, worst);
   };
-  auto within = [&](double value, const std::string& where = "", int worst = -1) {
-    if (value <= r.limit) return;
+  auto within = [&](const std::string& where = "", int worst = -1) {
+    if (value <= r.limit) return;  // what is not a number is a failure
     facts.push_back(shown(value) + where + ", above " + shown(r.limit), value, worst);
   };
-  if (r.name == "kappa")
-    return above(f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced], f.worst_unforced);
-  if (r.name == "kappa_off_wedges") return above(f.kappa_off_corners, f.worst_off_corners);
-  if (r.name == "kappa_mean") return above(q.kappa_mean, -1);
-  if (r.name == "angle") return above(q.min_angle, -1);
+  if (r.name == "kappa") return above(f.worst_unforced);
+  if (r.name == "kappa_off_wedges") return above(f.worst_off_corners);
+  if (is_lower_limit(r)) return above(-1);
   if (r.name == "hausdorff")
-    return within(d.hausdorff + d.bound,
-                  " is the bound, " + shown(d.hausdorff) + " the distance found " + place(d.place));
-  if (r.name == "mean") return within(d.mean);
-  if (r.name == "rms") return within(d.rms);
-  if (r.name == "boundary") return within(f.boundary);
-  if (r.name == "features") {
-    if (f.features) within(*f.features);
-    return;
-  }
+    return within(" is the bound, " + shown(d.hausdorff) + " the distance found " + place(d.place));
   if (r.name == "deviation") {
-    within(most_deviation * d.deviation.worst,
-           " of the local size is how far the surfaces are apart " + place(d.deviation.place),
+    within(" of the local size is how far the surfaces are apart " + place(d.deviation.place),
            d.deviation.triangle);
     if (!facts.failures.empty()) facts.failures.back().place = d.deviation.place;
     return;
   }
-  if (r.name == "size") return within(q.edge_deviation);
-  if (r.name == "trace") {
-    if (f.kappa_by_cuts && f.kappa_elsewhere) within(*f.kappa_elsewhere - *f.kappa_by_cuts);
-    return;
-  }
+  const bool unknown =
+      (r.name == "features" && !f.features) || (r.name == "trace" && !(f.kappa_by_cuts && f.kappa_elsewhere));
+  if (r.name != "vertices") return unknown ? void() : within();
   if (f.farthest >= 0)
-    within(f.off[f.farthest], " of its edges is how far vertex " + std::to_string(f.farthest) +
-                                  " lies off the reference, " + place(mesh.points[f.farthest]));
+    within(" of its edges is how far vertex " + std::to_string(f.farthest) + " lies off the reference, " +
+           place(mesh.points[f.farthest]));
 }
 
 /// Of every triangle, its faults.
@@ -180,6 +167,27 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
 }
 
 }  // namespace
+
+bool is_lower_limit(const Requirement& r) { return r.name.starts_with("kappa") || r.name == "angle"; }
+
+double reached(const Requirement& r, const Findings& f) {
+  const Quality& q = f.quality;
+  const Distance& d = f.distance;
+  if (r.name == "kappa") return f.worst_unforced < 0 ? 1 : q.kappas[f.worst_unforced];
+  if (r.name == "kappa_off_wedges") return f.kappa_off_corners;
+  if (r.name == "kappa_mean") return q.kappa_mean;
+  if (r.name == "angle") return q.min_angle;
+  if (r.name == "hausdorff") return d.hausdorff + d.bound;
+  if (r.name == "mean") return d.mean;
+  if (r.name == "rms") return d.rms;
+  if (r.name == "boundary") return f.boundary;
+  if (r.name == "features") return f.features.value_or(nan);
+  if (r.name == "deviation") return most_deviation * d.deviation.worst;
+  if (r.name == "size") return q.edge_deviation;
+  if (r.name == "vertices") return f.farthest < 0 ? 0 : f.off[f.farthest];
+  if (r.name == "trace" && f.kappa_by_cuts && f.kappa_elsewhere) return *f.kappa_elsewhere - *f.kappa_by_cuts;
+  return nan;
+}
 
 const char* const default_contract =
     "topology,intersections,folds,patches,vertices=0.1,kappa=0.1,deviation=1";

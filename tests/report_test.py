@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""mreport's page in headless Chromium: the surface is drawn, buttons, keys and clicks lead to triangles, nothing is loaded,
+and without WebGL or scripts a picture is shown. With AXE=axe.min.js, also its check of accessibility.
+
+usage: tests/report_test.py BIN_DIR      status 77: Chromium is not installed
+"""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+from browser import Browser  # noqa: E402
+
+GPU = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+MOST_BYTES, MOST_SECONDS = 2e6, 10  # seconds: a loaded machine without a graphics card takes a multiple of one
+faults = []
+
+
+def expect(what, holds):
+    if not holds:
+        faults.append(what)
+        print("failed:", what)
+
+
+def make(folder, bin_dir):
+    """Makes the pages and returns their paths by name."""
+    commands = """
+        mshape tree --triangles 4000 -q -o tree.ply
+        mremesh -q --triangles 8000 tree.ply -o good.ply --html good.html
+        mreport good.ply --require topology,kappa=0.95 -o failed.html
+        mclean -q tree.ply | mpartition -q | mmultiscale -q | mparam -q | mreport -o charts.html
+        mshape tree --triangles 100000 -q -o large.ply
+        mreport large.ply -o large.html
+        mreport good.ply large.ply -o two.html
+    """
+    env = {**os.environ, "PATH": bin_dir + ":" + os.environ["PATH"]}
+    subprocess.run(["bash", "-ec", commands], cwd=folder, env=env, check=True)
+    return {n: os.path.join(folder, n + ".html") for n in ("good", "failed", "charts", "large", "two")}
+
+
+def shown(browser, path):
+    """Opens a page and waits for the first picture; returns the milliseconds it took."""
+    browser.open(path)
+    took = float(browser.wait("document.querySelector('canvas').dataset.drawn"))
+    browser.wait("!document.querySelectorAll('canvas')[1].parentElement.hidden || true")
+    loaded = [u for u in browser.requests() if not u.startswith(("data:", "file://" + path))]
+    expect(f"{path}: nothing is loaded, but {loaded}", not loaded)
+    expect(f"{path}: the console is silent, but says {browser.complaints()}", not browser.complaints())
+    return took
+
+
+def colors(browser, pane=0):
+    """Returns the number of pixels of a pane that are not white, and of different colors."""
+    return browser.run(f"""(() => {{
+        const c = document.querySelectorAll('canvas')[{pane}], gl = c.getContext('webgl2');
+        const p = new Uint32Array(c.width * c.height);
+        gl.readPixels(0, 0, c.width, c.height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(p.buffer));
+        return [p.filter(x => x !== 0xffffffff).length / p.length, new Set(p).size];
+    }})()""")
+
+
+def view(browser):
+    return [float(x) for x in browser.run("document.querySelector('canvas').dataset.view").split()]
+
+
+def settled(browser):
+    """Returns the view when the camera has arrived."""
+    browser.wait("!document.body.dataset.busy")
+    return view(browser)
+
+
+def test_view(browser, pages):
+    shown(browser, pages["good"])
+    ink, count = colors(browser)
+    expect(f"the tree is drawn: {ink} of the pane, {count} colors", 0.03 < ink < 0.9 and count > 50)
+    facts = json.loads(browser.run("document.getElementById('report').textContent"))
+    expect("the verdict is in the JSON", facts["results"][0]["met"] is True and len(facts["times"]) >= 12)
+    expect("the command line is shown", "mremesh" in browser.run("document.body.innerText"))
+    before = settled(browser)
+    # a button leads the camera to its triangle, by a real click
+    place = browser.run("""(() => {
+        const b = document.querySelector('button[data-t]');
+        b.scrollIntoView({block: 'center'});
+        const r = b.getBoundingClientRect();
+        return [r.x + r.width / 2, r.y + r.height / 2, +b.dataset.t];
+    })()""")
+    browser.click(place[0], place[1])
+    browser.wait("document.getElementById('status').textContent.includes('triangle')")
+    after = settled(browser)
+    t = str(int(place[2]))
+    center = browser.run(f"JSON.parse(document.getElementById('data').textContent).results[0].exact[{t}]")
+    expect(f"the camera is at triangle {t}", max(abs(a - b) for a, b in zip(center, after)) < 1e-3 * before[3])
+    expect("the camera is near it", after[3] < 0.2 * before[3])
+    expect("the status names it", f"triangle {t}:" in browser.run("document.getElementById('status').textContent"))
+    expect("it is marked", browser.run("!document.querySelector('.mark').hidden"))
+    # keys: the whole, rotate, zoom, next
+    browser.run("document.querySelector('canvas').focus()")
+    browser.press("Home")
+    expect("Home shows the whole", settled(browser) == before)
+    browser.press("-")
+    expect("- zooms out", settled(browser)[3] > 1.2 * before[3])
+    browser.press("n")
+    browser.wait("document.getElementById('status').textContent.includes('triangle')")
+    # a click on the surface names the triangle there
+    browser.press("Home")
+    settled(browser)
+    browser.run("document.querySelector('canvas').scrollIntoView({block: 'center'})")
+    box = browser.run("""(() => { const c = document.querySelector('canvas'), r = c.getBoundingClientRect(),
+        gl = c.getContext('webgl2'), p = new Uint8Array(4);
+        for (let x = 0.3; x < 0.7; x += 0.01) {
+          gl.readPixels(x * c.width, c.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p);
+          if (p[2] < 200) return [r.x + x * r.width + 2, r.y + r.height / 2];
+        } })()""")
+    browser.click(*box)
+    browser.wait("document.getElementById('status').textContent.includes('kappa')")
+
+
+def test_others(browser, pages):
+    shown(browser, pages["failed"])
+    rows = browser.run("document.querySelectorAll('table.faults tbody tr').length")
+    all_of_them = browser.run("JSON.parse(document.getElementById('data').textContent).results[0].offending.length")
+    expect(f"triangles at fault are listed: {rows} of {all_of_them}", 0 < rows == min(100, all_of_them))
+    if all_of_them > 100:
+        browser.run("document.querySelector('button[data-all]').click()")
+        browser.wait(f"document.querySelectorAll('table.faults tbody tr').length === {all_of_them}")
+    expect("the page says that the contract is missed", "is missed" in browser.run("document.body.innerText"))
+    shown(browser, pages["charts"])
+    browser.wait("document.querySelectorAll('canvas')[1].dataset.drawn")
+    ink, _ = colors(browser, 1)
+    expect(f"charts are drawn: {ink}", ink > 0.03)
+    took = shown(browser, pages["large"])
+    size = os.path.getsize(pages["large"])
+    print(f"100,000 triangles: {size / 1e6:.2f} MB, first picture after {took:.0f} ms")
+    expect(f"100,000 triangles take {size} bytes", size <= MOST_BYTES)
+    expect(f"the first picture comes after {took} ms", took < 1000 * MOST_SECONDS)
+    shown(browser, pages["two"])
+    browser.run("""(() => { const s = document.querySelector('select:not(#color)');
+        s.value = s.options.length - 1; s.dispatchEvent(new Event('change')); })()""")
+    browser.wait("document.querySelector('canvas').getAttribute('aria-label').startsWith('large')")
+
+
+def test_accessible(browser, pages):
+    """Checks what screen readers need, and all of axe where it is given."""
+    for name in ("good", "failed", "charts"):
+        shown(browser, pages[name])
+        nameless = browser.run("""[...document.querySelectorAll('img, button, select, input, canvas')].filter(e =>
+            !(e.alt || e.textContent.trim() || e.getAttribute('aria-label') || e.labels?.length)).map(e => e.outerHTML)""")
+        expect(f"{name}: everything has a name, but {nameless}", not nameless)
+        if not os.environ.get("AXE"):
+            continue
+        with open(os.environ["AXE"], encoding="utf-8") as f:
+            browser.run(f.read() + ";0")
+        found = browser.run("""axe.run().then(r => r.violations.map(v =>
+            v.impact + ': ' + v.id + ': ' + v.nodes.slice(0, 3).map(n => n.html.slice(0, 120)).join(' | ')))""")
+        expect(f"{name}: axe finds nothing, but {found}", not found)
+
+
+def test_without(pages):
+    """Without WebGL, and without scripts."""
+    browser = Browser("--disable-gpu", "--disable-3d-apis")
+    browser.open(pages["good"])
+    browser.wait("document.getElementById('why').textContent.includes('cannot be shown')")
+    wide = browser.run("document.querySelector('#stills img').getBoundingClientRect().width")
+    expect(f"without WebGL the picture is shown, {wide} wide", wide > 200)
+    expect("without WebGL the viewer is not", browser.run("document.getElementById('viewer').hidden"))
+    browser.call("Emulation.setScriptExecutionDisabled", value=True)
+    browser.open(pages["good"])
+    expect("without scripts the picture is shown", browser.run("document.querySelector('#stills img').width > 200"))
+    browser.close()
+
+
+def test_print(browser, pages):
+    shown(browser, pages["good"])
+    paper = browser.call("Page.printToPDF", printBackground=True)["data"]
+    expect("the page prints", len(paper) > 20000)
+    with open(pages["good"], encoding="utf-8") as f:
+        text = f.read()
+    expect("the page names no other file", not re.search(r"(src|href)=\"(?!data:|#)", text))
+
+
+def main(bin_dir):
+    if not shutil.which("chromium"):
+        print("chromium is not installed: skipped")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        pages = make(folder, os.path.abspath(bin_dir))
+        browser = Browser(*GPU)
+        test_view(browser, pages)
+        test_others(browser, pages)
+        test_accessible(browser, pages)
+        test_print(browser, pages)
+        browser.close()
+        test_without(pages)
+    print("the page is as expected" if not faults else f"{len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

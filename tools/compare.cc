@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/compare.h"
+
+#include "formats/stream/lift_tables.h"
+#include "formats/stream/line_tables.h"
+#include "lib/clean/clean.h"
+#include "lib/core/error.h"
+#include "lib/core/weld.h"
+#include "tools/report/verdict.h"
+
+namespace meshpipe {
+namespace {
+
+/// Files as STL hold every triangle on its own.
+bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
+
+}  // namespace
+
+Findings compare(const Io& io, Stream& stream, const std::string& file, const Contract& contract, int samples,
+                 Surface& reference) {
+  Surface& result = stream.surface;
+  const bool own = file.empty();
+  Stream other;
+  Lines lines;
+  int opened = 0;
+  if (own) {
+    reference = read_reference(stream);
+    if (stream.find("line_use")) lines = read_lines(stream);
+  } else {
+    other = io.read(file);
+    reference = std::move(other.surface);
+    opened = clean(reference).opened_edges;
+    if (is_soup(result)) weld(result);
+  }
+  expect_measurable(reference);
+  if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
+  const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
+  Findings f =
+      examine(result, reference, own ? &lines : nullptr, samples, required_distance(contract) - removed);
+  f.opened = opened + opened_unasked(stream);
+  f.distance.bound += removed;
+  const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
+  // a file that holds one patch comes from a format without patches, as a rule
+  if (own || patches.size() > 1)
+    f.patch_faults = compare_patches(patches_of(reference, {}, namer(own ? stream : other)), patches);
+  return f;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A result compared with the surface it was made from.
+#pragma once
+#include <string>
+
+#include "lib/check/check.h"
+#include "tools/io.h"
+
+namespace meshpipe {
+
+/// Compares the result in a stream with the surface in `file`, or with the stream's own if that is empty, and
+/// puts that surface into `reference`. Where every triangle of the result has vertices of its own, they are
+/// welded. `contract` and `samples` say how closely distances are measured.
+/// Throws: BadInput or NotAdmissible if either surface is missing or cannot be measured.
+Findings compare(const Io& io, Stream& stream, const std::string& file, const Contract& contract, int samples,
+                 Surface& reference);
+
+}  // namespace meshpipe
