@@ -21,6 +21,9 @@ constexpr double below_rim = 0.1;
 /// but a hole in its wall.
 constexpr double most_moved = 0.25;
 
+/// Radii by which caps that are not plane bulge, one after another until they keep off the wall.
+constexpr double bulges[] = {0, 0.1, 0.2, 0.4, 0.7};
+
 using Planes = std::vector<std::optional<Plane>>;
 
 /// Runs the steps of treat_ends on one surface.
@@ -167,39 +170,47 @@ struct Treatment {
     measure_all();
   }
 
-  /// Caps all ends, and those again that meet something, by least area. Throws if some still do.
+  /// Caps all ends, and those again that meet something, by membranes that bulge more and more. Throws if
+  /// some still do.
   void cap() {
     const std::size_t before = surface.tris.size(), points = surface.points.size();
     const Growth extensions = growth;
-    std::vector<char> least_area(n(), 0), flagged;
-    for (int i = 0; i < n(); ++i) least_area[i] = crossing_of(surface, ends[i]).has_value();
-    for (bool again = false;; again = true) {
+    std::vector<int> tries(n(), 0);
+    for (int i = 0; i < n(); ++i) tries[i] = crossing_of(surface, ends[i]).has_value();
+    for (bool again = true; again;) {
       surface.tris.resize(before);
       surface.points.resize(points);
       growth = extensions;
       owner.resize(before);
       for (int i = 0; i < n(); ++i) {
-        reports[i].cap = cap_end(surface, ends[i], least_area[i], growth);
-        reports[i].flat = ends[i].planarity <= 1e-3 * rounding * diagonal(surface);
+        reports[i].flat = tries[i] == 0 && ends[i].planarity <= 1e-3 * rounding * diagonal(surface);
+        reports[i].cap = tries[i] == 0 ? plane_cap(surface, ends[i], growth)
+                                       : fair_cap(surface, ends[i], bulges[tries[i] - 1], growth);
+        if (reports[i].cap == 0) refuse_cap(i, "would need a rim of fewer vertices");
         owner.resize(surface.tris.size(), i);
       }
-      flagged.assign(before, 0);
-      flagged.resize(surface.tris.size(), 1);
-      const std::vector<Collision> found = collisions(surface, flagged);
-      if (found.empty() && std::none_of(reports.begin(), reports.end(), [](auto& r) { return r.cap == 0; }))
-        return;
-      for (const Collision& c : found) {
-        const int i = owner[c.triangle];
-        if (again || least_area[i] || reports[i].flat)
-          refuse(ends, i,
-                 "its cap would meet the surface near " + shown(c.place) + "; its rim is " +
-                     shown(ends[i].planarity) + " out of its plane; try " +
-                     (reports[i].flat || options.flatten ? "--trim" : "--flatten"));
-        least_area[i] = 1;
-      }
-      for (int i = 0; i < n(); ++i)
-        if (reports[i].cap == 0) refuse(ends, i, "its rim has too many vertices out of its plane for a cap");
+      again = try_again(before, tries);
     }
+  }
+
+  /// Returns whether caps meet anything; tries[i] then counts what has failed for end i.
+  bool try_again(std::size_t before, std::vector<int>& tries) {
+    std::vector<char> flagged(before, 0), meets(n(), 0);
+    flagged.resize(surface.tris.size(), 1);
+    for (const Collision& c : collisions(surface, flagged)) {
+      const int i = owner[c.triangle];
+      if (reports[i].flat || tries[i] == (int)std::size(bulges))
+        refuse_cap(i, "would meet the surface near " + shown(c.place));
+      meets[i] = 1;
+    }
+    for (int i = 0; i < n(); ++i) tries[i] += meets[i];
+    return std::count(meets.begin(), meets.end(), 1) > 0;
+  }
+
+  [[noreturn]] void refuse_cap(int i, const std::string& why) const {
+    refuse(ends, i,
+           "its cap " + why + "; its rim is " + shown(ends[i].planarity) + " out of its plane; try " +
+               (ends[i].planarity == 0 || options.flatten ? "--trim" : "--flatten"));
   }
 
   /// Gives columns to all that was added, new patches, and model edges around them.

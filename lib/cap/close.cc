@@ -4,16 +4,12 @@
 
 #include "lib/cap/steps.h"
 #include "lib/core/cdt.h"
-#include "lib/core/least_area.h"
 
 namespace meshpipe {
 namespace {
 
 /// Share of an extension in which the section becomes a circle; and radii that this takes at most.
 constexpr double share_of_transition = 0.5, longest_transition = 2;
-/// Loops of more vertices have no cap of least area: that is cubic.
-constexpr std::size_t most_corners = 600;
-
 /// Rings of an extension at most.
 constexpr int most_rings = 1000;
 
@@ -138,16 +134,9 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth) {
   return (int)(mesh.tris.size() - before);
 }
 
-int cap_end(Mesh& mesh, const End& end, bool least_area, Growth& growth) {
+int plane_cap(Mesh& mesh, const End& end, Growth& growth) {
   const std::size_t before = mesh.tris.size();
-  if (!least_area) {
-    add_plane_triangles(mesh, end, growth);
-  } else if (const std::size_t n = end.rims[0].size(); end.rims.size() == 1 && n <= most_corners) {
-    std::vector<Vec3> corners;
-    for (int v : end.rims[0]) corners.push_back(mesh.points[v]);
-    for (const Tri& t : least_area_triangles(corners, std::vector<char>(n * n, 0)))
-      mesh.tris.push_back({end.rims[0][t[0]], end.rims[0][t[1]], end.rims[0][t[2]]});
-  }
+  add_plane_triangles(mesh, end, growth);
   return (int)(mesh.tris.size() - before);
 }
 

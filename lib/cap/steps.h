@@ -68,8 +68,12 @@ struct Growth {
 /// Extends the rims of an end by tubes that become circular; the rims are then the circles. Returns the
 /// number of triangles.
 int extend_end(Mesh& mesh, End& end, double length, Growth& growth);
-/// Closes an end by triangles that lie over its projected rims, which must be simple (crossing_of), or by
-/// those of least area between vertices of its only rim. Returns their number, 0 if there are none.
-int cap_end(Mesh& mesh, const End& end, bool least_area, Growth& growth);
+/// Closes an end by triangles that lie over its projected rims, which must be simple (crossing_of). Returns
+/// their number.
+int plane_cap(Mesh& mesh, const End& end, Growth& growth);
+/// Closes an end by a membrane that bulges outward by about `bulge` radii, of the connectivity of the
+/// triangulation of least area. Returns the number of triangles, 0 if the rim has too many vertices or is not
+/// the only one.
+int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth);
 
 }  // namespace meshpipe

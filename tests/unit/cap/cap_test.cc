@@ -131,6 +131,22 @@ TEST(cap, caps_a_wavy_rim_without_moving_it) {
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_TRUE(s.points[v] == before[v]);
 }
 
+TEST(cap, caps_a_hole_in_a_side_that_no_plane_closes) {
+  Surface s = open_tube(4, 24);
+  std::erase_if(s.tris, [&](const Tri& t) {  // half of the way around
+    const Vec3 p = (1.0 / 3) * (s.points[t[0]] + s.points[t[1]] + s.points[t[2]]);
+    return p.x > -0.05 && std::abs(p.z - 2) < 0.3 + 0.3 * p.x;
+  });
+  s.face.rows = s.tris.size();
+  std::vector<End> ends = find_ends(s);
+  ASSERT_EQ(ends.size(), 3u);
+  CapOptions o;
+  o.flatten = o.cap = true;
+  const std::vector<EndReport> r = treat_ends(s, ends, o);
+  expect_sound(s);
+  EXPECT_EQ(r[0].flat + r[1].flat + r[2].flat, 2);
+}
+
 TEST(cap, trims_by_a_length) {
   Surface s = open_tube(6, 40);
   // an oblique rim, which counts from its middle
