@@ -199,8 +199,7 @@ struct Treatment {
     flagged.resize(surface.tris.size(), 1);
     for (const Collision& c : collisions(surface, flagged)) {
       const int i = owner[c.triangle];
-      if (reports[i].flat || tries[i] == (int)std::size(bulges))
-        refuse_cap(i, "would meet the surface near " + shown(c.place));
+      if (tries[i] == (int)std::size(bulges)) refuse_cap(i, "would meet the surface near " + shown(c.place));
       meets[i] = 1;
     }
     for (int i = 0; i < n(); ++i) tries[i] += meets[i];
@@ -208,9 +207,10 @@ struct Treatment {
   }
 
   [[noreturn]] void refuse_cap(int i, const std::string& why) const {
-    refuse(ends, i,
-           "its cap " + why + "; its rim is " + shown(ends[i].planarity) + " out of its plane; try " +
-               (ends[i].planarity == 0 || options.flatten ? "--trim" : "--flatten"));
+    refuse(
+        ends, i,
+        "its cap " + why + "; its rim is " + shown(ends[i].planarity) + " out of its plane; try " +
+            (options.flatten || ends[i].planarity <= rounding * diagonal(surface) ? "--trim" : "--flatten"));
   }
 
   /// Gives columns to all that was added, new patches, and model edges around them.

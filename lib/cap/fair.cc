@@ -38,19 +38,20 @@ void refine(Surface& cap, double length) {
 /// Moves the vertices from `rim` on to a membrane under pressure, which bulges by `height` if it is round.
 void inflate(Surface& cap, int rim, double height) {
   const Neighbors neighbors(cap);
-  const double force = height * std::numbers::pi / total_area(cap);
+  const double pressure = height * std::numbers::pi / total_area(cap);
+  std::vector<double> force(cap.points.size(), 0);  // for edges as they are at first: otherwise it may grow
+  for (int v = rim; v < (int)cap.points.size(); ++v)
+    for (int k = neighbors.start[v]; k < neighbors.start[v + 1]; ++k) {
+      const Vec3 way = cap.points[neighbors.vertex[k]] - cap.points[v];
+      force[v] += pressure * dot(way, way);
+    }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const std::vector<Vec3> normals = vertex_normals(cap);
     for (int v = rim; v < (int)cap.points.size(); ++v) {
-      const int first = neighbors.start[v], last = neighbors.start[v + 1];
-      Vec3 mean;
-      double square = 0;
-      for (int k = first; k < last; ++k) {
-        const Vec3 way = cap.points[neighbors.vertex[k]] - cap.points[v];
-        mean = mean + way;
-        square += dot(way, way);
-      }
-      cap.points[v] = cap.points[v] + (1.0 / (last - first)) * (mean + force * square * normals[v]);
+      Vec3 sum = force[v] * normals[v];
+      for (int k = neighbors.start[v]; k < neighbors.start[v + 1]; ++k)
+        sum = sum + (cap.points[neighbors.vertex[k]] - cap.points[v]);
+      cap.points[v] = cap.points[v] + (1.0 / (neighbors.start[v + 1] - neighbors.start[v])) * sum;
     }
   }
 }
