@@ -133,7 +133,8 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const bool chosen = report.used == options.map && options.map != MapKind::conformal;
   const bool stretched = !missed && !chosen && round < limit::stretched_rounds &&
                          report.anisotropy_mean > limit::mean_anisotropy &&
-                         mesh.tris.size() >= limit::least_triangles;
+                         (mesh.tris.size() >= limit::least_triangles ||
+                          report.anisotropy_mean > limit::unresolved_anisotropy);
   const bool limbs =
       !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
   int n = n_parts;
