@@ -14,6 +14,7 @@
 
 #include "formats/stream/lift_tables.h"
 #include "lib/check/check.h"
+#include "lib/clean/clean.h"
 #include "lib/core/failure_facts.h"
 #include "tools/files.h"
 #include "tools/progress_line.h"
@@ -100,6 +101,7 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
     const Surface reference = remeshed ? read_reference(io.stream) : Surface();
     found = diagnose(remeshed ? reference : io.stream.surface, facts.place, facts.reach);
   }
+  for (const std::string& remark : io.stream.remarks) found.spikes += Spikes::parse(remark);
   std::vector<Provenance> history = io.stream.history;
   history.push_back({io.program, "", io.arguments});
   const std::optional<WayOut> way = way_out(status, facts, history, found);

@@ -12,6 +12,7 @@ using namespace meshpipe;
 namespace {
 
 struct Options : CleanOptions {
+  double spikes = 0;  ///< extents of the neighbors; 0: none are moved
   std::string within = "auto", most = "all", how = "pair", resolving = "none", data, offending;
 };
 
@@ -81,7 +82,57 @@ void write_offending(const Io& io, const std::string& path, const CleanReport& r
 
 /// What earlier runs of mclean and mfeature have done to a surface that is the input now.
 bool is_of_former_run(const std::string& remark) {
-  return remark.starts_with("clean ") || remark.starts_with("removed ");
+  return remark.starts_with("clean ") || remark.starts_with("spikes ") || remark.starts_with("removed ");
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--weld", o.within,
+                 "merge vertices this close: auto (default, by precision), length, or % of the diagonal")
+      ->type_name("auto|TOL");
+  app.add_option("--keep-components", o.most, "keep the N largest components by area (default all)")
+      ->type_name("N|all");
+  app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
+      ->check(CLI::Range(3, 100000))
+      ->type_name("N");
+  app.add_flag("--cap-patches", o.cap_patches, "give each filled hole a patch of its own, named cap-1 ...");
+  app.add_flag("--drop-nonorientable", o.drop_nonorientable,
+               "drop components that are not orientable, instead of failing with 4");
+  app.add_option("--sheets", o.how,
+                 "edges of more than two triangles: pair (default, by solids), split or keep")
+      ->check(CLI::IsMember({"pair", "split", "keep"}));
+  app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
+      ->type_name("NAME")
+      ->group("Reports");
+  app.add_option("--resolve", o.resolving,
+                 "self-intersections: none (default: left as they are), outer: only what bounds the "
+                 "outside is kept, or all: every piece")
+      ->check(CLI::IsMember({"none", "outer", "all"}));
+  app.add_option("--drop-spikes", o.spikes,
+                 "move vertices farther from all their neighbors than R times the extent of these among "
+                 "them")
+      ->check(positive_number())
+      ->type_name("R");
+  app.add_option("--culprits", o.offending, "write the offending triangles to this file")
+      ->type_name("FILE")
+      ->group("Reports");
+}
+
+/// Moves spikes as the options ask; returns their number.
+int flatten(Io& io, Surface& s, const Options& o) {
+  const int n = o.spikes > 0 ? flatten_spikes(s, o.spikes) : 0;
+  if (n > 0) io.say("vertices that stuck out and moved among their neighbors: " + std::to_string(n));
+  io.report["spikes"] = n;
+  return n;
+}
+
+/// Remarks on vertices that stick out, for programs that fail on them.
+void remark_on_spikes(const Io& io, Stream& stream) {
+  const Spikes spikes = find_spikes(stream.surface);
+  if (spikes.count == 0) return;
+  stream.remarks.push_back("spikes " + std::to_string(spikes.count));
+  const Vec3 p = spikes.longest;
+  io.say("vertices that stick out: " + std::to_string(spikes.count) + ", the farthest at " + shown(p.x) +
+         ' ' + shown(p.y) + ' ' + shown(p.z));
 }
 
 }  // namespace
@@ -94,34 +145,7 @@ int main(int argc, char** argv) {
       "examples:\n  mclean tree.stl -o clean.ply\n"
       "  mclean --weld 0.0001% --keep-components 1 tree.stl | mtopo > topo.ply\n"
       "  mclean --drop-nonorientable --culprits bad.ply tree.stl -o clean.ply",
-      [&](CLI::App& app) {
-        app.add_option(
-               "--weld", o.within,
-               "merge vertices this close: auto (default, by precision), length, or % of the diagonal")
-            ->type_name("auto|TOL");
-        app.add_option("--keep-components", o.most, "keep the N largest components by area (default all)")
-            ->type_name("N|all");
-        app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
-            ->check(CLI::Range(3, 100000))
-            ->type_name("N");
-        app.add_flag("--cap-patches", o.cap_patches,
-                     "give each filled hole a patch of its own, named cap-1 ...");
-        app.add_flag("--drop-nonorientable", o.drop_nonorientable,
-                     "drop components that are not orientable, instead of failing with 4");
-        app.add_option("--sheets", o.how,
-                       "edges of more than two triangles: pair (default, by solids), split or keep")
-            ->check(CLI::IsMember({"pair", "split", "keep"}));
-        app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
-            ->type_name("NAME")
-            ->group("Reports");
-        app.add_option("--resolve", o.resolving,
-                       "self-intersections: none (default: left as they are), outer: only what bounds the "
-                       "outside is kept, or all: every piece")
-            ->check(CLI::IsMember({"none", "outer", "all"}));
-        app.add_option("--culprits", o.offending, "write the offending triangles to this file")
-            ->type_name("FILE")
-            ->group("Reports");
-      },
+      [&](CLI::App& app) { add_options(app, o); },
       [&](Io& io) {
         check(o);
         o.sheets = o.how == "keep" ? o.keep : o.how == "split" ? o.split : o.pair;
@@ -140,7 +164,9 @@ int main(int argc, char** argv) {
           if (!o.offending.empty()) write_offending(io, o.offending, report, input);
         };
         try {
+          const int moved = flatten(io, s, o);
           clean(s, o, report);
+          report.nothing = report.nothing && moved == 0;
         } catch (const NotAdmissible&) {
           report_faults();
           throw;
@@ -158,6 +184,7 @@ int main(int argc, char** argv) {
         if (stream.input_triangles == 0 || !report.nothing) {
           std::erase_if(stream.remarks, is_of_former_run);
           if (const std::string r = remark_of(report); r.size()) stream.remarks.push_back(r);
+          remark_on_spikes(io, stream);
         }
         stream.input_triangles = (int)s.tris.size();
         say(io, report, o, s);

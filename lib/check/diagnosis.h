@@ -13,6 +13,7 @@ struct Diagnosis {
   double weld = 0;                ///< tolerance that merges points almost at one place; 0: there are none
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others
+  int spikes = 0;                 ///< vertices that stick out, as mclean has found them
   bool closed = false;            ///< no edge has one triangle only, where equal points are one
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;

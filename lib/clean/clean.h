@@ -86,6 +86,19 @@ struct CleanReport {
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
 
+/// Moves each vertex whose neighbors are all farther from it than `extents` times the diagonal of their box
+/// among them. Returns the number; equal vertices are one.
+int flatten_spikes(Surface& surface, double extents);
+
+struct Spikes {
+  int count = 0;
+  Vec3 longest{};  ///< where the longest ends
+  /// What a remark in the stream says, "spikes COUNT"; 0 of other texts.
+  static int parse(const std::string& remark);
+};
+/// Finds vertices of a welded surface that stick out by 5 of those extents; none if they are many.
+Spikes find_spikes(const Surface& surface);
+
 /// Returns the same triangles with copies of vertices that keep sheets and fans apart: an oriented manifold.
 /// Throws: NotAdmissible if the mesh needs any other repair.
 Mesh sheets_apart(const Mesh& mesh);

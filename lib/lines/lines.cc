@@ -268,8 +268,8 @@ bool cuts_off_a_bend(const Surface& s, const std::vector<double>& size, const Ch
 }
 
 /// Returns the number of segments that each line is divided into at first: the rounded integral of 1/h, at
-/// least 1, or 3 for a loop.
-std::vector<int> segment_counts(const Chains& chains) {
+/// least 1, or 3 where a loop ends at its start, or at a copy of that.
+std::vector<int> segment_counts(const Surface& s, const Chains& chains) {
   std::vector<int> count;
   std::vector<std::array<int, 3>> single;  // ends and line of those with one segment
   double all = 0;
@@ -285,7 +285,7 @@ std::vector<int> segment_counts(const Chains& chains) {
       throw GoalMissed("the sizes ask for more than " + shown(most_segments) +
                        " segments of lines; ask for larger sizes");
     const int n = static_cast<int>(std::round(total(l)));
-    count.push_back(std::max(a == b ? 3 : 1, n));
+    count.push_back(std::max(s.points[a] == s.points[b] ? 3 : 1, n));
     if (count.back() == 1) single.push_back({std::min(a, b), std::max(a, b), l});
   }
   // of several lines between the same two vertices only the shortest may be a single segment
@@ -360,7 +360,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner), &chain_tag);
   measure_chains(surface, size, chains);
   Division division(chains.chain.size());
-  const std::vector<int> count = segment_counts(chains);
+  const std::vector<int> count = segment_counts(surface, chains);
   for (int l = 0; l < static_cast<int>(count.size()); ++l) {
     division[l] = divide(chains, l, count[l]);
     if (cuts_off_a_bend(surface, size, chains, chains.chain[l], division[l]))

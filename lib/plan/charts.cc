@@ -131,14 +131,13 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const double area_scale = missed ? HUGE_VAL : report.area_scale;
   // a circle map that was asked for is the user's own choice
   const bool chosen = report.used == options.map && options.map != MapKind::conformal;
-  const bool stretched = !missed && !chosen && round < limit::stretched_rounds &&
-                         report.anisotropy_mean > limit::mean_anisotropy &&
-                         (mesh.tris.size() >= limit::least_triangles ||
-                          report.anisotropy_mean > limit::unresolved_anisotropy);
+  const bool stretched =
+      !missed && !chosen && round < limit::stretched_rounds &&
+      report.anisotropy_mean > limit::mean_anisotropy &&
+      (mesh.tris.size() >= limit::least_triangles || report.anisotropy_mean > limit::area_scale);
   const bool limbs =
       !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
-  int n = n_parts;
-  if (limbs || stretched) n = cut_along_limbs(surface, p, n_parts);
+  int n = limbs || stretched ? cut_along_limbs(surface, p, n_parts) : n_parts;
   if (n == n_parts && !missed && !chosen && round < limit::limb_rounds &&
       report.anisotropy_median > limit::limb_anisotropy && mesh.tris.size() >= limit::limb_triangles)
     n = cut_if_flatter(surface, mesh, p, n_parts, options, report);

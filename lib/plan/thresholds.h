@@ -40,9 +40,8 @@ constexpr double limb_gain = 0.6;
 constexpr double limb_aspect = 2;
 /// Triangles below which no limb is cut along its length: it costs more than it gains.
 constexpr std::size_t limb_triangles = 500;
-/// Triangles below which no part is cut for the mean of sigma1/sigma2, and that mean above which any is.
+/// Triangles below which no part is cut for the mean of sigma1/sigma2, unless that is above `area_scale`.
 constexpr std::size_t least_triangles = 50;
-constexpr double unresolved_anisotropy = 1e6;
 /// Parts that one cut along limbs may end in: a ragged part keeps its aspect ratio through many cuts. Effect:
 /// 80 of 121 cuts are given up, on 4 surfaces.
 constexpr int limb_parts = 4;

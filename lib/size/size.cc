@@ -29,7 +29,7 @@ constexpr double interpolation_error = 0.15;  ///< of the size in the middle of 
 constexpr double excess_error = 0.5;          ///< the same near narrow places, where it only costs triangles
 constexpr double count_error = 1e-3;          ///< of the number of triangles asked for
 constexpr double most_times = 20;             ///< triangles of narrow strips, over those asked for,
-constexpr double many_triangles = 5e5;        ///< unless they are no more than this: a minute
+constexpr double many_triangles = 5e4;        ///< unless they are no more than this: seconds
 constexpr double wide_strip = 0.1;            ///< over the size: beyond what mfeature removes unasked
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 

@@ -61,6 +61,14 @@ struct Row {
   WayOut (*way)(const Case&);
 };
 const Row table[] = {
+    {[](const Case& c) {
+       return c.found.spikes > 0 && c.status >= goal_missed && !c.used("mclean", "--drop-spikes");
+     },
+     [](const Case& c) {
+       return WayOut{"mclean --drop-spikes 5",
+                     c.found.spikes == 1 ? "a vertex sticks out of the surface"
+                                         : std::to_string(c.found.spikes) + " vertices stick out of it"};
+     }},
     {[](const Case& c) { return c.facts.least_size > 0; },
      [](const Case& c) {
        return WayOut{"--min " + at_least(c.facts.least_size), "smaller sizes cannot be met"};

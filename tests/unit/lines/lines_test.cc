@@ -368,6 +368,8 @@ TEST(Lines, LoopsKeepTheirOrientation) {
     area += cross(charts[0].uv[t[1]] - charts[0].uv[t[0]], charts[0].uv[t[2]] - charts[0].uv[t[0]]);
   ASSERT_GT(area, 0);
   expect_embedded(charts, make_lines(pinched, charts), 0, 0.3);
+  pinched.points[64] = pinched.points[0];  // two fans of one vertex: its copies are no edge apart
+  for (const Line& l : make_lines(pinched, charts).lines) EXPECT_GE(l.count, 4);
 }
 
 // the border of a square in two colors: it ends where the color changes, and the lines have their labels

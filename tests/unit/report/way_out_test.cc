@@ -28,6 +28,8 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   EXPECT_EQ(named(missed, {}, found), "mclean --resolve outer");
   found.weld = 2.3456e-7;
   EXPECT_EQ(named(missed, {}, found), "mclean --weld 2.35e-07");
+  found.spikes = 1;
+  EXPECT_EQ(named(missed, {}, found), "mclean --drop-spikes 5");
 }
 
 TEST(WayOut, NamesNothingThatWasTried) {
