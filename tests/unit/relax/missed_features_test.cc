@@ -46,11 +46,11 @@ TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
       m.s.hold[v] = fixed;
     }
   std::vector<Sample> samples = feature_samples(m.reference, 1000);
-  EXPECT_TRUE(reach_features(m.s, samples));
+  EXPECT_TRUE(reach_features(m.s, samples, rules::missed, rules::features));
   ASSERT_EQ(m.s.points.size(), 7u);
   EXPECT_LT(norm(m.s.points[6] - Vec3{4, 4, 2}), 1e-9);
   EXPECT_EQ(m.s.hold[6], anchored);
-  EXPECT_FALSE(reach_features(m.s, samples));
+  EXPECT_FALSE(reach_features(m.s, samples, rules::missed, rules::features));
 }
 
 }  // namespace
