@@ -15,14 +15,14 @@ struct Known {
   std::optional<Bvh> tree;
 };
 
-/// What is wrong, and how wrong: a count of pairs, and a sum of distances over those that are bearable.
+/// What is wrong, and how wrong: a count of pairs, and a sum of distances and 1/kappa over what is bearable.
 struct Fault {
   std::vector<std::pair<int, int>> pairs;
   int of_reference = 0;
-  std::vector<int> far;  ///< triangles
+  std::vector<int> triangles;  ///< those that are too far from the reference, and needles
   double excess = 0;
 
-  bool none() const { return pairs.empty() && far.empty(); }
+  bool none() const { return pairs.empty() && triangles.empty(); }
   bool less_than(const Fault& other) const {
     return pairs.size() < other.pairs.size() ||
            (pairs.size() == other.pairs.size() && excess < rules::less_excess * other.excess);
@@ -42,8 +42,8 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   for (auto& [a, b] : found.pairs) a = number[a], b = number[b];
 }
 
-/// The largest distance of the middles of triangle t and its edges from the reference. By a search: a walk may
-/// end on the wrong sheet.
+/// The largest distance of the middles of triangle t and its edges from the reference. By a search: a walk
+/// may end on the wrong sheet.
 double distance_of(const State& s, int t, const Bvh& tree) {
   const auto [a, b, c] = s.mesh.tris[t];
   const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
@@ -82,16 +82,39 @@ void find_far(const State& s, Known& known, Fault& found) {
   }
   std::sort(far.begin(), far.end());
   for (auto [t, ratio] : far) {
-    if (!found.far.empty() && found.far.back() == t) continue;
-    found.far.push_back(t);
+    if (!found.triangles.empty() && found.triangles.back() == t) continue;
+    found.triangles.push_back(t);
     found.excess -= ratio;
   }
+}
+
+/// Triangles that are needles, but for those that a corner of the model forces: between two of its edges.
+/// None if there are so many that it is not their own sizes that are at fault.
+void find_needles(const State& s, Fault& found) {
+  const EditMesh& m = s.mesh;
+  std::vector<int> needles;
+  double excess = 0;
+  for (int t = 0; t < (int)m.tris.size(); ++t) {
+    if (m.dead(t)) continue;
+    const auto [a, b, c] = m.tris[t];
+    const double k = kappa(s.points[a], s.points[b], s.points[c]);
+    if (k > rules::bearable_kappa) continue;
+    bool forced = false;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      forced |= m.hard[h] && m.hard[prev(h)] && s.hold[m.from(h)] == fixed;
+    if (forced) continue;
+    needles.push_back(t);
+    excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
+  }
+  if ((int)needles.size() > rules::hopeless) return;
+  found.triangles.insert(found.triangles.end(), needles.begin(), needles.end());
+  found.excess += excess;
 }
 
 /// Asks for smaller triangles around the offending ones, splits their longest edges and smooths.
 void refine_at(State& s, const Fault& fault) {
   const EditMesh& m = s.mesh;
-  std::vector<int> offending = fault.far, around;
+  std::vector<int> offending = fault.triangles, around;
   for (auto [a, b] : fault.pairs) offending.insert(offending.end(), {a, b});
   sort_unique(offending);
   for (int t : offending)
@@ -130,6 +153,7 @@ Intersections mend(State& s, std::vector<Sample>& samples) {
     Fault found;
     find_intersections(s, known, found);
     find_far(s, known, found);
+    find_needles(s, found);
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
     const bool last = found.none() || since_best == rules::useless_rounds || round == rules::mend_rounds ||
@@ -138,8 +162,8 @@ Intersections mend(State& s, std::vector<Sample>& samples) {
     if (last) return {found.pairs, found.of_reference};
     if (better) best = {s, found};
     refine_at(s, found);
-    if (found.far.empty()) continue;
-    reach_features(s, samples, rules::too_far, (int)found.far.size());
+    if (found.triangles.empty()) continue;
+    reach_features(s, samples, rules::too_far, (int)found.triangles.size());
     repair_worst(s, memory);
   }
 }

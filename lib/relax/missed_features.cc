@@ -121,8 +121,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
   for (Trial& trial : trials) settle(trial.state, 1);
   keep_best(trials, rules::promising_features);
   for (Trial& trial : trials)
-    if (trial.objective < bearable && deviation(trial.state) <= near_enough)
-      return std::move(trial.state);
+    if (trial.objective < bearable && deviation(trial.state) <= near_enough) return std::move(trial.state);
   return {};
 }
 

@@ -46,8 +46,8 @@ std::vector<Sample> feature_samples(const Reference& reference, double h);
 /// reached.
 bool reach_features(State& s, std::vector<Sample>& samples, double least, int most);
 
-/// Measures how far the samples are from the mesh: at most what is returned, and exactly that where it is more
-/// than `enough`. Sets the triangle that each is near to.
+/// Measures how far the samples are from the mesh: at most what is returned, and exactly that where it is
+/// more than `enough`. Sets the triangle that each is near to.
 std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough);
 
 // --- mend.cc ---

@@ -26,7 +26,7 @@ double required_distance(const Contract& contract);
 
 /// Returns lines on what the contract may allow: a distance above half the size; and what mclean and mfeature
 /// have done to the input's topology, which the comparison with the cleaned input hides.
-std::vector<std::string> warnings_of(const Findings& findings, const Stream& stream);
+std::vector<std::string> warnings_of(const Stream& stream);
 
 /// Returns the figures, histograms and cleaning for --json.
 nlohmann::ordered_json report_of(const Findings& findings, const Stream& stream);
