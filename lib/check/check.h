@@ -41,9 +41,9 @@ struct Findings {
   int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
-/// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component that
-/// one of the two lacks is, too. (Three edges that stand for a circle deviate by 0.29 of their length.) Unit of
-/// Deviation::ratio.
+/// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component
+/// that one of the two lacks is, too. (Three edges that stand for a circle deviate by 0.29 of their length.)
+/// Unit of Deviation::ratio.
 constexpr double most_deviation = 0.5;
 
 /// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex

@@ -127,7 +127,7 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<in
     tries = optimize_to_count(s, options.sweeps, target, samples);
   else
     optimize(s, options.sweeps, natural, samples);
-  const Intersections left = mend(s, samples);
+  const Intersections left = remove_faults(s, samples);
   RelaxReport report{s.counts, left.pairs, left.of_reference};
   report.tries = tries;
   const std::vector<int> row = finish(s, mesh);

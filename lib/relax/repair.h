@@ -50,7 +50,7 @@ bool reach_features(State& s, std::vector<Sample>& samples, double least, int mo
 /// more than `enough`. Sets the triangle that each is near to.
 std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough);
 
-// --- mend.cc ---
+// --- faults.cc ---
 
 /// Pairs of triangles that intersect, sorted: those that do not on the reference, and the number of the
 /// others.
@@ -62,6 +62,6 @@ struct Intersections {
 /// Refines where triangles intersect but the reference does not, and where the two are farther apart than
 /// half the size: there the reference is too thin or bends too much for the size. Ends with the least faults
 /// it came to, when more rounds do not help; returns what still intersects.
-Intersections mend(State& s, std::vector<Sample>& samples);
+Intersections remove_faults(State& s, std::vector<Sample>& samples);
 
 }  // namespace meshpipe

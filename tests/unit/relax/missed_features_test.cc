@@ -61,14 +61,14 @@ TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
   EXPECT_FALSE(reach_features(m.s, samples, rules::missed, rules::features));
 }
 
-TEST(Mend, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
+TEST(Faults, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
   for (double height : {1.0, 3.0, 6.0}) {
     const Surface reference = peak(height);
     Surface flat = cut_off();
     Drawn m(reference, &flat);
     put_on_rim(m, reference);
     std::vector<Sample> samples = feature_samples(m.reference, 1000);
-    EXPECT_TRUE(mend(m.s, samples).pairs.empty());
+    EXPECT_TRUE(remove_faults(m.s, samples).pairs.empty());
     forget_near(samples);
     const std::vector<double> distance = sample_distances(m.s, samples, 0);
     EXPECT_LT(*std::max_element(distance.begin(), distance.end()), 2) << height;

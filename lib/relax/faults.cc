@@ -88,8 +88,8 @@ void find_far(const State& s, Known& known, Fault& found) {
   }
 }
 
-/// Triangles that are needles, but for those that a corner of the model forces: between two of its edges.
-/// None if there are so many that it is not their own sizes that are at fault.
+/// Triangles that are needles, except those between two model edges at a corner, which forces them.
+/// None if there are too many: then the sizes of all are at fault.
 void find_needles(const State& s, Fault& found) {
   const EditMesh& m = s.mesh;
   std::vector<int> needles;
@@ -143,7 +143,7 @@ void refine_at(State& s, const Fault& fault) {
 
 }  // namespace
 
-Intersections mend(State& s, std::vector<Sample>& samples) {
+Intersections remove_faults(State& s, std::vector<Sample>& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   std::optional<std::pair<State, Fault>> best;
   forget_near(samples);
@@ -156,7 +156,7 @@ Intersections mend(State& s, std::vector<Sample>& samples) {
     find_needles(s, found);
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
-    const bool last = found.none() || since_best == rules::useless_rounds || round == rules::mend_rounds ||
+    const bool last = found.none() || since_best == rules::useless_rounds || round == rules::fault_rounds ||
                       s.mesh.live > most;
     if (last && !better) s = std::move(best->first), found = std::move(best->second);
     if (last) return {found.pairs, found.of_reference};
