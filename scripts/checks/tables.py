@@ -73,6 +73,8 @@ WORD_EXCEPTIONS = [
     ("turned", "*", "turned_edges", "a key of mcheck's report, which is public"),
     ("culprits?", "*", r"--culprits|Fl -culprits|o\.culprits", "a public option of mclean and mcheck"),
     ("cells?", "scripts/benches/*", "", "entries of a printed table"),
+    ("cells?", "README.md", "cell_data", "meshio's and PyVista's word for elements"),
+    ("cells?", "scripts/python/*", "", "meshio's and PyVista's word for elements"),
     ("cells?", "tests/cases/*", "", "VTK's word for elements"),
     ("cells?", "tools/mconvert.1", "", "VTK's word for elements"),
     ("cells?", "tools/report/*", "", "entries of a table of pictures"),

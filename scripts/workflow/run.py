@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Remeshes one surface of a cohort and records how it ended.
+
+usage: run.py NAME SURFACE RECORD.json FORMAT [options of mremesh]
+
+Next to RECORD.json come page.html and NAME.FORMAT, which is there also where the contract is missed. Statuses 2 to 6 are
+results: the record has them, and this ends with 0. Any other status, of a job that was killed or could not write, is passed on.
+"""
+import json
+import os
+import subprocess
+import sys
+
+
+def main(name, surface, record, extension, *options):
+    folder = os.path.dirname(record)
+    os.makedirs(folder, exist_ok=True)
+    report = os.path.join(folder, "report.json")
+    mesh = os.path.join(folder, f"{name}.{extension}")
+    for old in (report, mesh, os.path.join(folder, "page.html")):
+        if os.path.exists(old):
+            os.remove(old)
+    command = ["mremesh", "-q", *options, "--accept", "--report", report, "--html", os.path.join(folder, "page.html"),
+               "-o", mesh, "--", surface]
+    done = subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
+    sys.stderr.write(done.stderr)
+    if done.returncode not in (0, 2, 3, 4, 5, 6):
+        return done.returncode if done.returncode > 0 else 128 - done.returncode
+    found = {"name": name, "surface": surface, "options": list(options), "status": done.returncode,
+             "message": done.stderr.strip().split("\n")[-1] if done.returncode else "", "figures": {}}
+    if os.path.exists(report):
+        with open(report, encoding="utf-8") as f:
+            found["figures"] = {k: v for k, v in json.load(f).items() if isinstance(v, (int, float, bool))}
+    with open(record + ".part", "w", encoding="utf-8") as f:
+        json.dump(found, f, indent=1)
+    os.replace(record + ".part", record)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]) if len(sys.argv) > 4 else __doc__)
