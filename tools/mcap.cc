@@ -89,7 +89,9 @@ void name_patches(Stream& stream, const std::vector<End>& ends, const std::vecto
         added.push_back(tag);
       }
   if (added.empty()) return;
-  const int least = *std::min_element(added.begin(), added.end());
+  const auto [first, last] = std::minmax_element(added.begin(), added.end());
+  const int least = *first;
+  stream.remarks.push_back(remark_of({least, *last}));
   const bool one =
       std::all_of(patch.begin(), patch.end(), [&](int p) { return p >= least || p == patch[0]; });
   if (one && stream.name_of(2, patch[0]).empty()) stream.names.push_back({2, patch[0], "wall"});

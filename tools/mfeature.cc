@@ -5,6 +5,7 @@
 #include "formats/foreign/patch_groups.h"
 #include "formats/stream/model_edges.h"
 #include "formats/stream/stages.h"
+#include "lib/cap/cap.h"
 #include "lib/core/triangle_count.h"
 #include "lib/defeature/defeature.h"
 #include "lib/feature/feature.h"
@@ -175,6 +176,9 @@ void mark(Io& io, Options& o) {
   const double length = o.size > 0 ? o.size : size_for_count(total_area(surface), o.triangles);
   if (asked) o.size = length;
   std::vector<int> before = surface.face.has("patch") ? surface.face.get<int>("patch") : std::vector<int>();
+  for (const std::string& remark : stream.remarks)
+    if (const CapPatches caps = parse_caps(remark); caps.first <= caps.last)
+      o.first_cap = caps.first, o.last_cap = caps.last;
   const PatchMerge merge = merge_patches(io, stream, o, length);
   io.report["patches_before"] = merge.patch.size();
   io.report["patches"] = merge.count();

@@ -42,6 +42,14 @@ void name_ends(std::vector<End>& ends, const std::vector<EndName>& names);
 /// Returns "end 3, outlet_2, at (x, y, z)" for messages; `i` counts from 0.
 std::string title_of(const std::vector<End>& ends, int i);
 
+/// The first and the last of the patches that were added, for the stream: "capped FIRST LAST".
+struct CapPatches {
+  int first = 0, last = -1;
+};
+std::string remark_of(const CapPatches& patches);
+/// What a remark says; nothing of other texts.
+CapPatches parse_caps(const std::string& remark);
+
 struct CapOptions {
   double trim = 0;              ///< cuts this length off each end; 0: nothing
   bool trim_by_radius = false;  ///< `trim` is in radii of the end

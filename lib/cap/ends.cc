@@ -181,6 +181,16 @@ void name_ends(std::vector<End>& ends, const std::vector<EndName>& names) {
   for (int i = 0; i < n; ++i) ends[i].name = given[i];
 }
 
+std::string remark_of(const CapPatches& patches) {
+  return "capped " + std::to_string(patches.first) + ' ' + std::to_string(patches.last);
+}
+
+CapPatches parse_caps(const std::string& remark) {
+  CapPatches patches;
+  if (std::sscanf(remark.c_str(), "capped %d %d", &patches.first, &patches.last) != 2) return {};
+  return patches;
+}
+
 std::string shown(Vec3 p) {
   char text[100];
   std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x, p.y, p.z);

@@ -40,6 +40,7 @@ struct Network {
   std::vector<char> on{}, strong{};  ///< creases; those chosen by their angle alone
   std::vector<char> patch{};         ///< between two patches, or given
   std::vector<char> given{};         ///< by the caller
+  std::vector<char> cap{};           ///< on the border of a patch that caps an end
   std::vector<char> merged{};        ///< between two patches that have become one
   std::vector<int> spoke{};          ///< a half-edge that leaves the vertex, on the border the border's
   std::vector<int> valence{};        ///< of the network of creases
@@ -103,7 +104,8 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
     slivers += angle(own, normal[t]) > continue_turn;
   }
   net.angle.assign(n, 0);
-  for (auto* flags : {&net.on, &net.patch, &net.given, &net.merged}) flags->assign(n, 0);
+  for (auto* flags : {&net.on, &net.patch, &net.given, &net.cap, &net.merged}) flags->assign(n, 0);
+  auto caps = [&](int label) { return options.first_cap <= label && label <= options.last_cap; };
   net.spoke.assign(s.points.size(), -1);
   net.valence.assign(s.points.size(), 0);
   net.anchor.assign(s.points.size(), 0);
@@ -118,6 +120,7 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
     const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
     net.given[h] = o >= 0 && !merged && given && (*given)[h] >= 0;
     net.patch[h] = border || net.given[h];
+    net.cap[h] = border && (caps((*patch)[h / 3]) || caps((*patch)[o / 3]));
     net.merged[h] = merged && options.mode == FeatureOptions::automatic && net.angle[h] <= step;
     if (o < 0 || net.patch[h] || net.merged[h]) net.anchor[v] = net.anchor[net.to(h)] = 1;
   }
@@ -238,6 +241,7 @@ void keep_designed(Network& net, double strong, double weak) {
   }
   for (int h = 0; h < m; ++h) {
     if (net.opposite[h] < h) continue;
+    if (net.cap[h]) continue;
     const int c = component[h / 3];
     if (net.angle[h] > weak && net.angle[h] <= strong) between[c] += net.length(h);
     if (!net.strong[h] && !(net.patch[h] && net.angle[h] > strong)) continue;

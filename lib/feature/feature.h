@@ -15,6 +15,8 @@ struct FeatureOptions {
   enum { automatic, angles, none } mode = automatic;
   double strong = 40, weak = 20;  ///< degrees; a crease starts above the one and continues above the other
   double size = 0;                ///< target edge length; 0: the mean edge length
+  /// First and last of the patches that cap ends: their borders do not show that the rest is designed.
+  int first_cap = 0, last_cap = -1;
 };
 
 /// Sets mode and angles from "auto", "none", "A" or "A,B" (degrees; B is A / 2 by default). Throws: BadUsage.
