@@ -26,17 +26,18 @@ if(MESHPIPE_DEBIAN)
     install(FILES ${MESHPIPE_DOC}/${name}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   endforeach()
   configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.in ${MESHPIPE_DOC}/changelog @ONLY)
-  execute_process(COMMAND gzip -9nc ${MESHPIPE_DOC}/changelog OUTPUT_FILE ${MESHPIPE_DOC}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
-  install(FILES ${MESHPIPE_DOC}/changelog.gz ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  execute_process(COMMAND gzip -9nc ${MESHPIPE_DOC}/changelog OUTPUT_FILE ${MESHPIPE_DOC}/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${MESHPIPE_DOC}/changelog.Debian.gz ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endif()
 
 set(CPACK_PACKAGE_NAME meshpipe)
 set(CPACK_PACKAGE_VENDOR "The meshpipe authors")
 set(CPACK_PACKAGE_CONTACT "The meshpipe authors <meshpipe@localhost.localdomain>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "remesh triangulated surfaces for finite elements and CFD")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Small programs, chained by mremesh, turn an STL, OBJ, PLY or MSH surface of any genus into a
-mesh of good triangles with the size asked for, on the same surface, with its
-patches and their names, and verify the result.")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Small programs, chained by mremesh, turn an STL, OBJ, PLY or MSH
+surface of any genus into a mesh of good triangles with the size asked
+for, on the same surface, with its patches and their names, and verify
+the result.")
 set(CPACK_GENERATOR TGZ)
 set(CPACK_PACKAGE_FILE_NAME meshpipe-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
 set(CPACK_STRIP_FILES ON)

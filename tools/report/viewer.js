@@ -419,6 +419,7 @@ function step(by) {
 }
 
 async function begin() {
+  if (!meshes.length) throw new Error('there are no triangles');
   panes = [...document.querySelectorAll('.pane')].map(root => new Pane(root));
   $('viewer').hidden = false;
   $('stills').hidden = true;
@@ -479,6 +480,6 @@ async function rest(button) {
 begin().catch(e => {
   $('viewer').hidden = true;
   $('stills').hidden = false;
-  $('why').textContent = `The surface cannot be shown in three dimensions here (${e.message}); this is a picture of it.`;
+  $('why').textContent = `The surface cannot be shown in three dimensions here (${e.message})` + (meshes.length ? '; this is a picture of it.' : '.');
 });
 })();
