@@ -22,7 +22,7 @@ struct Options {
 
 void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
-  for (const std::string& line : warnings_of(f, io.stream)) io.say(line);
+  for (const std::string& line : warnings_of(io.stream)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);

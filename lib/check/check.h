@@ -41,10 +41,9 @@ struct Findings {
   int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
-/// Of the local size: an edge that is farther off cuts through what it should follow, and that is worth a
-/// warning. (Three edges that stand for a circle deviate by 0.29 of their length.) Unit of Deviation::ratio.
-/// The contract allows twice as much, the roughness of surfaces with detail as fine as the size (steps of
-/// voxels, terrain: 0.9); what is farther off is a limb, a component, or a spike that one of the two lacks.
+/// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component
+/// that one of the two lacks is, too. (Three edges that stand for a circle deviate by 0.29 of their length.)
+/// Unit of Deviation::ratio.
 constexpr double most_deviation = 0.5;
 
 /// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex

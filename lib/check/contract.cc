@@ -190,7 +190,7 @@ double reached(const Requirement& r, const Findings& f) {
 }
 
 const char* const default_contract =
-    "topology,intersections,folds,patches,vertices=0.1,kappa=0.1,deviation=1";
+    "topology,intersections,folds,patches,vertices=0.1,kappa=0.1,deviation=0.5";
 
 Contract parse_contract(const std::string& list) {
   Contract contract;

@@ -30,18 +30,14 @@ Vec3 nearest_point(const State& s, int t, Vec3 p) {
   return b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
 }
 
-/// The samples farther from the mesh than `wanted`, which is set, the farthest first; with distances,
-/// negative.
-std::vector<std::pair<double, int>> farthest_samples(const State& s, std::vector<Sample>& samples,
-                                                     double& wanted) {
-  std::vector<int> number;
-  const Mesh mesh = without_gaps(s, number);
-  const Bvh tree(mesh);
-  const double h = size_for_count(total_area(mesh), mesh.tris.size());
+/// Measures the samples that are not known to be within `enough`, from where `distance` is infinite.
+void measure(const State& s, const Bvh& tree, const std::vector<int>& number, std::vector<Sample>& samples,
+             std::vector<double>& distance, double enough) {
   const int n = (int)samples.size();
-  std::vector<double> distance(n, 1e300);  // at most, and exact where it is more than `enough`
-  auto measure = [&](int first, int last, double enough) {
-    for (int i = first; i < last; ++i) {
+  constexpr int chunk = 256;
+#pragma omp parallel for schedule(dynamic) if (n > 10000)
+  for (int first = 0; first < n; first += chunk)
+    for (int i = first; i < std::min(n, first + chunk); ++i) {
       if (distance[i] <= enough) continue;
       Sample& sample = samples[i];
       const Vec3 p = s.reference->walk.point(sample.place);
@@ -55,14 +51,23 @@ std::vector<std::pair<double, int>> farthest_samples(const State& s, std::vector
       sample.near = number[hit.place.face];
       distance[i] = hit.distance;
     }
-  };
+}
+
+/// The samples farther from the mesh than `wanted`, which is set, and at least `least` times its size; the
+/// farthest first, with distances, negative.
+std::vector<std::pair<double, int>> farthest_samples(const State& s, std::vector<Sample>& samples,
+                                                     double least, double& wanted) {
+  std::vector<int> number;
+  const Mesh mesh = without_gaps(s, number);
+  const Bvh tree(mesh);
+  const double h = size_for_count(total_area(mesh), mesh.tris.size());
+  const int n = (int)samples.size();
+  std::vector<double> distance(n, 1e300);
   // only the farthest are wanted: the others need not be known any better
-  for (double enough = 0.5 * h;; enough = std::max(rules::missed * h, 0.5 * enough)) {
-    constexpr int chunk = 256;
-#pragma omp parallel for schedule(dynamic) if (n > 10000)
-    for (int first = 0; first < n; first += chunk) measure(first, std::min(n, first + chunk), enough);
+  for (double enough = 0.5 * h;; enough = std::max(least * h, 0.5 * enough)) {
+    measure(s, tree, number, samples, distance, enough);
     const double most = *std::max_element(distance.begin(), distance.end());
-    wanted = std::max(rules::missed * h, rules::farthest_share * most);
+    wanted = std::max(least * h, rules::farthest_share * most);
     if (!(enough > wanted)) break;
   }
   std::vector<std::pair<double, int>> farthest;
@@ -116,8 +121,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
   for (Trial& trial : trials) settle(trial.state, 1);
   keep_best(trials, rules::promising_features);
   for (Trial& trial : trials)
-    if (trial.objective < bearable && worst_cosine(trial.state) > 0 && deviation(trial.state) <= near_enough)
-      return std::move(trial.state);
+    if (trial.objective < bearable && deviation(trial.state) <= near_enough) return std::move(trial.state);
   return {};
 }
 
@@ -165,10 +169,18 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
   return samples;
 }
 
-bool reach_features(State& s, std::vector<Sample>& samples) {
+std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough) {
+  std::vector<int> number;
+  const Mesh mesh = without_gaps(s, number);
+  std::vector<double> distance(samples.size(), 1e300);
+  measure(s, Bvh(mesh), number, samples, distance, enough);
+  return distance;
+}
+
+bool reach_features(State& s, std::vector<Sample>& samples, double least, int most) {
   if (s.mesh.live == 0 || samples.empty()) return false;
   double wanted = 0;
-  const auto farthest = farthest_samples(s, samples, wanted);
+  const auto farthest = farthest_samples(s, samples, least, wanted);
   using Item = std::pair<double, int>;
   auto around = [&](const Item& item, std::vector<int> before) -> std::vector<int> {
     if (!before.empty()) return before;
@@ -186,7 +198,6 @@ bool reach_features(State& s, std::vector<Sample>& samples) {
   auto attempt = [&](const Item& item, const std::vector<int>& patch) {
     return reached(s, samples[item.second].place, wanted, patch);
   };
-  const int most = std::max(rules::features, s.mesh.live / rules::triangles_per_feature);
   return change_neighborhoods(s, farthest, most, rules::tries_per_feature * most, around, attempt,
                               [](const std::vector<int>&) {}) > 0;
 }

@@ -16,8 +16,8 @@ std::vector<int> vertices_of(const EditMesh& mesh, const std::vector<int>& trian
 
 double quality(const State& s, int t) {
   const auto [a, b, c] = s.mesh.tris[t];
-  if (s.cosine(a, b, c) < 0) return 0;
   const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
+  if (s.cosine(a, b, c) < 0 && !faces_reference(s, s.place[a], p, q, r)) return 0;
   const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
   // the least angle, between u and v, is opposite to the shortest side
   const bool at_p = qr <= pq && qr <= rp, at_q = !at_p && rp <= pq;
@@ -50,14 +50,7 @@ int worst(const State& s) {
   return least.second;
 }
 
-double worst_cosine(const State& s) {
-  double least = 1;
-  for (const auto& [a, b, c] : s.mesh.tris)
-    if (a >= 0) least = std::min(least, s.cosine(a, b, c));
-  return least;
-}
-
-double deviation(const State& s) {
+double deviation(const State& s, int t) {
   const EditMesh& m = s.mesh;
   const SurfaceWalk& walk = s.reference->walk;
   double most = 0;
@@ -68,13 +61,17 @@ double deviation(const State& s) {
       least = std::min(least, norm(walk.point(walk.closest(s.place[v], p, true)) - p) / s.target(v));
     most = std::max(most, least);
   };
-  for (int t = 0; t < (int)m.tris.size(); ++t) {
-    if (m.dead(t)) continue;
-    const auto [a, b, c] = m.tris[t];
-    look({a, b, c}, (1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]));
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (m.opp[h] < h) look({m.from(h), m.to(h)}, 0.5 * (s.points[m.from(h)] + s.points[m.to(h)]));
-  }
+  const auto [a, b, c] = m.tris[t];
+  look({a, b, c}, (1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]));
+  for (int h = 3 * t; h < 3 * t + 3; ++h)
+    if (m.opp[h] < h) look({m.from(h), m.to(h)}, 0.5 * (s.points[m.from(h)] + s.points[m.to(h)]));
+  return most;
+}
+
+double deviation(const State& s) {
+  double most = 0;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t)) most = std::max(most, deviation(s, t));
   return most;
 }
 

@@ -30,9 +30,10 @@ int irregularity(const State& s, int v);
 double objective(const State& s);
 /// The triangle of least quality.
 int worst(const State& s);
-/// The least cosine of a triangle's normal deviation.
-double worst_cosine(const State& s);
-/// The largest distance of the middles of edges and triangles from the reference, over the size.
+/// The largest distance of the middles of triangle t and its edges from the reference, over the size. An edge
+/// counts with the triangle of its larger half-edge.
+double deviation(const State& s, int t);
+/// The largest of all triangles.
 double deviation(const State& s);
 
 /// Triangle t, then those that are up to `rings` vertices away.

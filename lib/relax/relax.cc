@@ -50,7 +50,8 @@ void meet_count(State& s, double target) {
 }
 
 /// Sweeps with `target` triangles, then the places that need more than sweeps.
-void optimize(State& s, int sweeps, double target) {
+void optimize(State& s, int sweeps, double target, std::vector<Sample>& samples) {
+  forget_near(samples);
   for (int i = 0; i < sweeps; ++i) {
     // edits unsettle the mesh, so they come first and the last sweeps only settle it
     if (2 * i < sweeps) {
@@ -64,12 +65,11 @@ void optimize(State& s, int sweeps, double target) {
     smooth(s, 1);
     add_progress(0.5 / sweeps);
   }
-  std::vector<Sample> samples =
-      feature_samples(*s.reference, size_for_count(total_area(s.reference->surface), target));
   Repairs memory;
+  const int most = std::max(rules::features, s.mesh.live / rules::triangles_per_feature);
   for (int round = 0; round < rules::feature_rounds; ++round) {
     // on a smooth surface none is missed, and the mesh has come to rest in the first round
-    if (reach_features(s, samples) || round == 0) {
+    if (reach_features(s, samples, rules::missed, most) || round == 0) {
       smooth(s, 1);
       flip_to_shape(s);
       smooth(s, 1);
@@ -82,14 +82,14 @@ void optimize(State& s, int sweeps, double target) {
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
 /// a coarse mesh has less area than its reference: the count is known only after optimization, so repeat with
 /// a rescaled size field until it is within 1.5 %, unless the worst triangle gets worse.
-int optimize_to_count(State& s, int sweeps, double target) {
+int optimize_to_count(State& s, int sweeps, double target, std::vector<Sample>& samples) {
   const State start = s;
   std::optional<State> best;
   double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
   auto off = [&](const State& state) { return std::abs(state.mesh.live - target); };
   int tries = 1;
   for (;; ++tries) {
-    optimize(s, sweeps, goal);
+    optimize(s, sweeps, goal, samples);
     const double surplus = s.mesh.live - target, shape = quality(s, worst(s));
     if (tries == 1) sound = rules::spoilt * shape;
     if (shape >= sound && off(s) <= (tries == 1 ? rules::count_first : rules::count_aimed) * target)
@@ -120,12 +120,14 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<in
   hold_seams(s);
   const double natural = reference.sizes ? count_for_size(surface, *reference.sizes) : s.mesh.live;
   coarse_rounds(s);
+  const double target = options.target_triangles > 0 ? options.target_triangles : natural;
+  std::vector<Sample> samples = feature_samples(reference, size_for_count(total_area(surface), target));
   int tries = 1;
   if (options.target_triangles > 0)
-    tries = optimize_to_count(s, options.sweeps, options.target_triangles);
+    tries = optimize_to_count(s, options.sweeps, target, samples);
   else
-    optimize(s, options.sweeps, natural);
-  const Intersections left = separate(s);
+    optimize(s, options.sweeps, natural, samples);
+  const Intersections left = remove_faults(s, samples);
   RelaxReport report{s.counts, left.pairs, left.of_reference};
   report.tries = tries;
   const std::vector<int> row = finish(s, mesh);

@@ -31,16 +31,26 @@ struct Sample {
   int near = -1;
 };
 
+/// To be called for samples that were used with another mesh.
+inline void forget_near(std::vector<Sample>& samples) {
+  for (Sample& s : samples) s.near = -1;
+}
+
 /// The places of the reference that a mesh with edges of length h may miss: its vertices, and where it bends,
 /// points on its edges at most h / 3 apart.
 std::vector<Sample> feature_samples(const Reference& reference, double h);
 
 /// Puts mesh vertices on missed features, the maxima of the one-sided distance of the samples from the mesh,
-/// where that is more than a tenth of the size, the farthest first. They stay there. Returns whether one was
+/// where that is more than `least` times the size, at most `most`, the
+/// farthest first. They stay there. Returns whether one was
 /// reached.
-bool reach_features(State& s, std::vector<Sample>& samples);
+bool reach_features(State& s, std::vector<Sample>& samples, double least, int most);
 
-// --- separate.cc ---
+/// Measures how far the samples are from the mesh: at most what is returned, and exactly that where it is
+/// more than `enough`. Sets the triangle that each is near to.
+std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough);
+
+// --- faults.cc ---
 
 /// Pairs of triangles that intersect, sorted: those that do not on the reference, and the number of the
 /// others.
@@ -49,9 +59,9 @@ struct Intersections {
   int of_reference = 0;
 };
 
-/// Refines where triangles intersect but the reference does not: there it is too thin or bends too much for
-/// the size. Ends with the fewest intersections it came to, when more rounds do not help; returns what is
-/// left.
-Intersections separate(State& s);
+/// Refines where triangles intersect but the reference does not, and where the two are farther apart than
+/// half the size: there the reference is too thin or bends too much for the size. Ends with the least faults
+/// it came to, when more rounds do not help; returns what still intersects.
+Intersections remove_faults(State& s, std::vector<Sample>& samples);
 
 }  // namespace meshpipe

@@ -77,9 +77,15 @@ constexpr int hopeless = 100;              // triangles: if more are left, look 
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
-// intersections (separate.cc)
-constexpr double refinement = 0.8;  // of the size, each round
-constexpr int separate_rounds = 12, useless_rounds = 4;
+// faults (faults.cc)
+constexpr double parallel = 0.8;  // cosine: no edge between normals this close sags by `too_far`
+constexpr double too_far = 0.43;  // of the size: half of it is for mcheck to warn of
+constexpr double bearable_kappa = 0.12, worst_needle = 10;  // kappa, and what a needle adds at most
+constexpr double refinement = 0.8;                          // of the size, each round
+constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
+constexpr double growth = 1.5,
+                 few = 100;  // of the triangles, and triangles: what the removal of faults may add
+constexpr int fault_rounds = 16, useless_rounds = 4;
 
 // missed features (missed_features.cc)
 constexpr double bent = 0.985;          // cosine: 10 degrees, from where edges have samples

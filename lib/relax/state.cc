@@ -53,6 +53,11 @@ State::State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, st
     if (mesh.out[v] >= 0) coloring.color[v] = free_color(*this, v);
 }
 
+bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r) {
+  const SurfaceWalk& walk = s.reference->walk;
+  return dot(area_vector(p, q, r), walk.normal(walk.closest(from, (1.0 / 3) * (p + q + r), true))) > 0;
+}
+
 State start_state(LiftedMesh& lifted, const Reference& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner) {
   const int n = (int)lifted.points.size();

@@ -121,6 +121,11 @@ struct State {
   std::vector<Edit> edits;  ///< while recording
 };
 
+/// Has the triangle p, q, r the orientation of the reference at the place nearest to its middle, walked to
+/// from `from`? Where the reference bends much within an edge, as at a spike, the normals at the corners do
+/// not tell.
+bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r);
+
 /// The mesh to optimize, which is moved from. `line_kind` and `corner` as in relax.
 State start_state(LiftedMesh& mesh, const Reference& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner);

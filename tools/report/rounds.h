@@ -26,9 +26,9 @@ struct Outcome {
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
 
-/// The number of rounds of a chain at most: the whole takes about three times as long as the first, since
-/// later ones have the charts. What is not met by then hardly ever was, except a distance, which takes more.
-constexpr int most_rounds = 4, most_rounds_for_distance = 6;
+/// The number of rounds of a chain at most: the whole takes at most three times as long as the first, since
+/// later ones have the charts. What is not met by then hardly ever was, except a distance.
+constexpr int most_rounds = 3, most_rounds_for_distance = 6;
 /// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
 /// sizes.
 constexpr int rounds_of_count = 2;

@@ -66,12 +66,8 @@ double required_distance(const Contract& contract) {
   return most;
 }
 
-std::vector<std::string> warnings_of(const Findings& f, const Stream& stream) {
+std::vector<std::string> warnings_of(const Stream& stream) {
   std::vector<std::string> lines;
-  if (const Deviation& d = f.distance.deviation; d.worst > 1)
-    lines.push_back("the surfaces are " + shown(most_deviation * d.worst) + " of the local size apart at (" +
-                    shown(d.place.x) + " " + shown(d.place.y) + " " + shown(d.place.z) +
-                    "): detail as fine as the size is lost; --max-error bounds the distance");
   if (const double most = moved_in(stream); most > 0)
     lines.push_back("mfeature has moved points by up to " + shown(most) +
                     ": this is part of the distance at most");

@@ -24,9 +24,9 @@ double moved_in(const Stream& stream);
 /// Returns the distance that the contract requires, over the diagonal; infinite if none.
 double required_distance(const Contract& contract);
 
-/// Returns lines on what the contract may allow: a distance above half the size; and what mclean and mfeature
-/// have done to the input's topology, which the comparison with the cleaned input hides.
-std::vector<std::string> warnings_of(const Findings& findings, const Stream& stream);
+/// Returns lines on what mclean and mfeature have done to the input, which the comparison with the cleaned
+/// input hides.
+std::vector<std::string> warnings_of(const Stream& stream);
 
 /// Returns the figures, histograms and cleaning for --json.
 nlohmann::ordered_json report_of(const Findings& findings, const Stream& stream);

@@ -8,15 +8,15 @@ using namespace meshpipe;
 
 namespace {
 
-// a hexagon whose middle g is a peak of height 2
-Surface peak() {
+// a hexagon whose middle g is a peak
+Surface peak(double height = 2) {
   Surface s = drawn_surface({"  e   d  ",  //
                              "         ",  //
                              "f   g   c",  //
                              "         ",  //
                              "  a   b  "},
                             "abg bcg cdg deg efg fag");
-  s.points['g' - 'a'].z = 2;
+  s.points['g' - 'a'].z = height;
   return s;
 }
 
@@ -28,29 +28,52 @@ TEST(MissedFeatures, SamplesAreVerticesAndPointsOfBentEdges) {
   EXPECT_GE(feature_samples(reference, 7).size(), 7u + 6u);
 }
 
-TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
-  const Surface reference = peak();
-  Surface flat = drawn_surface({"  e   d  ",  //
-                                "         ",  //
-                                "f       c",  //
-                                "         ",  //
-                                "  a   b  "},
-                               "abc acd ade aef");
-  Drawn m(reference, &flat);
-  // the rim of the flat mesh lies on the rim of the reference
+// the same without its middle, on the peak's rim
+Surface cut_off() {
+  return drawn_surface({"  e   d  ",  //
+                        "         ",  //
+                        "f       c",  //
+                        "         ",  //
+                        "  a   b  "},
+                       "abc acd ade aef");
+}
+
+void put_on_rim(Drawn& m, const Surface& peak) {
   for (int t = 0; t < 6; ++t)
     for (int i = 0; i < 2; ++i) {
-      const int v = reference.tris[t][i];
+      const int v = peak.tris[t][i];
       m.s.place[v] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, 0.0};
       m.s.normal[v] = m.reference.normal(m.s.place[v]);
       m.s.hold[v] = fixed;
     }
+}
+
+TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
+  const Surface reference = peak();
+  Surface flat = cut_off();
+  Drawn m(reference, &flat);
+  put_on_rim(m, reference);
   std::vector<Sample> samples = feature_samples(m.reference, 1000);
-  EXPECT_TRUE(reach_features(m.s, samples));
+  EXPECT_TRUE(reach_features(m.s, samples, rules::missed, rules::features));
   ASSERT_EQ(m.s.points.size(), 7u);
   EXPECT_LT(norm(m.s.points[6] - Vec3{4, 4, 2}), 1e-9);
   EXPECT_EQ(m.s.hold[6], anchored);
-  EXPECT_FALSE(reach_features(m.s, samples));
+  EXPECT_FALSE(reach_features(m.s, samples, rules::missed, rules::features));
+}
+
+TEST(Faults, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
+  for (double height : {1.0, 3.0, 6.0}) {
+    const Surface reference = peak(height);
+    Surface flat = cut_off();
+    Drawn m(reference, &flat);
+    put_on_rim(m, reference);
+    std::vector<Sample> samples = feature_samples(m.reference, 1000);
+    EXPECT_TRUE(remove_faults(m.s, samples).pairs.empty());
+    forget_near(samples);
+    const std::vector<double> distance = sample_distances(m.s, samples, 0);
+    EXPECT_LT(*std::max_element(distance.begin(), distance.end()), 2) << height;
+    EXPECT_EQ(m.s.mesh.live > 4, height > 2) << "what is near enough stays as it is";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/bvh.h"
+#include "lib/core/intersect.h"
+#include "lib/core/triangle_count.h"
+#include "lib/relax/repair.h"
+
+namespace meshpipe {
+namespace {
+
+/// What is asked of the reference more than once, computed when it is needed.
+struct Known {
+  const Surface& reference;
+  std::vector<Sample>& samples;
+  std::optional<Mesh> intersections;
+  std::optional<Bvh> tree;
+};
+
+/// What is wrong, and how wrong: a count of pairs, and a sum of distances and 1/kappa over what is bearable.
+struct Fault {
+  std::vector<std::pair<int, int>> pairs;
+  int of_reference = 0;
+  std::vector<int> triangles;  ///< those that are too far from the reference, and needles
+  double excess = 0;
+
+  bool none() const { return pairs.empty() && triangles.empty(); }
+  bool less_than(const Fault& other) const {
+    return pairs.size() < other.pairs.size() ||
+           (pairs.size() == other.pairs.size() && excess < rules::less_excess * other.excess);
+  }
+};
+
+void find_intersections(const State& s, Known& known, Fault& found) {
+  std::vector<int> number;
+  const Mesh now = without_gaps(s, number);
+  found.pairs = self_intersections(now);
+  if (found.pairs.empty()) return;
+  if (!known.intersections)
+    known.intersections = contacts(known.reference, self_intersections(known.reference));
+  const int all = (int)found.pairs.size();
+  found.pairs = new_intersections(now, found.pairs, *known.intersections);
+  found.of_reference = all - (int)found.pairs.size();
+  for (auto& [a, b] : found.pairs) a = number[a], b = number[b];
+}
+
+/// The largest distance of the middles of triangle t and its edges from the reference. By a search: a walk
+/// may end on the wrong sheet.
+double distance_of(const State& s, int t, const Bvh& tree) {
+  const auto [a, b, c] = s.mesh.tris[t];
+  const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
+  double most = 0;
+  for (const Vec3& middle : {(1.0 / 3) * (p + q + r), lerp(p, q, 0.5), lerp(q, r, 0.5), lerp(r, p, 0.5)})
+    most = std::max(most, tree.nearest(middle).distance);
+  return most;
+}
+
+/// Triangles that are farther from the reference than a share of the size, and those that samples of it are
+/// nearest to and yet as far from.
+void find_far(const State& s, Known& known, Fault& found) {
+  double area = 0;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (const Tri& v = s.mesh.tris[t]; !s.mesh.dead(t))
+      area += 0.5 * norm(area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]));
+  const double mean_size = size_for_count(area, s.mesh.live);
+  const double least = rules::too_far * mean_size;
+  std::vector<std::pair<int, double>> far;
+  auto look = [&](int t, double distance) {
+    const Tri& v = s.mesh.tris[t];
+    const double size = std::max(mean_size, (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3);
+    if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
+  };
+  const std::vector<double> distance = sample_distances(s, known.samples, least);
+  for (std::size_t i = 0; i < distance.size(); ++i)
+    if (distance[i] > least) look(known.samples[i].near, distance[i]);
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = s.mesh.tris[t];
+    const Vec3 n = s.face_normal(t);
+    if (std::min({dot(n, s.normal[a]), dot(n, s.normal[b]), dot(n, s.normal[c])}) > rules::parallel) continue;
+    if (deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)}) <= least) continue;
+    if (!known.tree) known.tree.emplace(known.reference);
+    look(t, distance_of(s, t, *known.tree));
+  }
+  std::sort(far.begin(), far.end());
+  for (auto [t, ratio] : far) {
+    if (!found.triangles.empty() && found.triangles.back() == t) continue;
+    found.triangles.push_back(t);
+    found.excess -= ratio;
+  }
+}
+
+/// Triangles that are needles, except those between two model edges at a corner, which forces them.
+/// None if there are too many: then the sizes of all are at fault.
+void find_needles(const State& s, Fault& found) {
+  const EditMesh& m = s.mesh;
+  std::vector<int> needles;
+  double excess = 0;
+  for (int t = 0; t < (int)m.tris.size(); ++t) {
+    if (m.dead(t)) continue;
+    const auto [a, b, c] = m.tris[t];
+    const double k = kappa(s.points[a], s.points[b], s.points[c]);
+    if (k > rules::bearable_kappa) continue;
+    bool forced = false;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      forced |= m.hard[h] && m.hard[prev(h)] && s.hold[m.from(h)] == fixed;
+    if (forced) continue;
+    needles.push_back(t);
+    excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
+  }
+  if ((int)needles.size() > rules::hopeless) return;
+  found.triangles.insert(found.triangles.end(), needles.begin(), needles.end());
+  found.excess += excess;
+}
+
+/// Asks for smaller triangles around the offending ones, splits their longest edges and smooths.
+void refine_at(State& s, const Fault& fault) {
+  const EditMesh& m = s.mesh;
+  std::vector<int> offending = fault.triangles, around;
+  for (auto [a, b] : fault.pairs) offending.insert(offending.end(), {a, b});
+  sort_unique(offending);
+  for (int t : offending)
+    for (int v : m.tris[t]) {
+      around.push_back(v);
+      m.neighbors(v, [&](int w) { around.push_back(w); });
+    }
+  sort_unique(around);
+  for (int v : around) {
+    s.refinement[v] *= rules::refinement;
+    mark_changed(s, v);
+  }
+  for (int t : offending) {
+    int longest = -1;
+    double length = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double l = norm(s.points[m.to(h)] - s.points[m.from(h)]);
+      if (l > length) length = l, longest = h;
+    }
+    if (longest >= 0 && split_edge(s, longest)) around.push_back((int)m.out.size() - 1);
+  }
+  flip_to_shape(s);
+  for (int repeat = 0; repeat < rules::sweeps_to_settle; ++repeat)
+    for (int v : around) improve_vertex(s, v);
+}
+
+}  // namespace
+
+Intersections remove_faults(State& s, std::vector<Sample>& samples) {
+  const double most = rules::growth * s.mesh.live + rules::few;
+  std::optional<std::pair<State, Fault>> best;
+  forget_near(samples);
+  Known known{s.reference->surface, samples, {}, {}};
+  Repairs memory;
+  for (int round = 0, since_best = 0;; ++round) {
+    Fault found;
+    find_intersections(s, known, found);
+    find_far(s, known, found);
+    find_needles(s, found);
+    const bool better = !best || found.less_than(best->second);
+    since_best = better ? 0 : since_best + 1;
+    const bool last = found.none() || since_best == rules::useless_rounds || round == rules::fault_rounds ||
+                      s.mesh.live > most;
+    if (last && !better) s = std::move(best->first), found = std::move(best->second);
+    if (last) return {found.pairs, found.of_reference};
+    if (better) best = {s, found};
+    refine_at(s, found);
+    if (found.triangles.empty()) continue;
+    reach_features(s, samples, rules::too_far, (int)found.triangles.size());
+    repair_worst(s, memory);
+  }
+}
+
+}  // namespace meshpipe
