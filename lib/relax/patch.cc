@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/relax/patch.h"
 
+#include <numbers>
+
 namespace meshpipe {
 namespace {
 
@@ -12,24 +14,33 @@ std::vector<int> vertices_of(const EditMesh& mesh, const std::vector<int>& trian
   return vertices;
 }
 
+/// Is v inside, so that it or its neighbors may change?
+bool loosely_held(const State& s, int v) { return s.hold[v] == loose || s.hold[v] == anchored; }
+
 }  // namespace
 
 double quality(const State& s, int t) {
   const auto [a, b, c] = s.mesh.tris[t];
   const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
   if (s.cosine(a, b, c) < 0 && !faces_reference(s, s.place[a], p, q, r)) return 0;
-  const double k = kappa(p, q, r), pq = dot(q - p, q - p), qr = dot(r - q, r - q), rp = dot(p - r, p - r);
-  // the least angle, between u and v, is opposite to the shortest side
-  const bool at_p = qr <= pq && qr <= rp, at_q = !at_p && rp <= pq;
-  const Vec3 u = at_p ? q - p : at_q ? r - q : p - r, v = at_p ? r - p : at_q ? p - q : q - r;
-  // where it is good with a margin there is no need to know it
-  if (norm(cross(u, v)) > rules::tangent_with_margin * dot(u, v)) return k / rules::good_kappa;
-  return std::min(k / rules::good_kappa, angle(u, v) / rules::good_angle);
+  double side[3] = {dot(q - p, q - p), dot(r - q, r - q), dot(p - r, p - r)};  // squared, ascending:
+  std::sort(side, side + 3);
+  // twice the area, and what times its half is the cosine of the angle between two sides
+  const double area = norm(area_vector(p, q, r)), least = side[1] + side[2] - side[0],
+               largest = side[0] + side[1] - side[2];
+  double good = kappa(p, q, r) / rules::good_kappa;
+  // angles that are good with a margin need not be known
+  if (2 * area <= rules::tangent_with_margin * least)
+    good = std::min(good, std::atan2(2 * area, least) / rules::good_angle);
+  const bool inside = loosely_held(s, a) && loosely_held(s, b) && loosely_held(s, c);
+  if (inside && largest <= rules::cotangent_with_margin * 2 * area)
+    good = std::min(
+        good, (std::numbers::pi - std::atan2(2 * area, largest)) / (std::numbers::pi - rules::acute_angle));
+  return good;
 }
 
 int irregularity(const State& s, int v) {
-  const bool inside = s.mesh.out[v] >= 0 && (s.hold[v] == loose || s.hold[v] == anchored);
-  return inside ? std::max(0, std::abs(excess(s, v)) - 1) : 0;
+  return s.mesh.out[v] >= 0 && loosely_held(s, v) ? std::max(0, std::abs(excess(s, v)) - 1) : 0;
 }
 
 double objective(const State& s) {

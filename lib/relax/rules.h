@@ -59,9 +59,11 @@ constexpr int dislocation_depth = 3;       // flips: each one more multiplies th
 
 // repair (patch.cc, repair.cc)
 constexpr double good_kappa = 0.75;  // triangles below it are repaired; mcheck asks for 0.1
-constexpr double good_angle = 35 * 3.14159265358979323846 / 180;  // radians: the same
+constexpr double good_angle = 35 * 3.14159265358979323846 / 180;   // radians: the same
+constexpr double acute_angle = 86 * 3.14159265358979323846 / 180;  // radians: the largest inside
 constexpr double margin = 1.05;                    // of the quality: no triangle is improved beyond it
 constexpr double tangent_with_margin = 0.747;      // of margin * good_angle
+constexpr double cotangent_with_margin = 0.153;    // of pi - margin * (pi - acute_angle)
 constexpr double needle = 0.05;                    // of the quality: one needle counts more than two slivers
 constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-break
 constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change

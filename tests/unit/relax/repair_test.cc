@@ -49,6 +49,19 @@ TEST(Repair, NoBadTriangleIsLeft) {
   EXPECT_NEAR(m.area(), 48, 1e-12);
 }
 
+TEST(Repair, TrianglesInsideAreAcute) {
+  // 95 degrees at c, and no angle below 42
+  Drawn m(drawn_surface({"  c  ", "a       b"}, "abc"));
+  m.s.points[2] = {4, 3.7, 0};
+  for (int v = 0; v < 3; ++v) m.s.hold[v] = loose;
+  EXPECT_LT(quality(m.s, 0), 0.9);
+  m.s.hold[0] = slides;  // model edges may force it
+  EXPECT_GT(quality(m.s, 0), 1);
+  m.s.hold[0] = loose;
+  m.s.points[2] = {4, 4.4, 0};  // 85 degrees
+  EXPECT_GT(quality(m.s, 0), 1);
+}
+
 TEST(Repair, WhatIsGoodStays) {
   Drawn m(drawn_surface({"  e   d  ",  //
                          "         ",  //
