@@ -22,6 +22,9 @@ constexpr double least_width = 0.5;
 /// Vertices of the rim to either side of the nearest one, among which the nearest edge is looked for.
 constexpr int window = 6;
 
+/// Share of the way to the wall by which the middle of an edge between vertices of a rim is moved.
+constexpr double sink = 0.25;
+
 /// From 1 at 0 to 0 at 1, with slope 0 at both and at most 1.5.
 double fade(double x) { return x >= 1 ? 0 : (1 - x) * (1 - x) * (1 + 2 * x); }
 
@@ -201,7 +204,24 @@ void split_chords(Surface& surface, const std::vector<End>& ends) {
       for (int v : loop) rim[v] = 1;
   for (std::size_t h = 0; h < mark.size(); ++h)
     mark[h] = opposite[h] >= 0 && rim[origin(surface.tris, (int)h)] && rim[target(surface.tris, (int)h)];
-  if (std::count(mark.begin(), mark.end(), 1)) split_edges({surface, opposite}, mark, nullptr);
+  if (std::count(mark.begin(), mark.end(), 1) == 0) return;
+  const int before = (int)rim.size();
+  split_edges({surface, opposite}, mark, nullptr);
+  // each new vertex leaves the rim's plane for the vertices of the wall that are opposite
+  std::vector<Vec3> sum(surface.points.size() - rim.size());
+  std::vector<int> count(sum.size(), 0);
+  for (const Tri& t : surface.tris)
+    for (int v : t)
+      for (int w : t)
+        if (v >= before && w < before && !rim[w]) {
+          sum[v - before] = sum[v - before] + surface.points[w];
+          ++count[v - before];
+        }
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    if (count[k] > 0) {
+      Vec3& p = surface.points[rim.size() + k];
+      p = lerp(p, (1.0 / count[k]) * sum[k], sink);
+    }
 }
 
 std::vector<double> flatten_ends(Mesh& mesh, const std::vector<End>& ends,

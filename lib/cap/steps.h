@@ -42,8 +42,8 @@ struct Collision {
 /// Returns the pairs of intersecting triangles at least one of which is flagged.
 std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& flagged);
 
-/// Splits the edges inside the surface that join two vertices of rims: what lies behind such an edge would be
-/// flat in a plane rim, and a cap might have the same edge.
+/// Splits the edges inside the surface that join two vertices of rims, and moves their middles towards the
+/// wall: what lies behind such an edge would be flat in a plane rim, and a cap would touch it or have it too.
 void split_chords(Surface& surface, const std::vector<End>& ends);
 
 /// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there.

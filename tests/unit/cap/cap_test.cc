@@ -109,6 +109,25 @@ TEST(cap, flattens_a_wavy_rim) {
   }
 }
 
+TEST(cap, flattens_triangles_with_all_corners_on_the_rim) {
+  Surface s = open_tube(3, 24);
+  const std::vector<int> rim = find_ends(s)[0].rims[0];
+  for (int k : {0, 5, 6}) {  // ears above the rim
+    const int a = rim[k], b = rim[k + 1], n = (int)s.points.size();
+    Vec3 p = lerp(s.points[a], s.points[b], 0.5);
+    p.z += p.z > 1.5 ? 0.03 : -0.03;
+    s.points.push_back(p);
+    s.tris.push_back({a, b, n});
+  }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  std::vector<End> ends = find_ends(s);
+  CapOptions o;
+  o.flatten = o.cap = true;
+  const std::vector<EndReport> r = treat_ends(s, ends, o);
+  expect_sound(s);
+  EXPECT_TRUE(r[0].flat && r[1].flat);
+}
+
 TEST(cap, cuts_a_rim_that_is_far_out_of_plane) {
   Surface s = wavy_tube(0.35, 2);
   std::vector<End> ends = find_ends(s);
