@@ -24,6 +24,9 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
   for (const std::string& line : warnings_of(io.stream)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
+  if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
+    io.say(std::to_string(n) +
+           " pairs of triangles intersect, as those of the input do: --resolve outer resolves them");
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);
 }

@@ -15,6 +15,16 @@ struct Options {
   int order = 1;
 };
 
+/// Names the face data that triangles of another mesh do not have; "" if there are none.
+std::string lost_data(const Surface& s) {
+  std::string names;
+  for (const Column& c : s.face.columns)
+    if (c.name != "patch" && c.name != "part" && c.name != "origin" && c.name != "model" &&
+        c.name != "curved")
+      names += (names.empty() ? "" : ", ") + c.name;
+  return names;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -30,6 +40,8 @@ int main(int argc, char** argv) {
     std::vector<Chart> charts = read_charts(stream);
     const std::vector<PlaneMesh> meshes = read_plane_meshes(stream, charts);
     for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
+    if (const std::string names = lost_data(stream.surface); !names.empty())
+      io.say("left out, since triangles of the result are not those of the input: face data " + names);
     LiftedMesh mesh = lift(stream.surface, std::move(charts), read_lines(stream), meshes);
     Surface reference = std::move(stream.surface);
     reference.face.erase("curved");

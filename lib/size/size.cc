@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
 #include "lib/core/neighbors.h"
@@ -315,6 +316,38 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
                              facts);
 }
 
+/// Throws: GoalMissed if closed components so slender that the size is more than their circumference, in the
+/// mean along their length, ask for many times as many triangles: four edges around are the least.
+void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, double size, double triangles) {
+  constexpr double edges_around = 4, few_triangles = 1000;
+  std::vector<int> component;
+  const int n = components(opposite, component);
+  std::vector<double> area(n, 0);
+  std::vector<Box> box(n);
+  std::vector<char> seen(n, 0), open(n, 0);
+  for (int t = 0; t < (int)s.tris.size(); ++t) {
+    const int c = component[t];
+    area[c] +=
+        0.5 * norm(area_vector(s.points[s.tris[t][0]], s.points[s.tris[t][1]], s.points[s.tris[t][2]]));
+    box[c] = seen[c] ? join(box[c], box_of(s, t)) : box_of(s, t);
+    seen[c] = 1;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= opposite[h] < 0;
+  }
+  double asked = 0, narrowest = infinite;
+  Vec3 place;
+  for (int c = 0; c < n; ++c) {
+    const double around = area[c] / norm(box[c].hi - box[c].lo);
+    if (open[c] || !(size > around)) continue;
+    asked += area[c] / (0.25 * std::sqrt(3.0) * around * around / (edges_around * edges_around));
+    if (around < narrowest) narrowest = around, place = 0.5 * (box[c].lo + box[c].hi);
+  }
+  if (asked <= most_times * std::max(triangles, few_triangles)) return;
+  throw GoalMissed("slender parts ask for " + shown(std::round(asked)) + " triangles instead of " +
+                   shown(std::round(triangles)) + ": the size is " + shown(size) +
+                   ", and the mean way around one is " + shown(narrowest) + ", its middle at " +
+                   shown(place.x) + ' ' + shown(place.y) + ' ' + shown(place.z));
+}
+
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
 /// of triangles to be met also where it permits less than sizes may grow to elsewhere.
 std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& opposite,
@@ -443,6 +476,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     size.assign(surface.points.size(), h);
     const std::vector<int> opposite =
         opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+    refuse_costly_tubes(surface, opposite, h, area / (0.25 * std::sqrt(3.0) * h * h));
     std::vector<SizeBound> bounds = bounds_below(surface, opposite, size, options, report);
     if (!bounds.empty()) {
       SizeOptions o = options;

@@ -4,7 +4,7 @@
 usage: scripts/bench anyfile [options] [FILE ...]
 
 Surfaces are made by number, each from its number alone: one of mshape's, a prism, a part from a lathe, a bundle of cones or
-voxels (or one of the given files), to which up to three things are done: decimated, roughened, rounded to few digits, cut
+voxels (or one of the given files), to which up to three things are done: decimated, clustered, roughened, rounded to few digits, cut
 by a plane, punctured, united with another, stretched, tilted, scaled, torn into a soup. One mremesh of each with its
 defaults; where two were united, every other time with --resolve outer. One row for each that is not status 0 in the first
 round within the time allowed, then the shares.
@@ -193,12 +193,38 @@ def rounded(mesh, rng):
     return [tuple(float(f"%.{digits}g" % c) for c in p) for p in mesh[0]], mesh[1]
 
 
-def decimated(mesh, rng):
-    """Points of a cell of a grid become the first of them."""
-    cell, first = mean_edge(mesh) * rng.uniform(0.3, 2), {}
-    image = [first.setdefault(tuple(math.floor(c / cell) for c in p), v) for v, p in enumerate(mesh[0])]
+def clustered(mesh, rng):
+    """Points in a cube of a grid become the first of them; sheets may meet."""
+    side, first = mean_edge(mesh) * rng.uniform(0.3, 2), {}
+    image = [first.setdefault(tuple(math.floor(c / side) for c in p), v) for v, p in enumerate(mesh[0])]
     triangles = [tuple(image[v] for v in t) for t in mesh[1]]
     return mesh[0], [t for t in triangles if len(set(t)) == 3] or mesh[1]
+
+
+def decimated(mesh, rng):
+    """Random edges are collapsed into one of their ends, where the topology stays; no other point moves."""
+    triangles = dict(enumerate(mesh[1]))
+    star = [set() for _ in mesh[0]]
+    for i, t in triangles.items():
+        for v in t:
+            star[v].add(i)
+    edges = sorted({(t[i], t[j]) for t in mesh[1] for i, j in ((0, 1), (1, 2), (2, 0))})
+    least = len(triangles) * rng.choice([0.5, 0.2, 0.1])
+    for a, b in rng.sample(edges, len(edges)):
+        if len(triangles) <= least:
+            break
+        common = star[a] & star[b]
+        ring = [{v for i in star[x] for v in triangles[i]} - {a, b} for x in (a, b)]
+        if not common or len(ring[0] & ring[1]) != len(common) or len(star[b]) == len(common) or len(star[a]) < 4 or len(star[b]) < 4:
+            continue
+        for i in common:
+            for v in triangles.pop(i):
+                star[v].discard(i)
+        for i in star[b]:
+            triangles[i] = tuple(a if v == b else v for v in triangles[i])
+        star[a] |= star[b]
+        star[b] = set()
+    return mesh[0], list(triangles.values())
 
 
 def cut(mesh, rng):
@@ -272,7 +298,7 @@ def make(number, files, work):
         made = rng.choice([shape, shape, shape, lathe, prism, cones, voxels])
         mesh, what = made(rng, work), [made.__name__]
     options = ""
-    done = rng.sample([decimated, roughened, rounded, cut, punctured, united, stretched, tilted, scaled, torn], rng.randrange(files != [], 4))
+    done = rng.sample([decimated, clustered, roughened, rounded, cut, punctured, united, stretched, tilted, scaled, torn], rng.randrange(files != [], 4))
     for do in sorted(done, key=lambda f: f is torn):
         what.append(do.__name__)
         mesh = do(mesh, rng, work) if do is united else do(mesh, rng)

@@ -303,6 +303,18 @@ TEST(Expression, ValuesAndFailures) {
     EXPECT_THROW(Expression(bad, {"x"}), BadUsage) << bad;
 }
 
+//  a needle around which the size does not fit
+TEST(Size, RefusesWhatIsFarMoreSlenderThanTheSize) {
+  Surface s = surface_of(cube(12));
+  for (Vec3& p : s.points) p.x *= 1e5;
+  SizeOptions options;
+  options.size = 30;
+  Surface copy = s;
+  EXPECT_THROW(set_size(copy, nullptr, options), GoalMissed);
+  options.size = 3;
+  EXPECT_NO_THROW(set_size(s, nullptr, options));
+}
+
 TEST(SizeField, Tables) {
   EXPECT_TRUE(is_size_table("# sizes\n0 0 0 1\n"));
   EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
