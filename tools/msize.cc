@@ -57,6 +57,14 @@ void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
   io.report["expected_triangles"] = r.triangles;
   io.report["factor"] = r.scale;
   io.report["split_edges"] = r.added;
+  for (const MeasuredSize& m : r.measured)
+    io.report[m.column] = {
+        {"smallest", m.value}, {"at", {m.at.x, m.at.y, m.at.z}}, {"size", m.size}, {"vertices", m.vertices}};
+  if (o.layers.first > 0)
+    io.report["layers"] = {{"total", r.layers.total},
+                           {"too_thick_at_vertices", r.layers.all},
+                           {"fits", r.layers.least},
+                           {"at", {r.layers.at.x, r.layers.at.y, r.layers.at.z}}};
   if (r.narrow > 0)
     io.report["narrow"] = {{"places", r.narrow},
                            {"at", {r.narrow_at.x, r.narrow_at.y, r.narrow_at.z}},
@@ -76,53 +84,64 @@ void follow_split(Stream& stream) {
     }
 }
 
+struct Options : SizeOptions {
+  std::string field, formula, boundary_layers;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  auto length = [&](const char* name, double& value, const char* what, const char* type) {
+    return app.add_option(name, value, what)->check(positive_number())->type_name(type);
+  };
+  auto* fixed = length("--size", o.size, "target edge length", "H");
+  app.add_option(
+         "--triangles", o.triangles,
+         "as many triangles as this, spread as the other options ask (default: as many as the input had)")
+      ->check(count_between(1, 715827882))
+      ->type_name("N")
+      ->excludes(fixed);
+  length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
+  length("--chord", o.chord, "largest distance of an edge from its arc", "EPS");
+  auto text = [&](const char* name, std::string& value, const char* what, const char* type) {
+    app.add_option(name, value, what)
+        ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
+        ->type_name(type);
+  };
+  length("--around", o.around, "edges around tubes and other bodies, by their radius", "N");
+  length("--across", o.across, "elements across what is between two sides of the surface, inside", "N");
+  length("--gap", o.gap, "the same outside", "N");
+  text("--layers", o.boundary_layers,
+       "check that boundary layers fit, first of thickness T (defaults: growth 1.2, 5 layers, inside)",
+       "T[,GROWTH[,N]][,outside]");
+  text("--data", o.data, "the input's vertex data of this name", "NAME");
+  text("--field", o.field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h",
+       "FILE[:NAME]");
+  text("--expression", o.formula, "size as a formula of x, y, z and curvature", "EXPR");
+  length("--min", o.min, "no size below this", "H");
+  length("--max", o.max, "no size above this", "H");
+  length("--gradation", o.gradation, "growth of the size per unit of length, where it varies (default 0.3)",
+         "G");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  SizeOptions o;
-  std::string field, formula;
-  auto add_options = [&](CLI::App& app) {
-    auto length = [&](const char* name, double& value, const char* what, const char* type) {
-      return app.add_option(name, value, what)->check(positive_number())->type_name(type);
-    };
-    auto* fixed = length("--size", o.size, "target edge length", "H");
-    app.add_option(
-           "--triangles", o.triangles,
-           "as many triangles as this, spread as the other options ask (default: as many as the input had)")
-        ->check(count_between(1, 715827882))
-        ->type_name("N")
-        ->excludes(fixed);
-    length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
-    length("--chord", o.chord, "largest distance of an edge from its arc", "EPS");
-    auto text = [&](const char* name, std::string& value, const char* what, const char* type) {
-      app.add_option(name, value, what)
-          ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
-          ->type_name(type);
-    };
-    text("--data", o.data, "the input's vertex data of this name", "NAME");
-    text("--field", field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h",
-         "FILE[:NAME]");
-    text("--expression", formula, "size as a formula of x, y, z and curvature", "EXPR");
-    length("--min", o.min, "no size below this", "H");
-    length("--max", o.max, "no size above this", "H");
-    length("--gradation", o.gradation, "growth of the size per unit of length, where it varies (default 0.3)",
-           "G");
-  };
+  Options o;
   auto body = [&](Io& io) {
     if (o.min > 0 && o.max > 0 && o.min > o.max)
       throw BadUsage("--min " + shown(o.min) + " is larger than --max " + shown(o.max));
+    if (!o.boundary_layers.empty()) o.layers = parse_layers(o.boundary_layers);
     SizeField sizes;
     std::unique_ptr<Bvh> tree;
     std::unique_ptr<Expression> expression;
-    if (!formula.empty())
+    if (!o.formula.empty())
       expression =
-          std::make_unique<Expression>(formula, std::vector<std::string>{"x", "y", "z", "curvature"});
+          std::make_unique<Expression>(o.formula, std::vector<std::string>{"x", "y", "z", "curvature"});
     // before the input, since mremesh checks the options without one; but a pipe can be read only once
-    if (!field.empty() && can_be_read_again(file_and_column(field).first))
-      tree = read_field(io, field, sizes);
+    if (!o.field.empty() && can_be_read_again(file_and_column(o.field).first))
+      tree = read_field(io, o.field, sizes);
     Stream& stream = io.read();
     Surface& s = stream.surface;
-    if (!field.empty() && !tree) tree = read_field(io, field, sizes);
+    if (!o.field.empty() && !tree) tree = read_field(io, o.field, sizes);
     o.at_curvature = expression && expression->uses("curvature");
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {
@@ -133,7 +152,8 @@ int main(int argc, char** argv) {
         return e < h || std::isnan(e) ? e : h;
       };
     const bool counted = o.triangles > 0;
-    const bool other = o.per_turn > 0 || o.chord > 0 || !o.data.empty() || o.at;
+    const bool other =
+        o.per_turn > 0 || o.chord > 0 || o.around > 0 || o.across > 0 || o.gap > 0 || !o.data.empty() || o.at;
     if (!(o.size > 0) && !(o.triangles > 0) && !other)
       o.triangles = stream.input_triangles > 0 ? stream.input_triangles : static_cast<double>(s.tris.size());
 
@@ -154,6 +174,7 @@ int main(int argc, char** argv) {
       "what the options ask for.\n\n"
       "examples:\n  msize --size 0.8 tree.stl -o sized.ply\n"
       "  msize --triangles 20000 --curvature 24 tree.stl -o sized.ply\n"
+      "  msize --around 10 --max 0.1 tree.stl -o sized.ply\n"
       "  msize --expression '0.02 + 0.1 * sqrt(x^2 + y^2)' tree.stl -o sized.ply",
-      add_options, body);
+      [&](CLI::App& app) { add_options(app, o); }, body);
 }

@@ -290,4 +290,57 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
   return hit;
 }
 
+Bvh::RayHit Bvh::first_hit(Vec3 p, Vec3 direction, int side) const {
+  // the ray in own units, its boxes a little larger than rounding makes them
+  constexpr float trust = 1 + 1e-5f, margin = 1e-5f;
+  const auto q = own_units(p);
+  const float d[3] = {(float)direction.x, (float)direction.y, (float)direction.z};
+  float inverse[3];
+  for (int k = 0; k < 3; ++k) inverse[k] = 1 / (std::abs(d[k]) > 1e-12f ? d[k] : 1e-12f);
+  RayHit hit{infinity};
+  float most = 1e30f;
+  struct Entry {
+    float distance;
+    int child;
+  } stack[96];
+  int n = 0;
+  stack[n++] = {0, 0};
+  while (n) {
+    const auto [entry, child] = stack[--n];
+    if (entry > most) continue;
+    if (child < 0) {
+      const auto& [i, j, k] = mesh_.tris[-1 - child];
+      const Vec3 a = mesh_.points[i], u = mesh_.points[j] - a, v = mesh_.points[k] - a;
+      // Moeller and Trumbore 1997
+      const Vec3 across = cross(direction, v), from = p - a;
+      const double det = dot(u, across);  // against the normal
+      if (!(-side * det > 0)) continue;
+      const Vec3 over = cross(from, u);
+      const double b1 = dot(from, across) / det, b2 = dot(direction, over) / det, t = dot(v, over) / det;
+      if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1 && t >= 0 && t < hit.distance) {
+        hit = {t, -1 - child, b1, b2};
+        most = (float)std::min(t * scale_ * trust + margin, 1e30);
+      }
+      continue;
+    }
+    const Node& b = nodes_[child];
+    Four first{}, last = first + most;
+    for (int k = 0; k < 3; ++k) {
+      const Four lo = (b.lo[k] - margin - q[k]) * inverse[k], hi = (b.hi[k] + margin - q[k]) * inverse[k];
+      const Four low = lo < hi ? lo : hi, high = lo < hi ? hi : lo;
+      first = low > first ? low : first;
+      last = high < last ? high : last;
+    }
+    // the nearest child on top
+    const int bottom = n;
+    for (int k = 0; k < 4; ++k) {
+      if (!(first[k] <= last[k]) || b.lo[0][k] > b.hi[0][k]) continue;
+      int at = n++;
+      for (; at > bottom && stack[at - 1].distance < first[k]; --at) stack[at] = stack[at - 1];
+      stack[at] = {first[k], b.child[k]};
+    }
+  }
+  return hit;
+}
+
 }  // namespace meshpipe

@@ -44,6 +44,14 @@ class Bvh {
   /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
   /// that is already known.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
+  struct RayHit {
+    double distance = 0;  ///< in lengths of the direction
+    int face = -1;        ///< -1: none
+    double b1 = 0, b2 = 0;
+  };
+  /// First triangle that the ray from p meets from behind (side 1: along its normal) or from the front (-1).
+  /// Those of the other side do not stop the ray; one through an edge may slip between its triangles.
+  RayHit first_hit(Vec3 p, Vec3 direction, int side) const;
   /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;

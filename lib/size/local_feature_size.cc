@@ -23,38 +23,6 @@ constexpr double opposite_sides = 0.6 * pi;  ///< least angle between the two en
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
 constexpr double least_area = 0.2;  ///< of a circle as long: a path there and back the same way has none
 
-/// Lowers `size` on closed lines: loops of border or model edges that no other such edge meets.
-void lower_on_lines(const Connectivity& surface, std::vector<double>& size) {
-  const Mesh& mesh = surface.mesh;
-  const int n = static_cast<int>(mesh.points.size());
-  std::vector<std::array<int, 2>> ends(n, {-1, -1});  // the other ends of the first two edges
-  std::vector<int> degree(n, 0);
-  for (int h = 0; h < surface.n_half_edges(); ++h) {
-    const int o = surface.opposite[h], a = surface.from(h), b = surface.to(h);
-    if (o > h || (o >= 0 && !surface.is_model(h) && !surface.is_model(o))) continue;
-    if (degree[a] < 2) ends[a][degree[a]] = b;
-    if (degree[b] < 2) ends[b][degree[b]] = a;
-    ++degree[a], ++degree[b];
-  }
-  std::vector<char> seen(n, 0);
-  std::vector<int> loop;
-  for (int first = 0; first < n; ++first) {
-    if (seen[first] || degree[first] != 2) continue;
-    loop.clear();
-    double length = 0;
-    int v = first, before = ends[first][0];
-    do {
-      seen[v] = 1;
-      loop.push_back(v);
-      const int u = ends[v][ends[v][0] == before];
-      length += norm(mesh.points[u] - mesh.points[v]);
-      before = v, v = u;
-    } while (v != first && degree[v] == 2 && !seen[v]);
-    if (v != first) continue;  // it ends in a junction
-    for (int u : loop) size[u] = std::min(size[u], length / ring_edges);
-  }
-}
-
 /// Finds the rings around tubes, from one vertex after the other.
 class TubeFinder {
  public:
@@ -125,12 +93,45 @@ class TubeFinder {
 
 }  // namespace
 
+std::vector<double> closed_line_lengths(const Connectivity& surface) {
+  const Mesh& mesh = surface.mesh;
+  const int n = static_cast<int>(mesh.points.size());
+  std::vector<double> around(n, infinite);
+  std::vector<std::array<int, 2>> ends(n, {-1, -1});  // the other ends of the first two edges
+  std::vector<int> degree(n, 0);
+  for (int h = 0; h < surface.n_half_edges(); ++h) {
+    const int o = surface.opposite[h], a = surface.from(h), b = surface.to(h);
+    if (o > h || (o >= 0 && !surface.is_model(h) && !surface.is_model(o))) continue;
+    if (degree[a] < 2) ends[a][degree[a]] = b;
+    if (degree[b] < 2) ends[b][degree[b]] = a;
+    ++degree[a], ++degree[b];
+  }
+  std::vector<char> seen(n, 0);
+  std::vector<int> loop;
+  for (int first = 0; first < n; ++first) {
+    if (seen[first] || degree[first] != 2) continue;
+    loop.clear();
+    double length = 0;
+    int v = first, before = ends[first][0];
+    do {
+      seen[v] = 1;
+      loop.push_back(v);
+      const int u = ends[v][ends[v][0] == before];
+      length += norm(mesh.points[u] - mesh.points[v]);
+      before = v, v = u;
+    } while (v != first && degree[v] == 2 && !seen[v]);
+    if (v != first) continue;  // it ends in a junction
+    for (int u : loop) around[u] = std::min(around[u], length);
+  }
+  return around;
+}
+
 std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
                                        const std::vector<double>& size) {
   const Mesh& mesh = surface.mesh;
   const std::size_t n = mesh.points.size();
-  std::vector<double> feature(n, infinite), bend(n, 0);
-  lower_on_lines(surface, feature);
+  std::vector<double> feature = closed_line_lengths(surface), bend(n, 0);
+  for (double& x : feature) x /= ring_edges;
   const Neighbors next(mesh);
 
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)

@@ -7,6 +7,10 @@
 
 namespace meshpipe {
 
+/// Returns per vertex the length of the closed line of border or model edges through it, infinite where there
+/// is none: loops that no other such edge meets.
+std::vector<double> closed_line_lengths(const Connectivity& surface);
+
 /// Returns per vertex a quarter of the shortest ring through it, where that is below `size` (elsewhere
 /// infinity, or more than the size), so that four edges fit around it. A ring is a closed line of border or
 /// model edges that meets no other, or the shortest closed path of edges around a tube. Tubes are searched

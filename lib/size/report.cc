@@ -30,6 +30,16 @@ std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, boo
     std::snprintf(text, sizeof text, "target edge length %.6g to %.6g, about %.0f triangles; %d edges split",
                   r.smallest, r.largest, r.triangles, r.added);
   lines.push_back(text);
+  for (const MeasuredSize& m : r.measured) {
+    const std::string what = shown(m.edges) + (m.column == "radius" ? " edges around" : " elements across") +
+                             (m.column == "gap" ? " gaps" : "");
+    if (m.vertices == 0)
+      lines.push_back(what + ": no sheet of the surface faces another there, which bounds no size");
+    else
+      lines.push_back(what + ": " + m.column + " from " + shown(m.value) + ", at " + shown(m.at.x) + ' ' +
+                      shown(m.at.y) + ' ' + shown(m.at.z) + ", where that asks for " + shown(m.size));
+  }
+  for (const std::string& line : describe(r.layers)) lines.push_back(line);
   if (r.scale != 1)
     lines.push_back("the requested sizes are multiplied by " + shown(r.scale) +
                     " for this number of triangles");

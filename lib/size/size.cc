@@ -18,6 +18,7 @@
 #include "lib/feature/feature.h"
 #include "lib/size/local_feature_size.h"
 #include "lib/size/permitted.h"
+#include "lib/size/sheet_distance.h"
 
 namespace meshpipe {
 namespace {
@@ -34,6 +35,12 @@ constexpr double many_triangles = 5e4;        ///< unless they are no more than 
 constexpr double wide_strip = 0.1;            ///< over the size: beyond what mfeature removes unasked
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
+/// A vertex column and the share of it that is asked for.
+struct Source {
+  std::string column;
+  double factor;
+};
+
 /// The field while it is made: wishes at the vertices, edges split where they are not linear.
 struct Field {
   Surface& s;
@@ -42,7 +49,8 @@ struct Field {
   double diagonal = 0, cap = 0;
   double uniform = infinite, scale = 1;  ///< meet_count varies these two
   std::vector<int> opposite{};
-  std::vector<double> curvature{};                ///< per triangle; empty if not needed
+  std::vector<double> curvature{};  ///< per triangle; empty if not needed
+  std::vector<Source> sources{};
   std::vector<double> wish{}, size{}, permits{};  ///< per vertex: of the sources, the field, the surface
   // Where the surface is near itself: the bounds by half-edge of the surface as it came and along it, the
   // triangles of that, and which of them each triangle is part of. Empty where nothing is bounded.
@@ -90,13 +98,13 @@ void set_wishes(Field& f) {
         most[v] = std::max(most[v], f.curvature[t]);
       }
     }
-  if (!f.o.data.empty()) {
-    const auto& data = f.s.vertex.get<double>(f.o.data);
+  for (const Source& x : f.sources) {
+    const auto& data = f.s.vertex.get<double>(x.column);
     for (std::size_t v = 0; v < n; ++v) {
       if (!(data[v] > 0))
-        throw BadInput("vertex " + std::to_string(v) + " has " + f.o.data + ' ' + shown(data[v]) +
+        throw BadInput("vertex " + std::to_string(v) + " has " + x.column + ' ' + shown(data[v]) +
                        ", but sizes are positive");
-      f.wish[v] = std::min(f.wish[v], data[v]);
+      f.wish[v] = std::min(f.wish[v], x.factor * data[v]);
     }
   }
   if (f.o.at)
@@ -111,9 +119,9 @@ double wish_between(const Field& f, int h) {
     most = o >= 0 ? std::max(f.curvature[h / 3], f.curvature[o / 3]) : f.curvature[h / 3];
     least = by_curvature(f.o, most);
   }
-  if (!f.o.data.empty()) {
-    const auto& data = f.s.vertex.get<double>(f.o.data);
-    least = std::min(least, 0.5 * (data[a] + data[b]));
+  for (const Source& x : f.sources) {
+    const auto& data = f.s.vertex.get<double>(x.column);
+    least = std::min(least, x.factor * 0.5 * (data[a] + data[b]));
   }
   if (f.o.at) least = std::min(least, asked(f.o, lerp(f.s.points[a], f.s.points[b], 0.5), most));
   return least;
@@ -375,6 +383,53 @@ std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& op
   return bounds;
 }
 
+/// One of --around, --across and --gap: a column, and what it is of the ball that touches opposite sheets.
+struct Measured {
+  const char* column;
+  double edges;     ///< asked for, around or across; 0: not asked for
+  double balls;     ///< the column, in radii of the ball
+  double per_ball;  ///< length that takes the edges, in radii of the ball
+  SheetDistance::Side side;
+  double factor() const { return per_ball / (balls * edges); }
+};
+
+/// Measures the surface into a vertex column that becomes a source. Where edges longer than their sizes miss
+/// what is between their ends they are split, and the new vertices measured.
+MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
+  const SheetDistance sheets({f.s, f.opposite}, kind.side, f.diagonal);
+  auto column = [&]() -> std::vector<double>& { return f.s.vertex.get<double>(kind.column); };
+  f.s.vertex.set(kind.column, sheets.radii());
+  for (double& x : column()) x *= kind.balls;
+  if (kind.balls == 1) {  // ends and rims are sections, however they are shaped
+    const auto model = model_of(f.s);
+    const std::vector<double> around = closed_line_lengths({f.s, f.opposite, model});
+    for (std::size_t v = 0; v < around.size(); ++v)
+      column()[v] = std::min(column()[v], around[v] / (2 * std::numbers::pi));
+  }
+  auto bends = [&](int h) {
+    const double l = edge_length(f, h);
+    if (l > longest_edge * f.diagonal) return true;
+    const double a = column()[origin(f.s.tris, h)], b = column()[target(f.s.tris, h)];
+    if (l < kind.factor() * std::min(a, b)) return false;
+    const Vec3 middle = lerp(f.s.points[origin(f.s.tris, h)], f.s.points[target(f.s.tris, h)], 0.5);
+    const double there = kind.balls * sheets.radius_at(middle), linear = 0.5 * (a + b);
+    return std::abs(there - linear) > interpolation_error * std::min(there, linear);
+  };
+  for (int pass = 0; may_split && pass < most_passes; ++pass) {
+    const std::size_t before = f.s.points.size();
+    if (!split(f, bends)) break;
+    for (std::size_t v = before; v < f.s.points.size(); ++v)
+      column()[v] = kind.balls * sheets.radius_at(f.s.points[v]);
+  }
+  f.sources.push_back({kind.column, kind.factor()});
+  const std::vector<double>& values = column();
+  const std::size_t at = std::min_element(values.begin(), values.end()) - values.begin();
+  const auto measured =
+      std::count_if(values.begin(), values.end(), [&](double x) { return x < kind.balls * f.diagonal; });
+  return {kind.column,   kind.edges, static_cast<int>(measured), values[at], kind.factor() * values[at],
+          f.s.points[at]};
+}
+
 /// Makes a field that is not uniform.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
                                SizeReport& report, std::vector<SizeBound> bounds = {}) {
@@ -387,6 +442,11 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   connect(f);
   if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature)) f.curvature = curvature_of(f);
   const std::size_t n_before = s.points.size();
+  if (!o.data.empty()) f.sources.push_back({o.data, 1});
+  for (const Measured& kind : {Measured{"radius", o.around, 1, 2 * std::numbers::pi, SheetDistance::inside},
+                               Measured{"thickness", o.across, 2, 2, SheetDistance::inside},
+                               Measured{"gap", o.gap, 2, 2, SheetDistance::outside}})
+    if (kind.edges > 0) report.measured.push_back(measure_sheets(f, kind, may_split));
   if (may_split && o.at)
     while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
     }
@@ -465,8 +525,10 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   if (!options.data.empty()) convert_data(surface, options.data);
   const double area = total_area(surface);
   if (!(area > 0)) throw NotAdmissible("the surface has no area");
-  const bool uniform = !(options.per_turn > 0 || options.chord > 0 || !options.data.empty() || options.at);
+  const bool uniform = !(options.per_turn > 0 || options.chord > 0 || options.around > 0 ||
+                         options.across > 0 || options.gap > 0 || !options.data.empty() || options.at);
   SizeReport report;
+  if (options.layers.first > 0) report.layers = check_layers(surface, options.layers);
   std::vector<double> size;
   if (uniform) {
     double h = options.size > 0 ? options.size : infinite;

@@ -6,6 +6,7 @@
 
 #include "lib/core/mesh.h"
 #include "lib/core/triangle_count.h"
+#include "lib/size/layers.h"
 #include "lib/size/size_field.h"
 
 namespace meshpipe {
@@ -16,6 +17,10 @@ struct SizeOptions {
   double triangles = 0;  ///< number to ask for: a uniform size is added, or the other sources are scaled
   double per_turn = 0;   ///< edges per full turn along the most curved direction
   double chord = 0;      ///< largest distance of a chord from its arc
+  double around = 0;     ///< edges around a tube, or around any other body that has a section
+  double across = 0;     ///< elements across what is between two sides of the surface, inside
+  double gap = 0;        ///< the same outside
+  Layers layers;         ///< that are checked; they bound no size
   std::string data;      ///< a vertex column
   /// The size at a point with this largest absolute curvature; infinite: not bounded there.
   std::function<double(Vec3, double)> at;
@@ -25,7 +30,18 @@ struct SizeOptions {
   double most_triangles = 715827882;  ///< half-edges are numbered by int
 };
 
+/// What --around, --across or --gap have measured and asked for.
+struct MeasuredSize {
+  std::string column;  ///< of the vertices: radius, thickness or gap
+  double edges = 0;    ///< around or across it
+  int vertices = 0;    ///< where there is one
+  double value = 0, size = 0;
+  Vec3 at{};  ///< of the smallest
+};
+
 struct SizeReport {
+  std::vector<MeasuredSize> measured;
+  LayerReport layers;
   double smallest = 0, largest = 0;
   double triangles = 0;  ///< that the field asks for, with those of `strips`
   double strips = 0;     ///< more of them, as narrow strips have more than their area stands for

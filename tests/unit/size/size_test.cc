@@ -331,3 +331,30 @@ TEST(SizeField, Tables) {
   for (const char* first : {"0 0 0", "0 0 0 1 5", "0 0 0 nan"})  // is no line of names
     EXPECT_THROW(read_size_table(std::string(first) + "\n1 1 1 0.4\n", "t"), BadInput) << first;
 }
+
+TEST(Size, GeometryIsDividedAsAsked) {
+  Surface around = surface_of(tube(5, 60, false)), across = around;
+  SizeOptions o;
+  o.around = 20;
+  SizeReport r = set_size(around, nullptr, o);
+  for (double h : around.vertex.get<double>("size")) EXPECT_NEAR(h, 3.14159 / 20, 0.05 * 3.14159 / 20);
+  EXPECT_TRUE(around.vertex.has("radius"));
+  ASSERT_EQ(r.measured.size(), 1u);
+  EXPECT_NEAR(r.measured[0].value, 0.5, 0.01);
+  o.around = 0, o.across = 20;
+  r = set_size(across, nullptr, o);
+  for (double h : across.vertex.get<double>("size")) EXPECT_NEAR(h, 0.05, 0.0025);
+  // a plate of two triangles a side: its rim is split, as it asks for more than the edges around it
+  Body body = cube(12);
+  for (Vec3& p : body.points) p.z *= 0.1;
+  Surface plate = surface_of(body);
+  o.across = 2;
+  r = set_size(plate, nullptr, o);
+  EXPECT_GT(r.added, 0);
+  for (std::size_t v = 0; v < plate.points.size(); ++v) {
+    if (std::abs(plate.points[v].z - 0.05) < 0.049) continue;
+    EXPECT_NEAR(plate.vertex.get<double>("size")[v], 0.05, 0.0025);
+  }
+  o.across = 0, o.gap = 2;
+  EXPECT_EQ(set_size(plate, nullptr, o).measured[0].vertices, 0);
+}

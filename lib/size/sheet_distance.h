@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sheets of a surface that face each other: across a tube, a body between two sides, a gap.
+#pragma once
+#include <vector>
+
+#include "lib/core/bvh.h"
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+
+/// The angle of the surface at an edge, on the side that is behind its triangles, in degrees; 180 where flat.
+double angle_behind(const Connectivity& surface, int half_edge);
+
+/// Measures by rays how far the sheet is that faces a point, on one side of the surface: for every vertex the
+/// radius of the ball that touches the surface there and the sheet opposite to it. In a tube that is its
+/// radius; between parallel sheets it is half their distance. At creases it is the smallest of their sides.
+/// Next to folds, where two sides meet at less than 75 degrees, it is that of the neighborhood.
+class SheetDistance {
+ public:
+  enum Side { inside, outside };
+  /// Copies the surface. The inside of closed components is behind their triangles, that of open ones where
+  /// they would enclose a volume. `none`: the radius where no sheet faces a vertex, and the largest.
+  SheetDistance(const Connectivity& surface, Side side, double none);
+  SheetDistance(const SheetDistance&) = delete;
+  /// Per vertex.
+  const std::vector<double>& radii() const { return radius_; }
+  /// The same at a point of the surface.
+  double radius_at(Vec3 p) const;
+
+ private:
+  Vec3 normal_at(int face, double b1, double b2) const;
+  double ball(Vec3 p, Vec3 normal) const;
+  /// The ball at a point of face t near corner p, for creases, where vertices have no normal.
+  double ball_on_face(int t, Vec3 p) const;
+  /// The smallest at point p of face t and the other sides of a crease there.
+  double ball_on_sides(int t, Vec3 p) const;
+  void measure();
+  void leave_folds(const Connectivity& surface);
+
+  Mesh mesh_;                        ///< with all components oriented outward
+  std::vector<Vec3> face_, vertex_;  ///< unit normals, those of vertices averaged over a neighborhood
+  Bvh tree_;
+  Side side_;
+  double none_;
+  std::vector<double> radius_;
+  std::vector<char> creased_, folded_;  ///< vertices on creases, next to folds
+};
+
+}  // namespace meshpipe
