@@ -15,32 +15,61 @@ constexpr int most_rings = 1000;
 
 double smoothstep(double x) { return x >= 1 ? 1 : x * x * (3 - 2 * x); }
 
-/// Returns for each vertex of a rim its place on a circle around the axis through `center`: at the angle of
-/// its share of the length, with as little twist as possible.
-std::vector<Vec3> circle_of(const Mesh& mesh, const std::vector<int>& rim, Vec3 center, Vec3 normal,
-                            double radius) {
+/// Points at equal distances along a rim, each with the vertex before it and its place on a circle.
+struct Sections {
+  std::vector<double> share;  ///< of the rim's length, of each of its vertices, and 1
+  std::vector<Vec3> rim, circle;
+  std::vector<int> before;
+};
+
+/// Divides a rim and the circle around the axis through `center`, with as little twist as possible. Edges of
+/// the rim may be of very different length, those of its extension are not.
+Sections sections_of(const Mesh& mesh, const std::vector<int>& rim, Vec3 center, Vec3 normal) {
   const double pi = std::numbers::pi;
   const PlaneView flat({center, normal});
   const int n = (int)rim.size();
-  std::vector<double> length(n + 1, 0);
-  for (int i = 0; i < n; ++i)
-    length[i + 1] = length[i] + norm(flat(mesh.points[rim[(i + 1) % n]]) - flat(mesh.points[rim[i]]));
-  double area = 0;
-  Vec2 mean;
-  for (int i = 0; i < n; ++i) area += cross(flat(mesh.points[rim[i]]), flat(mesh.points[rim[(i + 1) % n]]));
-  const double turn = area > 0 ? 1 : -1;
+  auto corner = [&](int i) { return mesh.points[rim[i % n]]; };
+  Sections s;
+  s.share.assign(n + 1, 0);
+  double area = 0, squares = 0;
   for (int i = 0; i < n; ++i) {
-    const Vec2 p = flat(mesh.points[rim[i]]);
-    const double a = std::atan2(p.y, p.x) - turn * 2 * pi * length[i] / length[n];
-    mean = mean + Vec2{std::cos(a), std::sin(a)};
+    const double edge = norm(corner(i + 1) - corner(i));
+    s.share[i + 1] = s.share[i] + edge;
+    squares += edge * edge;
+    area += 0.5 * cross(flat(corner(i)), flat(corner(i + 1)));
+  }
+  const double length = s.share[n], turn = (area > 0 ? 2 : -2) * pi, radius = std::sqrt(std::abs(area) / pi);
+  for (double& share : s.share) share /= length;
+  Vec2 mean;
+  for (int i = 0; i < n; ++i) {
+    const Vec2 p = flat(corner(i));
+    const double a = std::atan2(p.y, p.x) - turn * s.share[i], weight = s.share[i + 1] - s.share[i];
+    mean = mean + weight * Vec2{std::cos(a), std::sin(a)};
   }
   const double start = std::atan2(mean.y, mean.x);
-  std::vector<Vec3> circle;
-  for (int i = 0; i < n; ++i) {
-    const double a = start + turn * 2 * pi * length[i] / length[n];
-    circle.push_back(center + radius * (std::cos(a) * flat.right + std::sin(a) * flat.up));
+  const int m = std::clamp((int)std::lround(length * length / squares), 6, std::max(6, n));
+  for (int k = 0, i = 0; k < m; ++k) {
+    const double share = (double)k / m, a = start + turn * share;
+    while (s.share[i + 1] <= share) ++i;
+    s.rim.push_back(lerp(corner(i), corner(i + 1), (share - s.share[i]) / (s.share[i + 1] - s.share[i])));
+    s.circle.push_back(center + radius * (std::cos(a) * flat.right + std::sin(a) * flat.up));
+    s.before.push_back(rim[i]);
   }
-  return circle;
+  return s;
+}
+
+/// Adds triangles between two rings, whose vertices are at shares of their lengths.
+void join_rings(Mesh& mesh, const std::vector<int>& from, const std::vector<double>& share,
+                const std::vector<int>& to) {
+  const int n = (int)from.size(), m = (int)to.size();
+  for (int i = 0, j = 0; i < n || j < m;) {
+    const int a = from[i % n], d = to[j % m];
+    // that of the next vertices which is nearer to the middle between the last ones
+    if (j == m || (i < n && share[i] + share[i + 1] <= (2.0 * j + 1) / m))
+      mesh.tris.push_back({a, from[++i % n], d});
+    else
+      mesh.tris.push_back({a, to[++j % m], d});
+  }
 }
 
 /// Distance from an edge of a rim, in lengths of it, of the vertex inside the cap opposite the edge, and the
@@ -108,26 +137,22 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth) {
   const std::size_t before = mesh.tris.size();
   const double transition = std::min(share_of_transition * length, longest_transition * end.radius);
   for (std::vector<int>& rim : end.rims) {
-    const int n = (int)rim.size();
-    const std::vector<Vec3> circle = circle_of(mesh, rim, end.center, end.normal, end_of(mesh, rim).radius);
-    double edge = 0;
-    for (int i = 0; i < n; ++i) edge += norm(mesh.points[rim[(i + 1) % n]] - mesh.points[rim[i]]) / n;
+    const Sections s = sections_of(mesh, rim, end.center, end.normal);
+    const int m = (int)s.rim.size();
+    const double edge = norm(s.circle[1] - s.circle[0]);
     const int rings = std::clamp((int)std::lround(length / edge), 2, most_rings);
-    const std::vector<int> first = rim;
+    std::vector<double> share = s.share;
     for (int r = 1; r <= rings; ++r) {
-      const double z = length * r / rings, share = smoothstep(z / transition);
+      const double z = length * r / rings, round = smoothstep(z / transition);
       std::vector<int> ring;
-      for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < m; ++k) {
         ring.push_back((int)mesh.points.size());
-        growth.vertex_like.push_back(first[i]);
-        mesh.points.push_back(lerp(mesh.points[first[i]], circle[i], share) + z * end.normal);
+        growth.vertex_like.push_back(s.before[k]);
+        mesh.points.push_back(lerp(s.rim[k], s.circle[k], round) + z * end.normal);
       }
-      for (int i = 0; i < n; ++i) {
-        const int a = rim[i], b = rim[(i + 1) % n], c = ring[(i + 1) % n], d = ring[i];
-        const bool other = norm(mesh.points[c] - mesh.points[a]) > norm(mesh.points[d] - mesh.points[b]);
-        mesh.tris.push_back(other ? Tri{a, b, d} : Tri{a, b, c});
-        mesh.tris.push_back(other ? Tri{b, c, d} : Tri{a, c, d});
-      }
+      join_rings(mesh, rim, share, ring);
+      share.resize(m + 1);
+      for (int k = 0; k <= m; ++k) share[k] = (double)k / m;
       rim = std::move(ring);
     }
   }

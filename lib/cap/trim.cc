@@ -141,6 +141,7 @@ std::string flood(const Connectivity& c, const std::vector<End>& ends, int i, co
   std::vector<int> stack;
   // what is farther away than the piece is long and wide is behind the cut
   const double reach = 2 * (norm(plane.point - ends[i].center) + 2 * ends[i].radius);
+  auto away = [&](int v) { return norm(c.point(v) - ends[i].center); };
   bool ends_there = false, far = false;
   int met = -1;
   auto take = [&](int t) {
@@ -150,7 +151,7 @@ std::string flood(const Connectivity& c, const std::vector<End>& ends, int i, co
     if (n == 0 || owner[t] == i) return;
     if (owner[t] >= 0) {
       met = owner[t];
-    } else if (norm(c.point(v[0]) - ends[i].center) > reach) {
+    } else if (std::min({away(v[0]), away(v[1]), away(v[2])}) > reach) {
       far = true;
     } else {
       owner[t] = i;
