@@ -96,6 +96,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     const Place to = on_line ? walk.slide(s.place[v], p) : walk.closest(s.place[v], p);
     return norm(walk.point(to) - p) < rules::reached * s.target(v);
   };
+  if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
   const double near_enough = std::max(deviation(before), least / size);
   const double bearable = objective(before) + spoils;

@@ -102,6 +102,14 @@ std::vector<int> triangles_around(const EditMesh& mesh, int t, int rings) {
   return found;
 }
 
+bool has_double_edge(const EditMesh& mesh, const std::vector<int>& triangles) {
+  std::vector<std::pair<int, int>> edges;
+  for (int t : triangles)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) edges.push_back({mesh.from(h), mesh.to(h)});
+  std::sort(edges.begin(), edges.end());
+  return std::adjacent_find(edges.begin(), edges.end()) != edges.end();
+}
+
 State extract(const State& s, const std::vector<int>& triangles) {
   const std::vector<int> vertices = vertices_of(s.mesh, triangles);
   auto local = [&](int v) {

@@ -36,6 +36,10 @@ double deviation(const State& s, int t);
 /// The largest of all triangles.
 double deviation(const State& s);
 
+/// Do two edges of these triangles join the same vertices? Components of few triangles have such edges, which
+/// no patch can tell apart.
+bool has_double_edge(const EditMesh& mesh, const std::vector<int>& triangles);
+
 /// Triangle t, then those that are up to `rings` vertices away.
 std::vector<int> triangles_around(const EditMesh& mesh, int t, int rings);
 /// These triangles as a mesh of its own whose rim is frozen, and which records its edits. Its vertices are

@@ -110,6 +110,7 @@ std::vector<int> bad_triangles(const State& s) {
 }  // namespace
 
 std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough) {
+  if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
   const double bad = objective(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
   const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough));
