@@ -15,6 +15,7 @@
 #include "formats/foreign/tetgen.h"
 #include "formats/foreign/vtk_legacy.h"
 #include "formats/foreign/vtk_xml.h"
+#include "formats/stream/region_tables.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
 
@@ -105,7 +106,10 @@ const Writer& writer_of(const std::string& path) {
 }
 
 std::string write_as(const Stream& stream, const std::string& path, bool ascii) {
-  return writer_of(path).write(stream, ascii);
+  const Writer& writer = writer_of(path);
+  if (has_sheets(stream) && writer.write != static_cast<decltype(Writer::write)>(write_stream))
+    return writer.write(with_sheets_joined(stream), ascii);
+  return writer.write(stream, ascii);
 }
 
 }  // namespace meshpipe

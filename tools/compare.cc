@@ -3,8 +3,10 @@
 
 #include "formats/stream/lift_tables.h"
 #include "formats/stream/line_tables.h"
+#include "formats/stream/region_tables.h"
 #include "lib/clean/clean.h"
 #include "lib/core/error.h"
+#include "lib/core/junctions.h"
 #include "lib/core/weld.h"
 #include "tools/report/verdict.h"
 
@@ -13,6 +15,20 @@ namespace {
 
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
+
+/// Cleans the reference; where its sheets meet, takes those of both surfaces apart. Returns whether they do.
+bool clean_both(Surface& reference, Surface& result, int& opened) {
+  CleanReport report;
+  clean(reference, {.sheets = CleanOptions::automatic}, report);
+  opened = report.opened_edges;
+  if (is_soup(result)) weld(result);
+  if (!report.sheets.kept) return false;
+  take_apart(reference);
+  join_borders(result);
+  result.vertex = Table{"vertex", result.points.size(), {}};
+  take_apart(result);
+  return true;
+}
 
 }  // namespace
 
@@ -23,25 +39,26 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   Stream other;
   Lines lines;
   int opened = 0;
+  bool meet = has_sheets(stream);
   if (own) {
     reference = read_reference(stream);
     if (stream.find("line_use")) lines = read_lines(stream);
   } else {
     other = io.read(file);
     reference = std::move(other.surface);
-    opened = clean(reference).opened_edges;
-    if (is_soup(result)) weld(result);
+    meet = clean_both(reference, result, opened);
   }
   expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
-  Findings f =
-      examine(result, reference, own ? &lines : nullptr, samples, required_distance(contract) - removed);
+  Findings f = examine(result, reference, own ? &lines : nullptr, samples,
+                       required_distance(contract) - removed, meet);
   f.opened = opened + opened_unasked(stream);
   f.distance.bound += removed;
+  if (meet) f.sheets = compare_sheets(reference, result, read_sheets(stream), own);
   const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
   // a file that holds one patch comes from a format without patches, as a rule
-  if (own || patches.size() > 1)
+  if (own || (!meet && patches.size() > 1))
     f.patch_faults = compare_patches(patches_of(reference, {}, namer(own ? stream : other)), patches);
   return f;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
 
 #include "formats/stream/model_edges.h"
+#include "formats/stream/region_tables.h"
 #include "lib/clean/clean.h"
 #include "lib/core/number.h"
 #include "lib/size/size.h"
@@ -13,7 +15,7 @@ namespace {
 
 struct Options : CleanOptions {
   double spikes = 0;  ///< extents of the neighbors; 0: none are moved
-  std::string within = "auto", most = "all", how = "pair", resolving = "none", data, offending;
+  std::string within = "auto", most = "all", how = "auto", resolving = "none", data, offending;
 };
 
 /// Throws: BadUsage for values that no surface makes valid.
@@ -43,6 +45,25 @@ void put(Io& io, const CleanReport& r, const CleanOptions& options) {
         {{"triangle", t}, {"triangles", n}, {"disagree", {a, b}}, {"place", {p.x, p.y, p.z}}});
 }
 
+/// Takes kept sheets apart, and reports the regions between them.
+void divide(Io& io, Stream& stream, CleanReport& report) {
+  const RegionReport regions = take_apart(stream.surface, side_labels(stream.surface));
+  for (const char* column :
+       {"boundary_labels.0", "boundary_labels.1", "BoundaryLabels.0", "BoundaryLabels.1"})
+    stream.surface.face.erase(column);  // tables hold them now
+  report.sheets.patches.insert(report.sheets.patches.end(), regions.added.begin(), regions.added.end());
+  write_regions(stream, regions.sheets, regions.label, regions.volume);
+  const int n = (int)regions.label.size() - 1;
+  for (int i = 1; i <= n; ++i) {
+    io.detail("region " + std::to_string(regions.label[i]) + " has volume " + shown(regions.volume[i]));
+    io.report["regions"].push_back({{"label", regions.label[i]}, {"volume", regions.volume[i]}});
+  }
+  const auto [least, most] = std::minmax_element(regions.volume.begin() + 1, regions.volume.end());
+  if (n > 0)
+    io.say(std::to_string(n) + (n == 1 ? " region" : " regions") + " between the sheets, of volume " +
+           shown(*least) + (n == 1 ? "" : " to " + shown(*most)));
+}
+
 void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surface& surface) {
   auto counts = [](std::size_t vertices, std::size_t triangles) {
     return std::to_string(vertices) + " vertices, " + std::to_string(triangles) + " triangles";
@@ -64,7 +85,7 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
 /// Names the patches that were added: one that became several has its name on each of them.
 void name_patches(Stream& stream, const CleanReport& report) {
   int number = 1, of = -1;
-  for (const auto& [patch, was] : report.sheet_patches) {
+  for (const auto& [patch, was] : report.sheets.patches) {
     number = std::exchange(of, was) == was ? number + 1 : 2;
     if (const std::string name = stream.name_of(2, was); !name.empty())
       stream.names.push_back({2, patch, name + "-" + std::to_string(number)});
@@ -98,8 +119,9 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--drop-nonorientable", o.drop_nonorientable,
                "drop components that are not orientable, instead of failing with 4");
   app.add_option("--sheets", o.how,
-                 "edges of more than two triangles: pair (default, by solids), split or keep")
-      ->check(CLI::IsMember({"pair", "split", "keep"}));
+                 "edges of more than two triangles: keep, pair (by solids), split, or auto (default): keep "
+                 "where sheets divide space, else pair")
+      ->check(CLI::IsMember({"auto", "pair", "split", "keep"}));
   app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
       ->type_name("NAME")
       ->group("Reports");
@@ -148,11 +170,16 @@ int main(int argc, char** argv) {
       [&](CLI::App& app) { add_options(app, o); },
       [&](Io& io) {
         check(o);
-        o.sheets = o.how == "keep" ? o.keep : o.how == "split" ? o.split : o.pair;
+        o.sheets = o.how == "keep"    ? o.keep
+                   : o.how == "split" ? o.split
+                   : o.how == "pair"  ? o.pair
+                                      : o.automatic;
         o.resolve = o.resolving == "all" ? o.all : o.resolving == "outer" ? o.outer : o.none;
         if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
         Stream& stream = io.read();
         Surface& s = stream.surface;
+        if (has_sheets(stream)) stream = with_sheets_joined(stream);
+        if (o.sheets == o.automatic && !side_labels(s).empty()) o.sheets = o.keep;
         if (!o.data.empty()) expect_data(s, o.data);
         o.weld = o.within == "auto" ? -1 : *parse_length(o.within, diagonal(s));
         const Mesh input = o.offending.empty() ? Mesh{} : s;
@@ -172,7 +199,6 @@ int main(int argc, char** argv) {
           throw;
         }
         report_faults();
-        name_patches(stream, report);
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
         // whatever was found out about another surface, or by another program, does not hold for this one
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
@@ -181,11 +207,14 @@ int main(int argc, char** argv) {
           for (const char* column : {"part", "origin"}) s.face.erase(column);
           for (const char* column : {"ref_face", "b1", "b2", "kind", "line"}) s.vertex.erase(column);
         }
+        for (const char* table : {"sheet", "region"}) stream.erase(table);
+        if (report.sheets.kept) divide(io, stream, report);
         if (stream.input_triangles == 0 || !report.nothing) {
           std::erase_if(stream.remarks, is_of_former_run);
           if (const std::string r = remark_of(report); r.size()) stream.remarks.push_back(r);
           remark_on_spikes(io, stream);
         }
+        name_patches(stream, report);
         stream.input_triangles = (int)s.tris.size();
         say(io, report, o, s);
         io.write(stream);

@@ -7,6 +7,7 @@
 #include "formats/foreign/inria.h"
 #include "formats/foreign/vtk_legacy.h"
 #include "formats/stream/line_tables.h"
+#include "formats/stream/region_tables.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -58,6 +59,7 @@ void color_by(Surface& s, const std::string& column) {
 
 /// Keeps only vertices, faces, patches and colors.
 void strip(Stream& stream) {
+  if (has_sheets(stream)) stream = with_sheets_joined(stream);
   Surface& s = stream.surface;
   stream.tables.clear();
   s.vertex.columns.clear();

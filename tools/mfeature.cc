@@ -4,6 +4,7 @@
 
 #include "formats/foreign/patch_groups.h"
 #include "formats/stream/model_edges.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/stages.h"
 #include "lib/cap/cap.h"
 #include "lib/core/triangle_count.h"
@@ -185,7 +186,12 @@ void mark(Io& io, Options& o) {
   std::vector<int> given = given_edges(io, stream, o.edge_file);
   auto features = [&] { return mark_features(surface, o, before.empty() ? nullptr : &before, &given); };
   FeatureReport marked = features();
-  const double tolerance = tolerance_of(o, length, diagonal(surface));
+  // what removes features moves borders of one sheet, and not those of the others that meet there
+  const bool meets = has_sheets(stream);
+  if (meets && o.tolerance != "auto" && o.tolerance != "0")
+    throw NotAdmissible("--tolerance " + o.tolerance +
+                        ": features of sheets that meet are not removed; use 0");
+  const double tolerance = meets ? 0 : tolerance_of(o, length, diagonal(surface));
   if (defeature(io, stream, {tolerance, o.keep_boundary}, before, given)) marked = features();
   report(io, marked);
   io.write(stream);

@@ -3,6 +3,7 @@
 // field.
 #include "formats/stream/line_tables.h"
 #include "formats/stream/model_edges.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/stages.h"
 #include "lib/size/size.h"
 #include "tools/common.h"
@@ -19,7 +20,8 @@ int main(int argc, char** argv) {
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
-    const Lines lines = make_lines(stream.surface, read_charts(stream), corner_turn, &tag, keep_boundary);
+    const Lines lines =
+        make_lines(stream.surface, read_charts(stream), corner_turn, &tag, keep_boundary, has_sheets(stream));
     drop_downstream(stream, Stage::lines);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;

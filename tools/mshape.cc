@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mshape: make test surfaces.
+#include <algorithm>
 #include <numbers>
 
 #include "lib/shape/shape.h"
@@ -16,7 +17,28 @@ struct Options {
   int patches = 0;
   bool closed = false;
   int genus = 2, generations = 0, outlets = 0, seed = 1;
+  std::string brick, within = "ball";
+  int nested = 0, voronoi = 0;
+  bool blocks = false;
 };
+
+/// Reads "4x4x4", or "4" for the same.
+std::array<int, 3> counts_in(const std::string& text) {
+  std::array<int, 3> n{};
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%3dx%3dx%3d%n", &n[0], &n[1], &n[2], &end) < 3) {
+    if (std::sscanf(text.c_str(), "%3d%n", &n[0], &end) == 1) n[1] = n[2] = n[0];
+  }
+  if (end != (int)text.size() || *std::min_element(n.begin(), n.end()) < 1)
+    throw BadUsage("--brick: expected NxMxK, each 1 to 999, found '" + text + "'");
+  return n;
+}
+
+Mesh regions(const Options& o, int triangles) {
+  if (o.nested > 0) return nested_spheres(o.nested, triangles);
+  if (o.voronoi > 0) return voronoi(o.voronoi, o.within == "ball", o.blocks, triangles, o.seed);
+  return brick(counts_in(o.brick.empty() ? "2x1x1" : o.brick), triangles);
+}
 
 /// Returns the number of vertices around a tube of about n triangles.
 int around(double aspect, bool closed, int n) {
@@ -48,8 +70,26 @@ Body make(const Options& o) {
     const int outlets = o.outlets == 0 && o.generations == 0 ? 13 : o.outlets;
     mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed, o.aspect);
   }
+  if (o.kind == "regions") mesh = regions(o, triangles(10000));
   body.patch.assign(mesh.tris.size(), 0);
   return body;
+}
+
+void add_region_options(CLI::App& app, Options& o) {
+  auto* brick = app.add_option("--brick", o.brick, "regions: cubes with all their faces (default 2x1x1)")
+                    ->type_name("NxMxK");
+  auto* nested = app.add_option("--nested", o.nested, "regions: this many spheres, one within the other")
+                     ->check(CLI::Range(1, 1000))
+                     ->excludes(brick)
+                     ->type_name("N");
+  app.add_option("--voronoi", o.voronoi, "regions: those nearest to each of N seeds")
+      ->check(CLI::Range(1, 100000))
+      ->excludes(brick)
+      ->excludes(nested)
+      ->type_name("N");
+  app.add_option("--within", o.within, "regions of --voronoi: ball (default) or box")
+      ->check(CLI::IsMember({"ball", "box"}));
+  app.add_flag("--blocks", o.blocks, "regions of --voronoi: the sides of voxels");
 }
 
 }  // namespace
@@ -58,9 +98,9 @@ int main(int argc, char** argv) {
   Options o;
   CLI::Option* generations = nullptr;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("KIND", o.kind, "tube, sphere, torus, genus, tree, body or cube")
+    app.add_option("KIND", o.kind, "tube, sphere, torus, genus, tree, body, cube or regions")
         ->required()
-        ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube"}))
+        ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube", "regions"}))
         ->type_name("");
     app.add_option("--triangles", o.triangles, "about this many triangles")->check(CLI::Range(1, 100000000));
     app.add_option("--aspect", o.aspect,
@@ -83,6 +123,7 @@ int main(int argc, char** argv) {
     app.add_option("--voxels", o.voxels,
                    "as a segmentation shows it: the faces between voxels of this size; ends are closed")
         ->check(positive_number());
+    add_region_options(app, o);
     app.add_option("--noise", o.noise, "move vertices by up to this times the mean edge length")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--slivers", o.slivers, "split this fraction of the edges close to one end")
@@ -120,10 +161,11 @@ int main(int argc, char** argv) {
   };
   return run_tool(argc, argv, "mshape",
                   "Make a test surface: a tube, sphere, torus, plate with holes (genus), branching tree of "
-                  "tubes, CAD-like body "
-                  "or cube.\n\nexamples:\n  mshape tree -o tree.stl\n  mshape tree --outlets 147 --triangles "
+                  "tubes, CAD-like body, cube, or sheets between many regions.\n\nexamples:\n  mshape tree "
+                  "-o tree.stl\n  mshape tree --outlets 147 --triangles "
                   "90000 -o airways.stl\n"
                   "  mshape body --patches 850 --triangles 1000000 -o gear.msh\n"
+                  "  mshape regions --voronoi 50 --triangles 40000 -o foam.vtu\n"
                   "  mshape tube --aspect 100 --noise 0.1 | mclean | mtopo > tube.ply",
                   add_options, body, {.reads = false});
 }

@@ -5,6 +5,7 @@
 
 #include "formats/foreign/inria.h"
 #include "formats/foreign/size_table.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/stages.h"
 #include "lib/core/bvh.h"
 #include "lib/core/number.h"
@@ -161,7 +162,8 @@ int main(int argc, char** argv) {
     for (Table& t : stream.tables)
       if (t.name == "chart_vertex") chart = &t;
     o.most_triangles = most_triangles();
-    const SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
+    SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
+    if (has_sheets(stream) && !stream.find("ref_vertex")) r.added += match_sheets(s, chart, o.gradation);
     drop_downstream(stream, Stage::sizes);
     stream.asked_triangles = met_count(r, o) ? static_cast<int>(o.triangles) : 0;
     if (r.added > 0) follow_split(stream);

@@ -13,6 +13,7 @@
 #include "lib/check/needles.h"
 #include "lib/check/patches.h"
 #include "lib/check/quality.h"
+#include "lib/check/sheets.h"
 #include "lib/check/soundness.h"
 #include "lib/lines/lines.h"
 
@@ -36,8 +37,9 @@ struct Findings {
   int worst_off_corners = -1;
   std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
   std::vector<std::string> patch_faults;                 ///< see compare_patches
-  std::vector<int> unmarked_borders;  ///< half-edges, where the reference's patches end at model edges
-  std::vector<int> reversed;          ///< a triangle of each component
+  std::vector<int> unmarked_borders;    ///< half-edges, where the reference's patches end at model edges
+  std::vector<int> reversed;            ///< a triangle of each component
+  std::optional<SheetFindings> sheets;  ///< where they meet; see compare_sheets
   int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
@@ -50,8 +52,9 @@ constexpr double most_deviation = 0.5;
 /// columns `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it
 /// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
 /// `lines`: those that the result was made with, or null. `samples`, `most`: see distance_between.
+/// `sheets_meet`: border vertices at the same place are one.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
-                 double most = std::numeric_limits<double>::infinity());
+                 double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false);
 
 /// Finds the edges where two triangles turn by more than 150 degrees while the reference within an edge
 /// length has only one of their two orientations. Thin plates and sharp ridges are no folds.

@@ -12,15 +12,16 @@ namespace {
 
 constexpr double nan = no_figure;
 // Requirements without a limit. topology: sound, components, genus and loops of the reference, no sheets
-// apart; intersections: none where the reference has none; folds: none; patches: all of the reference's.
-constexpr const char* flags[] = {"topology", "intersections", "folds", "patches"};
+// apart; intersections: none where the reference has none; folds: none; patches: all of the reference's;
+// regions: sheets that meet do so as in the reference, and enclose the same (topology requires it, too).
+constexpr const char* flags[] = {"topology", "intersections", "folds", "patches", "regions"};
 // Lower limits: kappa (of triangles that are not forced), kappa_off_wedges, kappa_mean, angle (degrees).
 // Upper limits: hausdorff (of its bound), mean, rms, boundary, features (over the diagonal), vertices (of
 // Findings::off), deviation (of the local size), size (edge deviation), trace (kappa_elsewhere -
-// kappa_by_cuts).
+// kappa_by_cuts), volumes (of a region).
 constexpr const char* limits[] = {"kappa", "kappa_off_wedges", "kappa_mean", "angle",    "hausdorff", "mean",
                                   "rms",   "boundary",         "features",   "vertices", "deviation", "size",
-                                  "trace"};
+                                  "trace", "volumes"};
 
 template <class Names>
 bool among(const Names& names, const std::string& name) {
@@ -81,9 +82,28 @@ void judge_topology(const Findings& f, const Mesh& mesh, Facts& facts) {
   same("boundary loops", m.loops, r.loops, m.loop < 0 ? "" : "; the shortest passes " + edge(mesh, m.loop));
 }
 
+/// A region that differs by more is not the same.
+constexpr double most_volume_error = 0.1;
+
+void judge_volumes(const SheetFindings& f, double limit, Facts& facts) {
+  if (!(f.volume_error > limit)) return;
+  const RegionVolume& v = f.volumes[f.worst];
+  facts.push_back("region " + std::to_string(v.label) + " has volume " + shown(v.result) +
+                      ", in the reference " + shown(v.reference) + ": the difference is above " +
+                      shown(limit) + " of it",
+                  f.volume_error);
+}
+
+void judge_regions(const Findings& f, Facts& facts) {
+  if (!f.sheets) return;
+  for (const std::string& fault : f.sheets->faults) facts.push_back(fault);
+  judge_volumes(*f.sheets, most_volume_error, facts);
+}
+
 void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Facts& facts) {
   if (name == "topology") {
     judge_topology(f, mesh, facts);
+    judge_regions(f, facts);
   } else if (name == "intersections") {
     const std::size_t n = f.new_intersections.size();
     if (n > 0)
@@ -98,6 +118,8 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
       facts.push_back(std::to_string(f.folds.size()) + (f.folds.size() == 1 ? " edge is" : " edges are") +
                           " folded, the first in " + edge(mesh, f.folds[0]),
                       (double)f.folds.size(), f.folds[0] / 3);
+  } else if (name == "regions") {
+    judge_regions(f, facts);
   } else {
     for (const std::string& fault : f.patch_faults) facts.push_back(fault);
     if (!f.unmarked_borders.empty())
@@ -130,6 +152,10 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
     within(" of the local size is how far the surfaces are apart " + place(d.deviation.place),
            d.deviation.triangle);
     if (!facts.failures.empty()) facts.failures.back().place = d.deviation.place;
+    return;
+  }
+  if (r.name == "volumes") {
+    if (f.sheets) judge_volumes(*f.sheets, r.limit, facts);
     return;
   }
   const bool unknown =
@@ -184,6 +210,7 @@ double reached(const Requirement& r, const Findings& f) {
   if (r.name == "features") return f.features.value_or(nan);
   if (r.name == "deviation") return most_deviation * d.deviation.worst;
   if (r.name == "size") return q.edge_deviation;
+  if (r.name == "volumes" && f.sheets) return f.sheets->volume_error;
   if (r.name == "vertices") return f.farthest < 0 ? 0 : f.off[f.farthest];
   if (r.name == "trace" && f.kappa_by_cuts && f.kappa_elsewhere) return *f.kappa_elsewhere - *f.kappa_by_cuts;
   return nan;
@@ -266,12 +293,19 @@ std::vector<Figure> figures(const Findings& f) {
   const Distance& d = f.distance;
   constexpr int count = count_figure, digits = short_figure;
   auto known = [](const Soundness& c, int value) { return c.sound() ? value : nan; };
+  auto met = [&](Both SheetFindings::*of, int side) { return f.sheets ? ((*f.sheets).*of)[side] : nan; };
   return {
       {"vertices", "vertices", count, (double)r.vertices, (double)m.vertices},
       {"triangles", "triangles", count, (double)r.faces, (double)m.faces},
       {"components", "components", count, known(r, r.components), known(m, m.components)},
       {"genus", "genus", count, known(r, r.genus), known(m, m.genus)},
       {"loops", "boundary loops", count, known(r, r.loops), known(m, m.loops)},
+      {"regions", "regions", count, met(&SheetFindings::regions, 0), met(&SheetFindings::regions, 1)},
+      {"junction_lines", "lines where sheets meet", count, met(&SheetFindings::lines, 0),
+       met(&SheetFindings::lines, 1)},
+      {"junction_corners", "points where these end", count, met(&SheetFindings::corners, 0),
+       met(&SheetFindings::corners, 1)},
+      {"volume_error", "difference of volumes", digits, nan, f.sheets ? f.sheets->volume_error : nan},
       {"degenerate", "repeated vertices", count, (double)r.degenerate.size(), (double)m.degenerate.size()},
       {"nonmanifold_edges", "non-manifold edges", count, (double)r.nonmanifold.size(),
        (double)m.nonmanifold.size()},

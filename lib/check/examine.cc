@@ -4,6 +4,7 @@
 
 #include "lib/check/check.h"
 #include "lib/core/intersect.h"
+#include "lib/core/junctions.h"
 #include "lib/core/original_triangles.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
@@ -160,7 +161,27 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
   return {mean(1), mean(0)};
 }
 
-Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples, double most) {
+namespace {
+
+/// Finds intersections, of meshes whose sheets are joined where they meet.
+void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& reference,
+                        const Bvh& reference_tree) {
+  f.intersections = self_intersections(mesh, mesh_tree);
+  if (f.intersections.empty()) return;
+  const auto before = self_intersections(reference, reference_tree);
+  f.reference_intersections = (int)before.size();
+  f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, before));
+}
+
+Mesh joined(Mesh mesh) {
+  join_borders(mesh);
+  return mesh;
+}
+
+}  // namespace
+
+Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples, double most,
+                 bool sheets_meet) {
   Findings f;
   Mesh reference;
   parallel_for(2, [&](int side) {
@@ -185,12 +206,10 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
 
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
-  f.intersections = self_intersections(result, mesh_tree);
-  if (!f.intersections.empty()) {
-    const auto before = self_intersections(reference, reference_tree);
-    f.reference_intersections = (int)before.size();
-    f.new_intersections = new_intersections(result, f.intersections, contacts(reference, before));
-  }
+  if (sheets_meet)
+    find_intersections(f, joined(result), mesh_tree, joined(reference), reference_tree);
+  else
+    find_intersections(f, result, mesh_tree, reference, reference_tree);
   add_progress(0.3);
   f.folds = find_folds(mesh, reference, reference_tree);
   const std::vector<double> edges = mean_edges(result);

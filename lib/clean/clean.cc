@@ -10,6 +10,7 @@
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
+#include "lib/solids/solids.h"
 
 namespace meshpipe {
 namespace {
@@ -244,7 +245,25 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
     if (cap[t] >= 0) patch[t] = report.holes.patches[cap[t]];
 }
 
-void clean_once(Surface& surface, const CleanOptions& options, CleanReport& report) {
+/// Repairs a copy of the surface where sheets are kept. Returns whether they divide space into regions.
+bool keep_sheets(const Surface& surface, const std::vector<int>& same, const CleanOptions& options, Repair& r,
+                 CleanReport& report) {
+  r = start(surface, same, report);
+  try {
+    repair(r, surface.points, options, report);
+  } catch (const NotAdmissible&) {  // a sheet that is not orientable
+    return false;
+  }
+  Repair whole = r;
+  unite(whole);
+  Mesh mesh{{}, std::move(whole.tris)};
+  for (int v : whole.vertex) mesh.points.push_back(surface.points[v]);
+  return divides_space(find_solids(mesh));
+}
+
+void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
+  const bool automatic = options.sheets == CleanOptions::automatic;
+  if (automatic) options.sheets = CleanOptions::pair;
   report = {};
   report.input_vertices = (int)surface.points.size();
   report.input_triangles = (int)surface.tris.size();
@@ -252,6 +271,16 @@ void clean_once(Surface& surface, const CleanOptions& options, CleanReport& repo
   const CleanReport welded = report;
   Repair r = start(surface, same, report);
   repair(r, surface.points, options, report);
+  if (automatic && report.nonmanifold_edges) {
+    CleanOptions keep = options;
+    keep.sheets = CleanOptions::keep;
+    CleanReport kept = welded;
+    if (Repair whole; keep_sheets(surface, same, keep, whole, kept)) {
+      r = std::move(whole);
+      report = std::move(kept);
+      options = keep;
+    }
+  }
   if (options.weld < 0)  // seams
     if (const int n = merge_noise(surface, border_vertices(r, same.size()), report.tolerance, same); n > 0) {
       report = welded;
@@ -268,7 +297,8 @@ void clean_once(Surface& surface, const CleanOptions& options, CleanReport& repo
   for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
   sort_offending(report);
   if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));
-  if (options.sheets == CleanOptions::keep) {
+  report.sheets.kept = options.sheets == CleanOptions::keep;
+  if (report.sheets.kept) {
     unite(r);
     report.copies = report.opened_edges = 0;
   }
@@ -302,7 +332,7 @@ void clean_resolved(Surface& surface, const Mesh& input, CleanOptions options, C
   options.fill_holes = 0;
   CleanReport after;
   clean_once(surface, options, after);
-  if (options.sheets != CleanOptions::keep) drop_crumbs(surface, input, after);
+  if (!after.sheets.kept) drop_crumbs(surface, input, after);
   after.input_vertices = report.input_vertices;
   after.input_triangles = report.input_triangles;
   after.welded = report.welded;

@@ -7,6 +7,7 @@
 
 #include "lib/core/mesh.h"
 #include "lib/resolve/resolve.h"
+#include "lib/solids/solids.h"
 
 namespace meshpipe {
 
@@ -19,8 +20,9 @@ struct CleanOptions {
   int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
   bool cap_patches = false;         ///< give each filled hole a patch of its own
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
-  /// split elsewhere, all split, or left to share their vertices.
-  enum Sheets { pair, split, keep } sheets = pair;
+  /// split elsewhere, all split, or left to share their vertices; or kept if they divide space into regions
+  /// (lib/solids/solids.h), and else paired.
+  enum Sheets { pair, split, keep, automatic } sheets = pair;
   /// Self-intersections: left as they are, resolved into the boundary of the outside, or into all pieces.
   enum Resolve { none, outer, all } resolve = none;
 };
@@ -48,6 +50,11 @@ struct HoleCounts {
   std::vector<int> patches;       ///< of the loops filled, if each has its own
 };
 
+struct SheetCounts {
+  bool kept = false;                        ///< sheets share their vertices where they meet
+  std::vector<std::array<int, 2>> patches;  ///< then: the new patch, and the one it was
+};
+
 /// Counts of repairs. Triangles are numbered as in the input.
 struct CleanReport {
   int input_vertices = 0, input_triangles = 0;
@@ -67,11 +74,11 @@ struct CleanReport {
   int flat = 0;                  ///< triangles of zero area left in, where dropping them would open a crack
   int components = 0;            ///< of the result
   int dropped_components = 0, dropped_triangles = 0;  ///< by keep_components
+  SheetCounts sheets;
   HoleCounts holes;
   ResolveReport resolved;
-  std::vector<std::array<int, 2>> sheet_patches;  ///< by sheets = keep: the new patch, and the one it was
-  std::vector<Nonorientable> nonorientable;       ///< components dropped
-  std::vector<OffendingFace> offending;           ///< by fault, then by triangle
+  std::vector<Nonorientable> nonorientable;  ///< components dropped
+  std::vector<OffendingFace> offending;      ///< by fault, then by triangle
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
@@ -102,6 +109,20 @@ Spikes find_spikes(const Surface& surface);
 /// Returns the same triangles with copies of vertices that keep sheets and fans apart: an oriented manifold.
 /// Throws: NotAdmissible if the mesh needs any other repair.
 Mesh sheets_apart(const Mesh& mesh);
+
+/// The regions of a surface whose sheets were kept.
+struct RegionReport {
+  std::vector<SheetPatch> sheets;
+  std::vector<int> label;                 ///< per region; the first is the outside
+  std::vector<double> volume;             ///< per region
+  std::vector<std::array<int, 2>> added;  ///< patches: the new one, and the one it was
+};
+
+/// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with
+/// borders where they meet. Patches have one region on either side, and sheets next to the outside are
+/// oriented towards it. `given`: labels as in labels_of; empty: regions are labeled 1, 2 ...
+/// Throws: as labels_of and sheets_apart.
+RegionReport take_apart(Surface& surface, const std::vector<std::array<int, 2>>& given = {});
 
 /// Returns one line: which component, how large, which triangles, where.
 std::string describe(const Nonorientable& component);

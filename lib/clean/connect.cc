@@ -47,7 +47,7 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
     again = false;
     if (same.empty() && edges == 0) break;
     gone.assign(r.tris.size(), 0);
-    const int contacts = drop_doubles(r, points, same, options.sheets == CleanOptions::pair, gone);
+    const int contacts = drop_doubles(r, points, same, options.sheets, gone);
     for (std::size_t t = 0; t < gone.size(); ++t)
       if (gone[t]) {
         report.duplicate += r.face[t] >= 0;

@@ -94,7 +94,9 @@ void drop_other_contacts(const Repair& r, const std::vector<char>& sheet, std::v
 }  // namespace
 
 int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
-                 const std::vector<std::array<int, 2>>& same, bool solids, std::vector<char>& gone) {
+                 const std::vector<std::array<int, 2>>& same, CleanOptions::Sheets sheets,
+                 std::vector<char>& gone) {
+  const bool solids = sheets == CleanOptions::pair;
   std::vector<char> sheet(r.tris.size(), single);
   auto taken = [&](int t) { return gone[t] || sheet[t] != single; };
   for (const auto& [t, u] : same) {
@@ -104,7 +106,7 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
     else
       gone[u] = 1;
   }
-  if (!solids) return 0;
+  if (sheets == CleanOptions::split) return 0;
   const std::vector<Quad> quads = find_quads(r, points);
   for (std::size_t i = 1; i < quads.size(); ++i) {
     const Quad &q = quads[i - 1], &p = quads[i];
@@ -114,7 +116,7 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
     const double bend = angle(q.normal, p.normal);
     if (std::min(bend, std::numbers::pi - bend) > flat) continue;
     for (int k : {0, 1})
-      if (bend > flat)
+      if (bend > flat && solids)
         sheet[q.tris[k]] = first, sheet[p.tris[k]] = second;
       else
         gone[p.tris[k]] = 1;

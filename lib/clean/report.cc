@@ -29,10 +29,10 @@ std::string describe_nothing_left(const CleanReport& r) {
 
 namespace {
 
-std::vector<RepairRow> repairs(const CleanReport& r, const CleanOptions& options) {
+std::vector<RepairRow> repairs(const CleanReport& r) {
   char within[64];
   std::snprintf(within, sizeof within, "vertices merged with one within %g", r.tolerance);
-  const bool keep = options.sheets == CleanOptions::keep;
+  const bool keep = r.sheets.kept;
   return {
       {"welded", r.welded, "vertices welded with an equal one"},
       {"welded_near", r.welded_near, within},
@@ -43,13 +43,14 @@ std::vector<RepairRow> repairs(const CleanReport& r, const CleanOptions& options
       {"nonorientable", (int)r.nonorientable.size(), "non-orientable components dropped"},
       {"contacts", r.contacts, "triangles where solids touch, one for each of them"},
       {"nonmanifold_edges", r.nonmanifold_edges,
-       keep ? "non-manifold edges kept as model edges" : "non-manifold edges"},
+       keep ? "edges of more than two triangles, where sheets meet" : "non-manifold edges"},
       {"paired_edges", r.paired_edges, "of them closed, by pairs of triangles that bound the same solid"},
       {"opened_edges", r.opened_edges, "of them opened into borders of sheets"},
       {"nonmanifold_vertices", r.nonmanifold_vertices,
-       keep ? "vertices of several fans kept" : "vertices of several fans split into a copy for each fan"},
+       keep ? "vertices of several sheets or fans"
+            : "vertices of several fans split into a copy for each fan"},
       {"copies", r.copies, "copies of vertices that keep sheets and fans apart"},
-      {"sheet_patches", (int)r.sheet_patches.size(), "patches added, one for each further sheet"},
+      {"sheet_patches", (int)r.sheets.patches.size(), "patches added, one for each further sheet"},
       {"flat", r.flat, "triangles of zero area left in"},
       {"dropped_components", r.dropped_components, "smaller components dropped"},
       {"dropped_triangles", r.dropped_triangles, "triangles dropped with them"},
@@ -64,7 +65,7 @@ std::vector<RepairRow> repairs(const CleanReport& r, const CleanOptions& options
 }  // namespace
 
 std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& options) {
-  std::vector<RepairRow> table = repairs(r, options);
+  std::vector<RepairRow> table = repairs(r);
   if (options.resolve == CleanOptions::none) return table;
   char area[96];
   std::snprintf(area, sizeof area, "pieces dropped that do not bound the outside, of area %.4g",

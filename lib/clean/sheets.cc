@@ -41,11 +41,11 @@ bool mark_sheets(Surface& surface, const Repair& apart, CleanReport& report) {
   for (std::size_t i = 1; i < labels.size(); ++i) {
     const Label &before = labels[i - 1], &l = labels[i];
     if (l.patch != before.patch) continue;
-    if (l.sheet != before.sheet) report.sheet_patches.push_back({++last, l.patch});
-    const bool first = report.sheet_patches.empty() || report.sheet_patches.back()[1] != l.patch;
+    if (l.sheet != before.sheet) report.sheets.patches.push_back({++last, l.patch});
+    const bool first = report.sheets.patches.empty() || report.sheets.patches.back()[1] != l.patch;
     if (!first) patch[l.triangle] = last;
   }
-  if (report.sheet_patches.empty()) return changed;
+  if (report.sheets.patches.empty()) return changed;
   surface.face.set("patch", std::move(patch));
   return true;
 }

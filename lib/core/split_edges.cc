@@ -2,41 +2,12 @@
 #include "lib/core/split_edges.h"
 
 #include <algorithm>
-#include <numeric>
 
-#include "lib/core/error.h"
+#include "lib/core/chart_rows.h"
 #include "lib/core/predicates.h"
 
 namespace meshpipe {
 namespace {
-
-/// Where the charts have the vertices: rows of chart_vertex by vertex.
-class ChartRows {
- public:
-  ChartRows(Table& table, std::size_t n_vertices)
-      : part_(table.get<int>("part")),
-        vertex_(table.get<int>("vertex")),
-        u_(table.get<double>("u")),
-        v_(table.get<double>("v")),
-        start_(n_vertices + 1, 0),
-        row_(vertex_.size()) {
-    for (int v : vertex_) ++start_[v + 1];
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::vector<int> at(start_.begin(), start_.end() - 1);
-    for (int i = 0; i < static_cast<int>(vertex_.size()); ++i) row_[at[vertex_[i]]++] = i;
-  }
-  Vec2 uv(int part, int vertex) const {
-    for (int k = start_[vertex]; k < start_[vertex + 1]; ++k)
-      if (part_[row_[k]] == part) return {u_[row_[k]], v_[row_[k]]};
-    throw BadInput("chart_vertex has no row for vertex " + std::to_string(vertex) + " in part " +
-                   std::to_string(part));
-  }
-
- private:
-  const std::vector<int>&part_, &vertex_;
-  const std::vector<double>&u_, &v_;
-  std::vector<int> start_, row_;
-};
 
 /// Corners of a piece: 0 to 2 the triangle's own, 3 + i the middle of the edge from corner i to i+1.
 using Piece = std::array<int, 3>;

@@ -9,6 +9,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/junctions.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/lines/noncrossing.h"
@@ -27,6 +28,12 @@ constexpr double cut_off = 0.1;        // of h: a segment that is farther off it
 constexpr double in_line = 1e-6;       // radians: border edges that turn by less are pieces of one
 constexpr double most_segments = 1e8;  // of all lines: 2.4 GB
 
+/// Where sheets meet: per vertex the first one of the border at its place; empty if none meet.
+struct Places {
+  std::vector<int> first;
+  int operator()(int v) const { return first.empty() ? v : first[v]; }
+};
+
 /// An edge that lines run along; right = -1 on the mesh border.
 struct SpecialEdge {
   int a, b, kind;
@@ -34,10 +41,9 @@ struct SpecialEdge {
   int tag;          ///< label, 0: none
 };
 
-std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>& part,
+std::vector<SpecialEdge> special_edges(const Connectivity& mesh, const std::vector<int>& part,
                                        const std::vector<int>* tag = nullptr) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, static_cast<int>(s.points.size()));
-  const Connectivity mesh{s, opposite, model_of(s)};
+  const std::vector<int>& opposite = mesh.opposite;
   std::vector<SpecialEdge> edges;
   for (int h = 0; h < mesh.n_half_edges(); ++h) {
     const int o = opposite[h];
@@ -56,15 +62,15 @@ std::vector<SpecialEdge> special_edges(const Surface& s, const std::vector<int>&
 /// loops that are left, each from its smallest vertex. A change of label is a joint. Adds their labels to
 /// `tag`.
 Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner,
-                   std::vector<int>* tag = nullptr) {
+                   const Places& place, std::vector<int>* tag = nullptr) {
   const int n_vertices = static_cast<int>(corner.size());
   std::vector<int> start(n_vertices + 1, 0), star(2 * edges.size());
-  for (const SpecialEdge& e : edges) ++start[e.a + 1], ++start[e.b + 1];
+  for (const SpecialEdge& e : edges) ++start[place(e.a) + 1], ++start[place(e.b) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<int> at(start.begin(), start.end() - 1);
   for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
-    star[at[edges[i].a]++] = i;
-    star[at[edges[i].b]++] = i;
+    star[at[place(edges[i].a)]++] = i;
+    star[at[place(edges[i].b)]++] = i;
   }
   auto is_joint = [&](int v) {
     return corner[v] || start[v + 1] - start[v] != 2 ||
@@ -75,15 +81,15 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
   std::vector<char> used(edges.size(), 0);
   auto walk = [&](int v, int e, bool closed) {
     const SpecialEdge& first = edges[e];
-    const bool along = first.a == v;
+    const bool along = place(first.a) == v;
     Chain c{first.kind, static_cast<int>(chains.vertex.size()), 1,
             closed,     along ? first.left : first.right,       along ? first.right : first.left};
     const int origin = v;
-    chains.vertex.push_back(v);
+    chains.vertex.push_back(along ? first.a : first.b);
     for (;;) {
       used[e] = 1;
-      v = edges[e].a == v ? edges[e].b : edges[e].a;
-      chains.vertex.push_back(v);
+      chains.vertex.push_back(place(edges[e].a) == v ? edges[e].b : edges[e].a);
+      v = place(chains.vertex.back());
       ++c.count;
       if (closed ? v == origin : is_joint(v)) break;
       const int s = start[v];
@@ -99,6 +105,94 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
         if (!used[star[i]]) walk(v, star[i], closed);
     }
   return chains;
+}
+
+/// Drops border edges at the same places as an earlier one.
+void drop_copies(std::vector<SpecialEdge>& edges, const Places& place) {
+  struct Row {
+    int a, b, edge;
+    auto operator<=>(const Row&) const = default;
+  };
+  std::vector<Row> rows;
+  for (int i = 0; i < static_cast<int>(edges.size()); ++i)
+    if (edges[i].kind == border_line) {
+      const int a = place(edges[i].a), b = place(edges[i].b);
+      rows.push_back({std::min(a, b), std::max(a, b), i});
+    }
+  std::sort(rows.begin(), rows.end());
+  std::vector<char> copy(edges.size(), 0);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (rows[i].a == rows[i - 1].a && rows[i].b == rows[i - 1].b) copy[rows[i].edge] = 1;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    if (!copy[i]) edges[n++] = edges[i];
+  edges.resize(n);
+}
+
+/// The border through each vertex: the vertex before and after it, or -1.
+struct Border {
+  std::vector<int> before, after;
+  explicit Border(const Connectivity& mesh) : before(mesh.n_vertices(), -1), after(before) {
+    for (int h = 0; h < mesh.n_half_edges(); ++h)
+      if (mesh.is_border(h)) after[mesh.from(h)] = mesh.to(h), before[mesh.to(h)] = mesh.from(h);
+  }
+};
+
+/// Marks places where the sheets do not all go on along one and the same line.
+void mark_changes(const Connectivity& mesh, const Places& place, std::vector<char>& corner) {
+  const Border border(mesh);
+  for (int v = 0; v < mesh.n_vertices(); ++v) {
+    if (border.after[v] < 0) continue;
+    const int first = place(v);
+    const std::array<int, 2> here{place(border.before[v]), place(border.after[v])},
+        there{place(border.before[first]), place(border.after[first])};
+    if (here[0] == here[1] || (here != there && here != std::array{there[1], there[0]})) corner[first] = 1;
+  }
+}
+
+/// Replaces chains along borders by one for each sheet there, in the same direction.
+void copy_lines(const Connectivity& mesh, const std::vector<int>& part, const Places& place, Chains& chains,
+                std::vector<int>& tag) {
+  const Border border(mesh);
+  std::vector<int> start(mesh.n_vertices() + 1, 0), member(mesh.n_vertices());
+  for (int v = 0; v < mesh.n_vertices(); ++v) ++start[place(v) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (int v = 0; v < mesh.n_vertices(); ++v) member[at[place(v)]++] = v;
+  std::vector<int> part_after(mesh.n_vertices(), -1);  // of the border edge that leaves a vertex
+  for (int h = 0; h < mesh.n_half_edges(); ++h)
+    if (mesh.is_border(h)) part_after[mesh.from(h)] = part[h / 3];
+
+  Chains all;
+  std::vector<int> all_tags;
+  for (std::size_t l = 0; l < chains.chain.size(); ++l) {
+    const Chain& c = chains.chain[l];
+    const int leader = static_cast<int>(all.chain.size());
+    auto add = [&](Chain copy) {
+      copy.first = static_cast<int>(all.vertex.size());
+      all.chain.push_back(copy);
+      all.leader.push_back(leader);
+      all_tags.push_back(tag[l]);
+    };
+    const int* v = &chains.vertex[c.first];
+    if (c.kind != border_line) {
+      add(c);
+      all.vertex.insert(all.vertex.end(), v, v + c.count);
+      continue;
+    }
+    const int from = place(v[0]), to = place(v[1]);
+    for (int k = start[from]; k < start[from + 1]; ++k)
+      for (bool along : {true, false}) {
+        const std::vector<int>& beyond = along ? border.after : border.before;
+        int w = member[k];
+        if (beyond[w] < 0 || place(beyond[w]) != to) continue;
+        const int p = part_after[along ? w : beyond[w]];
+        add({c.kind, 0, c.count, c.closed, along ? p : -1, along ? -1 : p});
+        for (int i = 0; i < c.count; ++i, w = beyond[w]) all.vertex.push_back(w);
+      }
+  }
+  chains = std::move(all);
+  tag = std::move(all_tags);
 }
 
 /// A chain by its arc length.
@@ -192,20 +286,20 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
 
 /// Marks ends, junctions and turns of the border and model edges, whatever the parts.
 std::vector<char> mark_corners(const Surface& s, const std::vector<double>& size,
-                               const std::vector<SpecialEdge>& edges, double limit) {
+                               const std::vector<SpecialEdge>& edges, const Places& place, double limit) {
   std::vector<char> corner(s.points.size(), 0);
   std::vector<SpecialEdge> kept;
   for (const SpecialEdge& e : edges)
     if (e.kind != interface_line) kept.push_back(e);
   std::vector<int> degree(s.points.size(), 0), kinds(s.points.size(), 0);
   for (const SpecialEdge& e : kept)
-    for (int v : {e.a, e.b}) {
+    for (int v : {place(e.a), place(e.b)}) {
       ++degree[v];
       kinds[v] |= 1 << e.kind;
     }
   for (std::size_t v = 0; v < s.points.size(); ++v)
     corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
-  const Chains chains = chain_edges(kept, corner);
+  const Chains chains = chain_edges(kept, corner, place);
   for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, corner);
   return corner;
 }
@@ -269,7 +363,7 @@ bool cuts_off_a_bend(const Surface& s, const std::vector<double>& size, const Ch
 
 /// Returns the number of segments that each line is divided into at first: the rounded integral of 1/h, at
 /// least 1, or 3 where a loop ends at its start, or at a copy of that.
-std::vector<int> segment_counts(const Surface& s, const Chains& chains) {
+std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Places& place) {
   std::vector<int> count;
   std::vector<std::array<int, 3>> single;  // ends and line of those with one segment
   double all = 0;
@@ -279,7 +373,11 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains) {
   };
   for (int l = 0; l < static_cast<int>(chains.chain.size()); ++l) {
     const Chain& c = chains.chain[l];
-    const int a = chains.vertex[c.first], b = chains.vertex[c.first + c.count - 1];
+    const int a = place(chains.vertex[c.first]), b = place(chains.vertex[c.first + c.count - 1]);
+    if (!chains.leader.empty() && chains.leader[l] != l) {
+      count.push_back(0);  // as its leader
+      continue;
+    }
     all += total(l);
     if (!(all <= most_segments))
       throw GoalMissed("the sizes ask for more than " + shown(most_segments) +
@@ -318,8 +416,10 @@ std::vector<char> input_border(const Surface& surface) {
 }
 
 std::vector<char> model_corners(const Surface& surface, double corner) {
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
   return mark_corners(surface, surface.vertex.get<double>("size"),
-                      special_edges(surface, surface.face.get<int>("part")), corner);
+                      special_edges({surface, opposite, model_of(surface)}, surface.face.get<int>("part")),
+                      {}, corner);
 }
 
 std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
@@ -340,7 +440,7 @@ std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
 }
 
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner,
-                 const std::vector<int>* tag, bool keep_border) {
+                 const std::vector<int>* tag, bool keep_border, bool sheets_meet) {
   const int n_vertices = static_cast<int>(surface.points.size());
   if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
   const auto& size = surface.vertex.get<double>("size");
@@ -355,28 +455,39 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
       throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
                      ", but there are " + std::to_string(charts.size()) + " charts");
 
-  const std::vector<SpecialEdge> edges = special_edges(surface, part, tag);
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, n_vertices);
+  const Connectivity mesh{surface, opposite, model_of(surface)};
+  const Places place{sheets_meet ? first_at_border(mesh) : std::vector<int>()};
+  std::vector<SpecialEdge> edges = special_edges(mesh, part, tag);
+  if (sheets_meet) drop_copies(edges, place);
+  std::vector<char> corners = mark_corners(surface, size, edges, place, corner);
+  for (int v = 0; v < n_vertices; ++v) corners[place(v)] |= corners[v];
+  if (sheets_meet) mark_changes(mesh, place, corners);
   std::vector<int> chain_tag;
-  Chains chains = chain_edges(edges, mark_corners(surface, size, edges, corner), &chain_tag);
+  Chains chains = chain_edges(edges, corners, place, &chain_tag);
+  if (sheets_meet) copy_lines(mesh, part, place, chains, chain_tag);
   measure_chains(surface, size, chains);
   Division division(chains.chain.size());
-  const std::vector<int> count = segment_counts(surface, chains);
+  const std::vector<int> count = segment_counts(surface, chains, place);
   for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+    if (count[l] == 0) continue;
     division[l] = divide(chains, l, count[l]);
     if (cuts_off_a_bend(surface, size, chains, chains.chain[l], division[l]))
       division[l] = divide(chains, l, count[l] + 1);
   }
   if (keep_border) {
-    const std::vector<char> kept = input_border(surface);
+    std::vector<char> kept = input_border(surface);
+    for (int v = 0; v < n_vertices; ++v) kept[place(v)] |= kept[v];
     for (int l = 0; l < static_cast<int>(count.size()); ++l) {
       const Chain& c = chains.chain[l];
       if (c.kind != border_line) continue;
       division[l].clear();
       for (int i = 0; i < c.count; ++i)
-        if (i == 0 || i == c.count - 1 || kept[chains.vertex[c.first + i]])
+        if (i == 0 || i == c.count - 1 || kept[place(chains.vertex[c.first + i])])
           division[l].push_back({i, 0, chains.measure[c.first + i]});
     }
   }
+  for (std::size_t l = 0; l < chains.leader.size(); ++l) division[l] = division[chains.leader[l]];
   refine_until_noncrossing(chains, charts, n_vertices, division);
 
   Lines lines;

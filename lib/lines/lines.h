@@ -48,12 +48,13 @@ std::vector<char> input_border(const Surface& surface);
 /// Chains border edges, edges between parts, and model edges into lines, which end at junctions, at
 /// model_corners and where `tag` (per half-edge, or null) changes. Divides each evenly in the integral of 1/h
 /// (lines.cc says how), then refines until lines meet in no chart except at common ends. With keep_border,
-/// borders have exactly the input's points and their ends of other lines.
+/// borders have exactly the input's points and their ends of other lines. If `sheets_meet`, borders at the
+/// same place, vertex by vertex (match_sheets), are copies of one line and get points at the same places.
 /// Requires: vertex column `size` (h), face column `part`; charts in part order, positively oriented.
 /// Throws: NotAdmissible without sizes; BadInput naming a vertex whose size is not positive or a face whose
 /// part has no chart; GoalMissed for sizes too small, or naming two lines that meet in a chart.
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = corner_turn,
-                 const std::vector<int>* tag = nullptr, bool keep_border = false);
+                 const std::vector<int>* tag = nullptr, bool keep_border = false, bool sheets_meet = false);
 
 /// Marks what a mesh with these lines keeps of a surface: model_corners, vertices where the label of lines
 /// changes, and those of borders that are kept.

@@ -97,6 +97,7 @@ class Refinement {
     const auto& cuts = division_[s.line];
     return count_inner(cuts[s.index], cuts[s.index + 1]) > 0;
   }
+  int leader_of(int line) const { return chains_.leader.empty() ? line : chains_.leader[line]; }
   double deviation(int part, const Drawing& d, int segment) const;
   void insert(int line, const std::vector<int>& segments);
   void keep_graded(int line);
@@ -366,13 +367,21 @@ void Refinement::run() {
       for (const SegmentOf& s : refine)
         if (!bare[s.line]) strip.push_back(s.line);
     if (refine.empty() && strip.empty()) return;
+    if (!chains_.leader.empty()) {
+      for (SegmentOf& r : refine) r.line = chains_.leader[r.line];
+      for (int& l : strip) l = chains_.leader[l];
+    }
     std::sort(refine.begin(), refine.end());
     refine.erase(std::unique(refine.begin(), refine.end()), refine.end());
 
     std::fill(dirty.begin(), dirty.end(), 0);
     auto touch = [&](int line) {
-      for (int p : {chains_.chain[line].left, chains_.chain[line].right})
-        if (p >= 0) dirty[p] = 1;
+      for (int l = line; l < n_lines && (l == line || leader_of(l) == line); ++l) {
+        division_[l] = division_[line];
+        bare[l] = bare[line];
+        for (int p : {chains_.chain[l].left, chains_.chain[l].right})
+          if (p >= 0) dirty[p] = 1;
+      }
     };
     for (int l : strip) {
       const Chain& c = chains_.chain[l];

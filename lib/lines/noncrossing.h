@@ -22,6 +22,9 @@ struct Chains {
   std::vector<int> vertex;
   std::vector<double> measure;  ///< integral of 1/h from the chain's start, per entry of `vertex`
   std::vector<double> ratio;    ///< per entry: relative change of h along the edge to the next one
+  /// Per chain the first of those that are copies of one line where sheets meet, vertex by vertex at the same
+  /// places, and are divided alike; empty: all are their own.
+  std::vector<int> leader{};
 };
 
 /// A point of a divided chain: at t along the edge after its vertex `piece`, 0 <= t < 1; t = 0: on the

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "lib/core/around.h"
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
 #include "lib/core/predicates.h"
@@ -14,53 +15,18 @@
 namespace meshpipe {
 namespace {
 
-/// The sides of pieces: 2 t is the one that the normal of piece t points to, 2 t + 1 the other. Sides of one
-/// region that are connected along edges form a shell; if only edges count that close, a level: all of it has
-/// one winding number.
+/// The sides of pieces, as numbered in lib/core/around.h. Sides of one region that are connected along edges
+/// form a shell; if only edges count that close, a level: all of it has one winding number.
 struct Sides {
   UnionFind shell, level, component;
   std::vector<char> open;  ///< per piece: it has an edge that does not close
-};
-
-/// Sorts the half-edges of an edge counterclockwise around it, seen against the direction from its smaller to
-/// its larger vertex.
-class Around {
- public:
-  Around(const Pieces& pieces, const std::vector<Tri>& tris, const ExactPoints& points)
-      : pieces_(pieces), tris_(tris), points_(points) {}
-  bool forward(int h) const { return origin(pieces_.tris, h) < target(pieces_.tris, h); }
-  /// The side of piece h / 3 that is seen from further on, or with `back` from before.
-  int side(int h, bool back = false) const { return 2 * (h / 3) + (forward(h) == back); }
-  void sort(std::vector<int>& edge) const {
-    const int first = edge[0];
-    std::vector<std::pair<int, int>> order;  // first the half turn, then the half-edge
-    for (int h : edge) {
-      const int s = h == first ? 2 : turn(first, h);
-      order.push_back({h == first ? -1 : s > 0 ? 0 : s == 0 ? 1 : 2, h});
-    }
-    std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-      if (a.first != b.first) return a.first < b.first;
-      return a.second != b.second && turn(a.second, b.second) > 0;
-    });
-    for (std::size_t i = 0; i < edge.size(); ++i) edge[i] = order[i].second;
-  }
-
- private:
-  /// +1 if g is within half a turn after h, -1 if before.
-  int turn(int h, int g) const {
-    const int s = points_.side(tris_[pieces_.origin[h / 3]], origin(pieces_.tris, prev(g)));
-    return forward(h) ? s : -s;
-  }
-  const Pieces& pieces_;
-  const std::vector<Tri>& tris_;
-  const ExactPoints& points_;
 };
 
 Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const ExactPoints& points) {
   const int n = (int)pieces.tris.size();
   Sides s{UnionFind(2 * (std::size_t)n), UnionFind(2 * (std::size_t)n), UnionFind(n),
           std::vector<char>(n, 0)};
-  const Around around(pieces, tris, points);
+  const Around around(pieces.tris, [&](int t, int v) { return points.side(tris[pieces.origin[t]], v); });
   std::vector<int> edge;
   for_each_edge(pieces.tris, points.size(), [&](std::span<const EdgeUse> uses) {
     edge.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Test surfaces from formulas and from implicit functions, and typical faults of files.
 #pragma once
+#include <array>
 #include <functional>
 #include <string>
 
@@ -50,6 +51,13 @@ Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed,
 /// triangles each. Loops are closed first, towards their centers. Edges and vertices where voxels touch
 /// diagonally are not manifold. Throws: GoalMissed with the number of voxels if there are too many.
 Mesh voxels(Mesh mesh, double h);
+/// count[0] x count[1] x count[2] unit cubes, each face of them once, about n triangles.
+Mesh brick(std::array<int, 3> count, int n);
+/// Spheres around one center, of radii 1/count, 2/count ... 1, about n triangles.
+Mesh nested_spheres(int count, int n);
+/// The Voronoi diagram of seeds in the unit ball (or the unit cube), spread by Lloyd's method, as a labeled
+/// image of it shows it: interpolated between voxels, or with `blocks` their sides. About n triangles.
+Mesh voronoi(int seeds, bool ball, bool blocks, int n, int seed);
 
 /// Moves every vertex by a random vector of length up to amount times the mean edge length.
 void add_noise(Mesh& mesh, double amount, int seed);

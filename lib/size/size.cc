@@ -10,6 +10,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/junctions.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
@@ -518,6 +519,21 @@ void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) 
     if (lowers) sources.push_back(v);
   }
   shortest_paths(sources, size, [&](int v, auto reach) { each_lower(v, reach); });
+}
+
+int match_sheets(Surface& surface, Table* chart, double slope) {
+  const int added = match_borders(surface, chart);
+  std::vector<double>& size = surface.vertex.get<double>("size");
+  Mesh joined = surface;
+  const std::vector<int> vertex = join_borders(joined);
+  std::vector<double> least(vertex.size(), infinite);
+  for (std::size_t t = 0; t < joined.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      least[joined.tris[t][i]] = std::min(least[joined.tris[t][i]], size[surface.tris[t][i]]);
+  limit_gradation(joined, slope, least);
+  for (std::size_t t = 0; t < joined.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i) size[surface.tris[t][i]] = least[joined.tris[t][i]];
+  return added;
 }
 
 SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split) {

@@ -2,7 +2,7 @@
 """What scripts/check holds the source to: the order of modules, words, and limits."""
 
 # A file may include headers of its own module and of those before it.
-MODULES = ["core", "numeric", "resolve", "clean", "wrap", "smooth", "cap", "feature", "defeature", "param", "partition",
+MODULES = ["core", "numeric", "solids", "resolve", "clean", "wrap", "smooth", "cap", "feature", "defeature", "param", "partition",
            "multiscale", "plan", "size", "lines", "mesh2d", "lift", "relax", "check", "shape", "draw", "formats", "tools"]
 # modules without one header of their own: each of theirs is for everybody
 TOOLBOXES = ["core", "numeric", "formats", "tools"]
@@ -16,7 +16,7 @@ LIMITS = {
     "functions": (0, "functions of more than 80 lines"),
     "comments": (0, "comments on a declaration of more than 8 lines"),
     "words": (0, "words with a better one in scripts/checks/tables.py"),
-    "lib-lines": (31700, "lines in lib/"),
+    "lib-lines": (33200, "lines in lib/"),
     "cutting-lines": (4590, "lines of the modules that cut: partition, multiscale, plan"),
     "cutting-in-param": (0, "includes of those in lib/param"),
     "eigen": (0, "includes of Eigen outside lib/numeric"),

@@ -96,6 +96,10 @@ nlohmann::ordered_json report_of(const Findings& f, const Stream& stream) {
     (*where)["angle_histogram"] = q->angle_histogram;
   }
   report["reference"] = reference;
+  if (f.sheets)
+    for (const RegionVolume& v : f.sheets->volumes)
+      report["region_volumes"].push_back(
+          {{"label", v.label}, {"volume", v.result}, {"reference", v.reference}});
   if (const double most = moved_in(stream); most > 0) report["moved"] = most;
   if (const Remark c = cleaning_of(stream); c.opened + c.split + c.dropped > 0)
     report["input"] = {{"opened", c.opened}, {"split", c.split}, {"dropped", c.dropped}};

@@ -100,7 +100,7 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.missed("topology") && c.facts.opened > 0; },
      [](const Case&) {
-       return WayOut{"mwrap", "a wrap is closed; mclean --sheets split accepts the borders"};
+       return WayOut{"--sheets keep", "sheets stay joined where they meet; split accepts the borders"};
      }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
      [](const Case&) {

@@ -235,7 +235,7 @@ TEST(Clean, KeepsSheetsJoinedOnRequest) {
   EXPECT_EQ(s.points.size(), 5u);
   EXPECT_EQ(s.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{1, 1, 1}));
   EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
-  EXPECT_EQ(r.sheet_patches, (std::vector<std::array<int, 2>>{{9, 7}}));
+  EXPECT_EQ(r.sheets.patches, (std::vector<std::array<int, 2>>{{9, 7}}));
   EXPECT_THROW(opposite_halfedges(s.tris, 5), NotAdmissible);
   Mesh apart = sheets_apart(s);
   EXPECT_EQ(apart.points.size(), 9u);

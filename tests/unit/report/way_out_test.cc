@@ -78,11 +78,11 @@ TEST(WayOut, TakesSheetsAtAnEdgeByWhatTheyEnclose) {
   FailureFacts facts;
   facts.requirement = "topology";
   facts.opened = 3;
-  EXPECT_EQ(named(missed, facts, {}), "mwrap");
+  EXPECT_EQ(named(missed, facts, {}), "--sheets keep");
   Diagnosis closed;
   closed.closed = true;
   EXPECT_EQ(named(missed, facts, closed), "mclean --resolve outer");
-  EXPECT_EQ(named(missed, facts, closed, {{"mclean", "", "--resolve=all"}}), "mwrap");
+  EXPECT_EQ(named(missed, facts, closed, {{"mclean", "", "--resolve=all"}}), "--sheets keep");
 }
 
 TEST(WayOut, RemovesStripsThatCostTooMuch) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tables `sheet` and `region`, of surfaces that divide space into regions.
+#pragma once
+#include "formats/stream.h"
+#include "lib/solids/solids.h"
+
+namespace meshpipe {
+
+/// Returns whether sheets of the stream meet: then border vertices at the same place are one.
+bool has_sheets(const Stream& stream);
+/// Returns table `sheet`, by patch; empty if the stream has none.
+/// Throws: BadInput for a patch that is there twice.
+std::vector<SheetPatch> read_sheets(const Stream& stream);
+/// Sets the tables.
+void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
+                   const std::vector<double>& volume);
+
+/// Returns the labels of both sides of each triangle, that other programs write: face columns
+/// boundary_labels.0 and .1 (VTK's, PyVista's; or BoundaryLabels); empty if there are none.
+std::vector<std::array<int, 2>> side_labels(const Surface& surface);
+
+/// Returns the stream as other formats have it: sheets share their vertices, and face columns
+/// boundary_labels.0 and .1 hold the regions in front and behind.
+Stream with_sheets_joined(const Stream& stream);
+
+}  // namespace meshpipe

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/check/sheets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/edges.h"
+#include "lib/core/junctions.h"
+#include "lib/core/number.h"
+#include "lib/core/union_find.h"
+
+namespace meshpipe {
+namespace {
+
+using Key = std::vector<int>;  ///< of a line: its sheets' patches, ascending; or their number
+
+/// The lines where more than two triangles meet, and free edges.
+struct Junctions {
+  std::vector<Key> lines;  ///< one per line, sorted
+  int corners = 0;
+  std::vector<int> free;                  ///< patches with free edges, ascending
+  std::vector<std::array<int, 2>> edges;  ///< free edges: patch and triangle
+};
+
+Junctions junctions_of(const Mesh& joined, const std::vector<int>& patch, bool named) {
+  Junctions j;
+  struct Edge {
+    int a, b;
+    Key key;
+  };
+  std::vector<Edge> edges;
+  for_each_edge(joined.tris, (int)joined.points.size(), [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]);
+    if (uses.size() == 1) j.edges.push_back({patch[h / 3], h / 3});
+    if (uses.size() < 3) return;
+    Key key;
+    if (!named) key.push_back((int)uses.size());
+    for (EdgeUse e : uses)
+      if (named) key.push_back(patch[half_edge(e) / 3]);
+    std::sort(key.begin(), key.end());
+    edges.push_back({origin(joined.tris, h), target(joined.tris, h), std::move(key)});
+  });
+  std::vector<std::array<int, 3>> at(joined.points.size(), {-1, -1, 0});  // two edges, and their number
+  for (int e = 0; e < (int)edges.size(); ++e)
+    for (int v : {edges[e].a, edges[e].b})
+      if (at[v][2]++ < 2) at[v][at[v][2] - 1] = e;
+  UnionFind line(edges.size());
+  for (const auto& [e, f, n] : at) {
+    if (n == 0) continue;
+    if (n == 2 && edges[e].key == edges[f].key)
+      line.join(e, f);
+    else
+      ++j.corners;
+  }
+  for (int e = 0; e < (int)edges.size(); ++e)
+    if (line.find(e) == e) j.lines.push_back(edges[e].key);
+  std::sort(j.lines.begin(), j.lines.end());
+  for (const auto& [p, t] : j.edges) j.free.push_back(p);
+  std::sort(j.free.begin(), j.free.end());
+  j.free.erase(std::unique(j.free.begin(), j.free.end()), j.free.end());
+  return j;
+}
+
+std::string shown(const Key& key, bool named) {
+  if (!named) return std::to_string(key[0]) + " triangles around it";
+  std::string text = "patches";
+  for (int p : key) text += ' ' + std::to_string(p);
+  return text;
+}
+
+void compare_lines(const Junctions& r, const Junctions& m, bool named, SheetFindings& f) {
+  f.lines = {(int)r.lines.size(), (int)m.lines.size()};
+  f.corners = {r.corners, m.corners};
+  std::vector<Key> lost, gained;
+  std::set_difference(r.lines.begin(), r.lines.end(), m.lines.begin(), m.lines.end(),
+                      std::back_inserter(lost));
+  std::set_difference(m.lines.begin(), m.lines.end(), r.lines.begin(), r.lines.end(),
+                      std::back_inserter(gained));
+  for (const auto& [which, what] :
+       {std::pair{&lost, " of the reference's are missing"}, {&gained, " are new"}})
+    if (!which->empty())
+      f.faults.push_back(std::to_string(which->size()) + " lines where sheets meet" + what +
+                         ", the first with " + shown((*which)[0], named));
+  if (r.corners != m.corners)
+    f.faults.push_back(std::to_string(m.corners) + " points where such lines end, the reference has " +
+                       std::to_string(r.corners));
+  for (const auto& [patch, t] : m.edges)
+    if (named ? !std::binary_search(r.free.begin(), r.free.end(), patch) : r.free.empty())
+      f.unmatched.push_back(t);
+}
+
+/// Checks that the regions found in the mesh have the labels that the table of sheets says.
+void compare_labels(const Solids& solids, const std::vector<int>& patch,
+                    const std::vector<SheetPatch>& sheets, SheetFindings& f) {
+  constexpr int unknown = -1;
+  std::vector<int> triangle(solids.volume.size(), unknown), label(solids.volume.size(), 0);
+  for (int t = 0; t < (int)patch.size(); ++t) {
+    const auto s = std::lower_bound(sheets.begin(), sheets.end(), patch[t],
+                                    [](const SheetPatch& row, int p) { return row.patch < p; });
+    if (s == sheets.end() || s->patch != patch[t]) continue;
+    for (int i : {0, 1}) {
+      const int region = solids.sides[t][i], here = i ? s->back : s->front;
+      if (triangle[region] == unknown) triangle[region] = t, label[region] = here;
+      if (label[region] == here) continue;
+      f.faults.push_back("triangle " + std::to_string(t) + " bounds region " + std::to_string(here) +
+                         ", which is one with region " + std::to_string(label[region]) + " at triangle " +
+                         std::to_string(triangle[region]));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+SheetFindings compare_sheets(const Surface& reference, const Surface& result,
+                             const std::vector<SheetPatch>& sheets, bool named) {
+  SheetFindings f;
+  Mesh joined[2] = {reference, result};
+  Junctions junctions[2];
+  Solids solids[2];
+  const Surface* surface[2] = {&reference, &result};
+  for (int i : {0, 1}) {
+    join_borders(joined[i]);
+    const std::vector<int> none(joined[i].tris.size(), 0);
+    junctions[i] = junctions_of(joined[i], named ? surface[i]->face.get<int>("patch") : none, named);
+    solids[i] = find_solids(joined[i]);
+    f.regions[i] = solids[i].count();
+  }
+  compare_lines(junctions[0], junctions[1], named, f);
+  if (!f.unmatched.empty())
+    f.faults.push_back(std::to_string(f.unmatched.size()) +
+                       " edges of sheets have no other at their place, the first in triangle " +
+                       std::to_string(f.unmatched[0]));
+  if (f.regions[0] != f.regions[1])
+    f.faults.push_back(std::to_string(f.regions[1]) + " regions, the reference has " +
+                       std::to_string(f.regions[0]));
+  if (named) {
+    compare_labels(solids[1], result.face.get<int>("patch"), sheets, f);
+    std::vector<int> labels;
+    for (const SheetPatch& s : sheets) labels.push_back(s.front), labels.push_back(s.back);
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    for (int label : labels)
+      if (label > 0)
+        f.volumes.push_back({label, volume_of(reference, sheets, label), volume_of(result, sheets, label)});
+  } else if (f.regions[0] == f.regions[1]) {
+    for (Solids& s : solids) std::sort(s.volume.begin() + 1, s.volume.end());
+    for (int i = 1; i <= f.regions[0]; ++i)
+      f.volumes.push_back({i, solids[0].volume[i], solids[1].volume[i]});
+  }
+  for (int i = 0; i < (int)f.volumes.size(); ++i) {
+    const RegionVolume& v = f.volumes[i];
+    const double error =
+        v.reference != 0 ? std::abs(v.result - v.reference) / std::abs(v.reference) : v.result != 0;
+    if (f.worst < 0 || error > f.volume_error) f.volume_error = error, f.worst = i;
+  }
+  return f;
+}
+
+}  // namespace meshpipe

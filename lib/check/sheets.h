@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Verification of sheets that meet: the lines where they do, and the regions between them.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "lib/solids/solids.h"
+
+namespace meshpipe {
+
+/// What is compared: {reference, result}.
+using Both = std::array<int, 2>;
+
+struct RegionVolume {
+  int label;
+  double reference, result;
+};
+
+struct SheetFindings {
+  Both lines{}, corners{};  ///< lines of more than two sheets, and the points where they end or change
+  Both regions{};
+  std::vector<RegionVolume> volumes;
+  double volume_error = 0;  ///< largest difference over the reference's volume
+  int worst = -1;           ///< row of `volumes` that has it
+  std::vector<std::string> faults;
+  std::vector<int> unmatched;  ///< triangles with a free edge, where the reference has none in this patch
+};
+
+/// Compares where sheets meet (by patch, or by their number if patches are not `named` alike) and what they
+/// enclose. Both surfaces have sheets apart, with the same coordinates where they meet.
+SheetFindings compare_sheets(const Surface& reference, const Surface& result,
+                             const std::vector<SheetPatch>& sheets, bool named);
+
+}  // namespace meshpipe

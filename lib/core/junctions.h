@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Junctions: where sheets meet, whose vertices are copies of each other, bit by bit at the same place.
+#pragma once
+#include <vector>
+
+#include "lib/core/connectivity.h"
+
+namespace meshpipe {
+
+/// Returns per vertex the first border vertex at its place, or itself where it is not on the border.
+std::vector<int> first_at_border(const Connectivity& c);
+
+/// Makes one vertex of border vertices at the same place; the others keep their order. Triangles stay, so
+/// that edges may have more than two. Returns per vertex the one that it was.
+std::vector<int> join_borders(Mesh& mesh);
+
+/// Where border edges between the same two places have been cut differently, splits them until all are cut
+/// at the same points. `chart`: table chart_vertex, which follows, or null. Returns the number of vertices
+/// added.
+int match_borders(Surface& surface, Table* chart);
+
+}  // namespace meshpipe
