@@ -75,7 +75,9 @@ constexpr int sweeps_to_settle = 3;
 constexpr int repair_rounds = 4;
 constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
-constexpr int hopeless = 100;              // triangles: if more are left, look whether rounds help
+constexpr int thorough_repairs = 30,
+              triangles_per_thorough = 1000;  // of pairs of edits: for the worst; the others may be forced
+constexpr int hopeless = 100;                 // triangles: if more are left, look whether rounds help
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
