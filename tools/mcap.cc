@@ -4,6 +4,7 @@
 
 #include "formats/foreign/end_names.h"
 #include "formats/stream/model_edges.h"
+#include "formats/stream/region_tables.h"
 #include "lib/cap/cap.h"
 #include "lib/core/number.h"
 #include "tools/common.h"
@@ -102,6 +103,7 @@ void run(Io& io, Options& o) {
   if (!o.name_file.empty()) expect_readable(o.name_file);
   Stream& stream = io.read();
   Surface& surface = stream.surface;
+  expect_no_sheets(stream, "the lines where they meet are no open ends");
   parse_trim(o, diagonal(surface));
   if (orient_outward(surface)) io.say("the surface was inside out: all triangles are reversed");
   std::vector<End> ends = find_ends(surface);

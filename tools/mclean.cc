@@ -45,12 +45,16 @@ void put(Io& io, const CleanReport& r, const CleanOptions& options) {
         {{"triangle", t}, {"triangles", n}, {"disagree", {a, b}}, {"place", {p.x, p.y, p.z}}});
 }
 
+void drop_labels(Surface& surface) {
+  for (const char* column :
+       {"boundary_labels.0", "boundary_labels.1", "BoundaryLabels.0", "BoundaryLabels.1"})
+    surface.face.erase(column);
+}
+
 /// Takes kept sheets apart, and reports the regions between them.
 void divide(Io& io, Stream& stream, CleanReport& report) {
   const RegionReport regions = take_apart(stream.surface, side_labels(stream.surface));
-  for (const char* column :
-       {"boundary_labels.0", "boundary_labels.1", "BoundaryLabels.0", "BoundaryLabels.1"})
-    stream.surface.face.erase(column);  // tables hold them now
+  drop_labels(stream.surface);  // tables hold them now
   report.sheets.patches.insert(report.sheets.patches.end(), regions.added.begin(), regions.added.end());
   write_regions(stream, regions.sheets, regions.label, regions.volume);
   const int n = (int)regions.label.size() - 1;
@@ -179,6 +183,7 @@ int main(int argc, char** argv) {
         Stream& stream = io.read();
         Surface& s = stream.surface;
         if (has_sheets(stream)) stream = with_sheets_joined(stream);
+        if (o.resolve == o.outer) drop_labels(s);  // only one region stays
         if (o.sheets == o.automatic && !side_labels(s).empty()) o.sheets = o.keep;
         if (!o.data.empty()) expect_data(s, o.data);
         o.weld = o.within == "auto" ? -1 : *parse_length(o.within, diagonal(s));

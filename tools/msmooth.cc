@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // msmooth: smooth a segmentation within a bound.
 #include "formats/stream/model_edges.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/stages.h"
 #include "lib/smooth/smooth.h"
 #include "tools/common.h"
@@ -58,6 +59,7 @@ int main(int argc, char** argv) {
                          within + "'");
         io.names_way_out = false;  // the messages have the number that helps
         Stream& stream = io.read();
+        expect_no_sheets(stream, "smoothing would separate them");
         Surface& s = stream.surface;
         if (!within.empty() && !s.tris.empty()) o.within = *parse_length(within, diagonal(s));
         if (o.keep_features && !s.face.has("model"))

@@ -11,6 +11,12 @@ namespace meshpipe {
 
 bool has_sheets(const Stream& stream) { return stream.find("sheet") != nullptr; }
 
+void expect_no_sheets(const Stream& stream, const std::string& why) {
+  if (has_sheets(stream))
+    throw NotAdmissible("sheets of the surface meet, and " + why +
+                        "; run mclean --resolve outer first to keep only what bounds the outside");
+}
+
 std::vector<SheetPatch> read_sheets(const Stream& stream) {
   std::vector<SheetPatch> sheets;
   const Table* table = stream.find("sheet");

@@ -8,6 +8,8 @@ namespace meshpipe {
 
 /// Returns whether sheets of the stream meet: then border vertices at the same place are one.
 bool has_sheets(const Stream& stream);
+/// Throws: NotAdmissible, with the reason, if they do.
+void expect_no_sheets(const Stream& stream, const std::string& why);
 /// Returns table `sheet`, by patch; empty if the stream has none.
 /// Throws: BadInput for a patch that is there twice.
 std::vector<SheetPatch> read_sheets(const Stream& stream);
