@@ -136,6 +136,8 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(30);
   };
   auto body = [&](Io& io) {
+    if (o.voxels > 0 && o.kind == "regions")
+      throw BadUsage("--voxels takes one body, not regions; voxels of regions: --voronoi N --blocks");
     Body shape = make(o);
     if (o.voxels > 0) {
       Body body{voxels(std::move(shape), o.voxels), {}, {}};

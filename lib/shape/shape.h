@@ -49,7 +49,8 @@ Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed,
 
 /// Returns the faces between voxels of side h whose center is inside the mesh and those outside, two
 /// triangles each. Loops are closed first, towards their centers. Edges and vertices where voxels touch
-/// diagonally are not manifold. Throws: GoalMissed with the number of voxels if there are too many.
+/// diagonally are not manifold. Throws: GoalMissed with the number of voxels if there are too many,
+/// or if none is inside.
 Mesh voxels(Mesh mesh, double h);
 /// count[0] x count[1] x count[2] unit cubes, each face of them once, about n triangles.
 Mesh brick(std::array<int, 3> count, int n);

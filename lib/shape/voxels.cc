@@ -103,6 +103,7 @@ Mesh voxels(Mesh mesh, double h) {
             faces.tris.push_back({square[0], square[2], square[3]});
           }
       }
+  if (faces.tris.empty()) throw GoalMissed("no voxel of " + shown(h) + " has its center inside the body");
   return faces;
 }
 
