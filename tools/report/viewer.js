@@ -232,13 +232,15 @@ class Pane {
     gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 0, 0);
   }
   axes() { return axes(this.camera); }
+  // half the height of what is in view: more where the canvas is narrower than fit expects
+  get half() { return this.camera.half * Math.max(1, least_aspect * this.canvas.clientHeight / this.canvas.clientWidth); }
   draw() {
     if (!this.mesh) return;
     const gl = this.gl, c = this.canvas, mesh = this.mesh, cam = this.camera;
     const ratio = Math.min(devicePixelRatio || 1, 2), w = Math.round(c.clientWidth * ratio), h = Math.round(c.clientHeight * ratio);
     if (!w || !h) return;
     if (c.width !== w || c.height !== h) c.width = w, c.height = h;
-    const axes = this.axes(), s = cam.half, depth = 2 * mesh.diagonal || 1, scale = [h / (w * s), 1 / s, -1 / depth], m = new Float32Array(16);
+    const axes = this.axes(), s = this.half, depth = 2 * mesh.diagonal || 1, scale = [h / (w * s), 1 / s, -1 / depth], m = new Float32Array(16);
     const from = sub(mesh.low, cam.center);
     for (let r = 0; r < 3; ++r) {
       for (let k = 0; k < 3; ++k) m[4 * k + r] = scale[r] * axes[r][k] * mesh.step[k];
@@ -264,8 +266,8 @@ class Pane {
   // the triangle in front at a place of the canvas, -1: none
   pick(event) {
     const box = this.canvas.getBoundingClientRect(), cam = this.camera, mesh = this.mesh, [right, up, back] = this.axes();
-    const x = ((event.clientX - box.left) / box.width * 2 - 1) * cam.half * box.width / box.height;
-    const y = (1 - (event.clientY - box.top) / box.height * 2) * cam.half;
+    const x = ((event.clientX - box.left) / box.width * 2 - 1) * this.half * box.width / box.height;
+    const y = (1 - (event.clientY - box.top) / box.height * 2) * this.half;
     let best = -1, nearest = -Infinity;
     const flat = new Float64Array(3 * mesh.vertices);
     for (let v = 0; v < mesh.vertices; ++v) {
@@ -284,7 +286,7 @@ class Pane {
   turn(dx, dy, pan) {
     const cam = this.camera;
     if (pan || this.own) {
-      const [right, up] = this.axes(), unit = 2 * cam.half / this.canvas.clientHeight;
+      const [right, up] = this.axes(), unit = 2 * this.half / this.canvas.clientHeight;
       cam.center = cam.center.map((x, k) => x - unit * (dx * right[k] - dy * up[k]));
     } else {
       cam.azimuth -= 0.4 * dx;
@@ -342,12 +344,13 @@ function redraw() {
   });
 }
 function recolor() { for (const p of panes) p.recolor(); legend(); redraw(); }
-// half the height of a view that is at least as wide as high, in which the bounding box fits
+// half the height of a view of this width over height, or more, in which the bounding box fits
+const least_aspect = 1.2;
 function fit(mesh) {
   const size = mesh.step.map(s => 32767.5 * s);
-  if (mesh.kind === 'charts') return Math.max(size[1], size[0] / 1.2);
+  if (mesh.kind === 'charts') return Math.max(size[1], size[0] / least_aspect);
   const rows = axes({azimuth: 30, elevation: 20}), extent = r => rows[r].reduce((sum, x, k) => sum + Math.abs(x) * size[k], 0);
-  return Math.max(extent(1), extent(0) / 1.2);
+  return Math.max(extent(1), extent(0) / least_aspect);
 }
 function whole(mesh) {
   return {center: mesh.low.map((x, k) => x + 32767.5 * mesh.step[k]), half: 1.08 * fit(mesh) || 1, azimuth: 30, elevation: 20};
