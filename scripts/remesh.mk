@@ -46,16 +46,24 @@ ifneq ($(parts),)
   $(error '$(firstword $(parts))' is no NAME.mesh.EXT, where EXT is one of: $(outputs); and NAME has no blanks)
 endif
 
+# NAME.stages is one run's at a time, as for mremesh --keep; a lock does not hold once its process has ended
+%.stages/lock: FORCE
+	@mkdir -p $(@D); (set -C; echo $$PPID >$@) 2>/dev/null || ! kill -0 "$$(cat $@)" 2>/dev/null || \
+	  { echo "$(@D): another run is at work there, process $$(cat $@)" >&2; exit 1; }; echo $$PPID >$@
+
 upper = $(shell printf %s '$(1)' | tr a-z A-Z)
 # the options of a stage are a file too, which is written when they change
 define options
-%.stages/$(1).options: FORCE
-	@mkdir -p $$(@D); printf '%s\n' '$$(call args,$(2))' | cmp -s - $$@ || printf '%s\n' '$$(call args,$(2))' >$$@
+%.stages/$(1).options: FORCE | %.stages/lock
+	@printf '%s\n' '$$(call args,$(2))' | cmp -s - $$@ || printf '%s\n' '$$(call args,$(2))' >$$@
 endef
 $(foreach s,$(stages) 12-check,$(eval $(call options,$(s),$(call upper,$(word 2,$(subst -, ,$(s)))))))
 
+# the input is known by its checksum, too: another one may be older
 define clean
-%.stages/01-clean.ply: %.$(1) %.stages/01-clean.options
+%.stages/input: %.$(1) FORCE | %.stages/lock
+	@sum=$$$$(cksum <$$<); [ "$$$$sum" = "$$$$(cat $$@ 2>/dev/null)" ] || printf %s "$$$$sum" >$$@
+%.stages/01-clean.ply: %.$(1) %.stages/01-clean.options %.stages/input
 	mclean $$(FLAGS) $$(call args,CLEAN) $$< -o $$@
 endef
 $(foreach e,$(inputs),$(eval $(call clean,$(e))))
