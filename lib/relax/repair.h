@@ -9,13 +9,13 @@ namespace meshpipe {
 
 /// What repair remembers between its calls.
 struct Repairs {
-  std::vector<int>
-      failed[2];        ///< per triangle: when one edit was last tried there in vain, and when pairs were
+  /// Per triangle: when one edit was last tried there in vain, and when pairs were.
+  std::vector<int> failed[2];
   bool forced = false;  ///< do the model or a kept border force most of the bad triangles?
 };
 
-/// The best of the edits around the first of these triangles, each tried on the neighborhood and settled
-/// there, if it is better than what is. `thorough`: also pairs of edits, the second where the first leaves
+/// Returns the best of the edits around the first of these triangles, each tried on the neighborhood and
+/// optimized there, if it improves on `s`. `thorough`: also pairs of edits, the second where the first leaves
 /// its worst triangle.
 std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough);
 
@@ -25,29 +25,28 @@ void repair_worst(State& s, Repairs& memory);
 
 // --- missed_features.cc ---
 
-/// A place of the reference that the mesh is to be near to, and a triangle of the mesh that was near to it.
+/// A place of the reference that the mesh should be near, and a triangle of the mesh that was near to it.
 struct Sample {
   Place place;
   int near = -1;
 };
 
-/// To be called for samples that were used with another mesh.
+/// Forgets the triangles near the samples: call it before they are used with another mesh.
 inline void forget_near(std::vector<Sample>& samples) {
   for (Sample& s : samples) s.near = -1;
 }
 
-/// The places of the reference that a mesh with edges of length h may miss: its vertices, and where it bends,
-/// points on its edges at most h / 3 apart.
+/// Returns the places of the reference that a mesh with edges of length h may miss: its vertices, and where
+/// it bends, points on its edges at most h / 3 apart.
 std::vector<Sample> feature_samples(const Reference& reference, double h);
 
 /// Puts mesh vertices on missed features, the maxima of the one-sided distance of the samples from the mesh,
-/// where that is more than `least` times the size, at most `most`, the
-/// farthest first. They stay there. Returns whether one was
-/// reached.
+/// where that is more than `least` times the size, the farthest first, at most `most` of them. The vertices
+/// stay there. Returns whether one was reached.
 bool reach_features(State& s, std::vector<Sample>& samples, double least, int most);
 
-/// Measures how far the samples are from the mesh: at most what is returned, and exactly that where it is
-/// more than `enough`. Sets the triangle that each is near to.
+/// Returns the distances of the samples from the mesh: exact where above `enough`, else upper bounds. Sets
+/// the triangle that each is near.
 std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough);
 
 // --- faults.cc ---

@@ -8,21 +8,12 @@
 
 #include "formats/text.h"
 #include "lib/core/number.h"
+#include "tools/report/verdict.h"
 
 namespace meshpipe {
 namespace {
 
 std::string escaped(const std::string& text) { return xml_escaped(text); }
-
-std::string figure(double x, int decimals) {
-  if (std::isnan(x)) return "-";
-  char s[400];
-  if (decimals == short_figure)
-    std::snprintf(s, sizeof s, "%.3g", x);
-  else
-    std::snprintf(s, sizeof s, "%.*f", decimals == count_figure ? 0 : decimals, x);
-  return s;
-}
 
 std::string point(Vec3 p) { return shown(p.x) + ' ' + shown(p.y) + ' ' + shown(p.z); }
 
@@ -122,12 +113,12 @@ std::string contract_html(const PageItem& item) {
                                                : "";
     std::string before = "-";
     for (const Figure& f : item.figures)
-      if (f.key == key) before = figure(f.reference, f.decimals);
+      if (f.key == key) before = text_of(f.reference, f.decimals);
     const double x = item.reached[i];
     const bool counted = std::isnan(x);
     const std::string asked = counted ? "yes" : (is_lower_limit(r) ? "above " : "at most ") + shown(r.limit);
     table.row({r.name + "<br><span class=\"note\">" + meaning_of(r.name) + "</span>", asked, before,
-               counted ? (missed ? "no" : "yes") : figure(x, short_figure),
+               counted ? (missed ? "no" : "yes") : text_of(x, short_figure),
                missed ? "<span class=\"no\">missed</span>" : "<span class=\"yes\">met</span>"});
   }
   return table.finish();
@@ -146,9 +137,9 @@ std::string figures_html(const PageItem& item) {
     const bool always = f.key == "genus" || f.key == "loops" || f.key == "self_intersections";
     if (f.decimals == count_figure && !always && !(f.reference > 0) && !(f.result > 0)) continue;
     if (std::isnan(f.result) && !before) continue;
-    const std::string after = figure(f.result, f.decimals);
+    const std::string after = text_of(f.result, f.decimals);
     if (compared)
-      table.row({f.label, figure(f.reference, f.decimals), after});
+      table.row({f.label, text_of(f.reference, f.decimals), after});
     else
       table.row({f.label, after});
   }
@@ -159,7 +150,7 @@ std::string patches_html(const PageItem& item, std::size_t number) {
   if (item.patches.empty()) return "";
   HtmlTable table("Patches", {"name", "area#", "triangles#", "smallest kappa#", "in triangle#"});
   for (const PatchRow& p : item.patches)
-    table.row({escaped(p.name), shown(p.area), std::to_string(p.triangles), figure(p.kappa, 4),
+    table.row({escaped(p.name), shown(p.area), std::to_string(p.triangles), text_of(p.kappa, 4),
                button(number, p.worst)});
   return scrolled("Patches of " + item.name, table.finish());
 }
@@ -168,7 +159,7 @@ std::string worst_html(const PageItem& item, std::size_t number) {
   if (item.worst.empty()) return "";
   HtmlTable table("The worst triangles", {"triangle", "kappa#", "center"});
   for (const ListedTriangle& t : item.worst)
-    table.row({button(number, t.triangle), figure(t.kappa, 4), point(t.center)});
+    table.row({button(number, t.triangle), text_of(t.kappa, 4), point(t.center)});
   return scrolled("The worst triangles of " + item.name, table.finish());
 }
 
@@ -178,7 +169,7 @@ std::string offending_html(const PageItem& item, std::size_t number) {
   HtmlTable table("Triangles at fault: " + std::to_string(all), {"triangle", "kappa#", "center", "fault"},
                   "faults");
   for (const ListedTriangle& t : item.offending)
-    table.row({button(number, t.triangle), figure(t.kappa, 4), point(t.center), t.why});
+    table.row({button(number, t.triangle), text_of(t.kappa, 4), point(t.center), t.why});
   std::string html = table.finish();
   if (all > item.offending.size())
     html += "<button type=\"button\" class=\"more\" data-all=\"" + std::to_string(number) + "\">Show all " +
@@ -265,7 +256,7 @@ std::string overview_html(const Page& page) {
   for (std::size_t i = 0; i < page.items.size(); ++i) {
     const PageItem& item = page.items[i];
     table.row({"<a href=\"#item" + std::to_string(i) + "\">" + escaped(item.name) + "</a>",
-               std::to_string(item.triangles), item.worst.empty() ? "-" : figure(item.worst[0].kappa, 4),
+               std::to_string(item.triangles), item.worst.empty() ? "-" : text_of(item.worst[0].kappa, 4),
                verdict_of(item)});
   }
   return table.finish();
@@ -280,11 +271,11 @@ std::string run_html(const Page& page) {
     HtmlTable table("Time in seconds", {"program", "processor#", "elapsed#"});
     double processor = 0, elapsed = 0;
     for (const StageTime& t : page.times) {
-      table.row({escaped(t.program), figure(t.user + t.system, 2), figure(t.elapsed, 2)});
+      table.row({escaped(t.program), text_of(t.user + t.system, 2), text_of(t.elapsed, 2)});
       processor += t.user + t.system;
       elapsed += t.elapsed;
     }
-    table.row({"all", figure(processor, 2), figure(elapsed, 2)});
+    table.row({"all", text_of(processor, 2), text_of(elapsed, 2)});
     html += table.finish();
   }
   return html + "</section>\n";

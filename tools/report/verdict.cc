@@ -14,16 +14,6 @@
 namespace meshpipe {
 namespace {
 
-std::string text(double x, int decimals) {
-  if (std::isnan(x)) return "-";
-  char s[40];
-  if (decimals == short_figure)
-    std::snprintf(s, sizeof s, "%.3g", x);
-  else
-    std::snprintf(s, sizeof s, "%.*f", decimals == count_figure ? 0 : decimals, x);
-  return s;
-}
-
 std::string row(const std::string& label, const std::string& before, const std::string& after) {
   char s[120];
   std::snprintf(s, sizeof s, "%-26s %12s %12s", label.c_str(), before.c_str(), after.c_str());
@@ -130,13 +120,23 @@ FailureFacts facts_about(const Failure& f, const Mesh& mesh, int opened) {
   return facts;
 }
 
+std::string text_of(double x, int decimals) {
+  if (std::isnan(x)) return "-";
+  char s[400];
+  if (decimals == short_figure)
+    std::snprintf(s, sizeof s, "%.3g", x);
+  else
+    std::snprintf(s, sizeof s, "%.*f", decimals == count_figure ? 0 : decimals, x);
+  return s;
+}
+
 std::vector<std::string> figure_table(const std::vector<Figure>& figures) {
   std::vector<std::string> lines{row("", "reference", "result")};
   for (const Figure& f : figures) {
     const bool always = f.key == "genus" || f.key == "loops" || f.key == "self_intersections";
     if (f.decimals == count_figure && !always && !(f.reference > 0) && !(f.result > 0)) continue;
     if (std::isnan(f.reference) && std::isnan(f.result)) continue;
-    lines.push_back(row(f.label, text(f.reference, f.decimals), text(f.result, f.decimals)));
+    lines.push_back(row(f.label, text_of(f.reference, f.decimals), text_of(f.result, f.decimals)));
   }
   return lines;
 }

@@ -38,6 +38,9 @@ std::string summary_of(const std::vector<Failure>& failures);
 /// Returns what a way out is chosen by. `opened`: Findings::opened.
 FailureFacts facts_about(const Failure& failure, const Mesh& mesh, int opened);
 
+/// Returns a figure as tables show it, "-" if there is none. `decimals`: as Figure::decimals.
+std::string text_of(double x, int decimals);
+
 /// Returns the lines of a table of reference and result. Counts that are 0 in both are left out, except
 /// genus, loops and self-intersections.
 std::vector<std::string> figure_table(const std::vector<Figure>& figures);
