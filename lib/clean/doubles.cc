@@ -110,7 +110,10 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
   const std::vector<Quad> quads = find_quads(r, points);
   for (std::size_t i = 1; i < quads.size(); ++i) {
     const Quad &q = quads[i - 1], &p = quads[i];
-    if (q.corners != p.corners || taken(q.tris[0]) || taken(q.tris[1]) || taken(p.tris[0]) ||
+    // two of the three triangles around a vertex have all its neighbors as corners, whichever two
+    const bool overlap =
+        q.tris[0] == p.tris[0] || q.tris[0] == p.tris[1] || q.tris[1] == p.tris[0] || q.tris[1] == p.tris[1];
+    if (overlap || q.corners != p.corners || taken(q.tris[0]) || taken(q.tris[1]) || taken(p.tris[0]) ||
         taken(p.tris[1]))
       continue;
     const double bend = angle(q.normal, p.normal);

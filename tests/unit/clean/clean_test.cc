@@ -708,6 +708,18 @@ TEST(Clean, SecondCopiesOfASheetAreDropped) {
     }
 }
 
+TEST(Clean, VerticesOfThreeTrianglesNextToKeptSheetsStay) {
+  Surface fan;  // three sheets around an edge, each of three triangles around a vertex
+  fan.points = {{0, 0, 0}, {0, 0, 1}};
+  for (double angle : {0.0, 2.0, 4.0}) {
+    const int v = (int)fan.points.size();
+    for (double r : {1.0, 0.3}) fan.points.push_back({r * std::cos(angle), r * std::sin(angle), 0.5});
+    fan.tris.insert(fan.tris.end(), {{0, 1, v + 1}, {1, v, v + 1}, {v, 0, v + 1}});
+  }
+  EXPECT_EQ(clean(fan, {.sheets = CleanOptions::keep}).duplicate, 0);
+  EXPECT_EQ(fan.tris.size(), 9u);
+}
+
 /// A sphere of rows and columns; the rows at the poles are circles of this radius.
 static Surface sphere_with_poles(int rows, int columns, double radius) {
   std::vector<Vec3> points;
