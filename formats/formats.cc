@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "formats/foreign/abaqus.h"
+#include "formats/foreign/geo.h"
 #include "formats/foreign/gts.h"
 #include "formats/foreign/inria.h"
 #include "formats/foreign/msh.h"
@@ -73,6 +74,8 @@ const std::vector<Writer>& writers() {
       {".nas", write_nastran, named},
       {".inp", write_abaqus, patches | names},
       {".poly", write_poly, patches | labels},
+      {".geo", write_geo,
+       holds::all},  // volumes between the surfaces of a .msh file: nobody expects a mesh in it
   };
   return all;
 }

@@ -267,6 +267,44 @@ def second_order_checks(mconvert, scratch):
                 check(f"Gmsh, types of {path}", gmsh_types(path, scratch), ["8", "8", "9", "9"])
 
 
+def region_checks(programs, scratch):
+    """The regions of a brick and of nested spheres, as TetGen and Gmsh fill them: labels and volumes."""
+    def run(*command):
+        subprocess.run(command, cwd=scratch, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+    def volumes(points, tetrahedra):
+        found = {}
+        for label, corners in tetrahedra:
+            p, q, r = ([points[v][i] - points[corners[3]][i] for i in range(3)] for v in corners[:3])
+            det = sum(p[i] * (q[i - 2] * r[i - 1] - q[i - 1] * r[i - 2]) for i in range(3))
+            found[label] = found.get(label, 0) + abs(det) / 6
+        return {label: round(found[label], 9) for label in sorted(found)}
+    mclean, mconvert, mshape = (os.path.join(programs, p) for p in ("mclean", "mconvert", "mshape"))
+    for shape in (["--brick", "2x2x1"], ["--nested", "2"]):
+        run(mshape, "regions", *shape, "--triangles", "400", "-o", "r.off")
+        run(mclean, "--sheets", "keep", "r.off", "-o", "r.mply")
+        for kind in ("poly", "msh", "geo"):
+            run(mconvert, "--ascii", "r.mply", "-o", f"r.{kind}")
+        text = subprocess.run([mconvert, "--ascii", os.path.join(scratch, "r.mply")], stdout=subprocess.PIPE, check=True, text=True).stdout
+        table = text.splitlines()[-int(text.split("element region ")[1].split()[0]):]
+        expected = {int(row.split()[0]): round(float(row.split()[1]), 9) for row in table}
+        if shutil.which("tetgen"):
+            run("tetgen", "-pAQ", "r.poly")
+            rows = {}
+            for kind in ("node", "ele"):
+                with open(os.path.join(scratch, f"r.1.{kind}")) as file:
+                    rows[kind] = [line.split() for line in file if not line.startswith("#")][1:]
+            points = {row[0]: [float(x) for x in row[1:4]] for row in rows["node"]}
+            check(f"TetGen, regions {shape}", volumes(points, [(int(row[5]), row[1:5]) for row in rows["ele"]]), expected)
+        if shutil.which("gmsh"):
+            run("gmsh", "-3", "-format", "msh2", "r.msh", "r.geo", "-o", "volume.msh")
+            with open(os.path.join(scratch, "volume.msh")) as file:
+                text = file.read()
+            nodes = [line.split() for line in text.split("$Nodes")[1].split("$End")[0].splitlines()[2:]]
+            elements = [line.split() for line in text.split("$Elements")[1].split("$End")[0].splitlines()[2:]]
+            points = {row[0]: [float(x) for x in row[1:4]] for row in nodes}
+            check(f"Gmsh, regions {shape}", volumes(points, [(int(row[3]), row[-4:]) for row in elements if row[1] == "4"]), expected)
+
+
 def vtk_written(scratch):
     """The sample as VTK itself writes it, in every encoding: pairs of a file and what its data are."""
     points = vtk.vtkPoints()
@@ -399,6 +437,7 @@ def main():
                 reads(mconvert, path, [1, 1, 5, 5])
         line_checks(mconvert, scratch)
         second_order_checks(mconvert, scratch)
+        region_checks(programs, scratch)
         colored = os.path.join(scratch, "colored.ply")
         subprocess.run([mconvert, "--color", "part", sample, "-o", colored], check=True)
         if vtk:

@@ -8,6 +8,7 @@
 #include "formats/foreign/vtk_legacy.h"
 #include "formats/stream/line_tables.h"
 #include "formats/stream/region_tables.h"
+#include "lib/core/number.h"
 #include "tools/common.h"
 
 using namespace meshpipe;
@@ -16,8 +17,23 @@ namespace {
 
 struct Options {
   bool charts = false, surface = false, polydata = false;
-  std::string color, sol, feature_edges;
+  std::string color, sol, feature_edges, regions;
 };
+
+/// Returns the labels in "1,5"; none for "all". Throws: BadUsage.
+std::vector<int> labels_in(const std::string& text) {
+  std::vector<int> labels;
+  for (std::size_t at = 0; text != "all" && at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    int label = 0;
+    const auto [stop, error] = meshpipe::from_chars(text.data() + at, text.data() + end, label);
+    if (error != std::errc() || stop != text.data() + end)
+      throw BadUsage("--regions: expected all or labels as in 1,5, found '" + text + "'");
+    labels.push_back(label);
+    at = end + 1;
+  }
+  return labels;
+}
 
 /// Replaces the surface by its charts: vertices (u, v, 0), one for each part that a vertex touches. Face
 /// columns stay.
@@ -89,12 +105,17 @@ int main(int argc, char** argv) {
                        "also write the model edges, as lines: .obj, .vtk or .eMesh")
             ->type_name("FILE")
             ->group("Reports");
+        app.add_option(
+               "--regions", o.regions,
+               "the whole boundary of each region between sheets (or only of these), as a patch of its own")
+            ->type_name("all|L,L");
         app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
         app.add_flag("--surface", o.surface, "leave out all except vertices, faces, patches and colors");
       },
       [&](Io& io) {
         if (o.polydata && !io.output.ends_with(".vtk"))
           throw BadUsage("--polydata is for -o FILE.vtk, not '" + io.output + "'");
+        const std::vector<int> regions = labels_in(o.regions.empty() ? "all" : o.regions);
         if (!o.feature_edges.empty()) io.expect_report("--feature-edges", o.feature_edges);
         Stream& stream = io.read();
         if (!o.feature_edges.empty())
@@ -102,6 +123,7 @@ int main(int argc, char** argv) {
         if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
         if (o.charts) flatten(stream);
         if (!o.color.empty()) color_by(stream.surface, o.color);
+        if (!o.regions.empty()) stream = region_boundaries(stream, regions);
         if (o.surface) strip(stream);
         io.detail(std::to_string(stream.surface.points.size()) + " vertices, " +
                   std::to_string(stream.surface.tris.size()) + " triangles");
@@ -111,7 +133,7 @@ int main(int argc, char** argv) {
         if (extension.empty() || extension == ".mply")
           io.write(stream);
         else if (const bool ascii = io.text_for(stream); o.polydata)
-          io.write_bytes(write_vtk_polydata(stream, ascii));
+          io.write_bytes(write_vtk_polydata(has_sheets(stream) ? with_sheets_joined(stream) : stream, ascii));
         else
           io.write_bytes(write_as(stream, io.output, ascii));
       },

@@ -35,8 +35,25 @@ constexpr double most_of_diagonal = 0.01;
 /// Of the distance of --max-error: the rest is for the mesh.
 constexpr double error_share = 0.25;
 
+/// Gives table `sheet` the merged patches, which must have the same regions on their sides.
+void relabel_sheets(Stream& stream, const PatchMerge& merge) {
+  if (!has_sheets(stream)) return;
+  std::vector<SheetPatch> sheets = read_sheets(stream);
+  for (SheetPatch& s : sheets) s.patch = merge(s.patch);
+  std::sort(sheets.begin(), sheets.end());
+  sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
+  for (std::size_t i = 1; i < sheets.size(); ++i)
+    if (const SheetPatch& a = sheets[i - 1], &b = sheets[i]; a.patch == b.patch)
+      throw NotAdmissible("patches merged to " + std::to_string(a.patch) +
+                          " have different regions on their sides: " + std::to_string(a.front) + " and " +
+                          std::to_string(a.back) + ", " + std::to_string(b.front) + " and " +
+                          std::to_string(b.back));
+  stream.set(sheet_table(sheets));
+}
+
 /// Gives the faces the patches that theirs have become, and the patches the names of their groups.
 void relabel(const Io& io, Stream& stream, const PatchMerge& merge, const std::vector<PatchGroup>& groups) {
+  relabel_sheets(stream, merge);
   for (int& label : stream.surface.face.get<int>("patch")) label = merge(label);
   std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && merge(n.tag) != n.tag; });
   for (std::size_t i = 0; i < groups.size(); ++i) {

@@ -19,7 +19,7 @@ struct Options {
   int genus = 2, generations = 0, outlets = 0, seed = 1;
   std::string brick, within = "ball";
   int nested = 0, voronoi = 0;
-  bool blocks = false;
+  std::string image;
 };
 
 /// Reads "4x4x4", or "4" for the same.
@@ -36,7 +36,10 @@ std::array<int, 3> counts_in(const std::string& text) {
 
 Mesh regions(const Options& o, int triangles) {
   if (o.nested > 0) return nested_spheres(o.nested, triangles);
-  if (o.voronoi > 0) return voronoi(o.voronoi, o.within == "ball", o.blocks, triangles, o.seed);
+  const bool ball = o.within == "ball";
+  if (o.voronoi > 0 && !o.image.empty())
+    return labeled_image(o.voronoi, ball, o.image == "blocks", triangles, o.seed);
+  if (o.voronoi > 0) return voronoi(o.voronoi, ball, triangles, o.seed);
   return brick(counts_in(o.brick.empty() ? "2x1x1" : o.brick), triangles);
 }
 
@@ -83,13 +86,15 @@ void add_region_options(CLI::App& app, Options& o) {
                      ->excludes(brick)
                      ->type_name("N");
   app.add_option("--voronoi", o.voronoi, "regions: those nearest to each of N seeds")
-      ->check(CLI::Range(1, 100000))
+      ->check(CLI::Range(1, 1000))
       ->excludes(brick)
       ->excludes(nested)
       ->type_name("N");
   app.add_option("--within", o.within, "regions of --voronoi: ball (default) or box")
       ->check(CLI::IsMember({"ball", "box"}));
-  app.add_flag("--blocks", o.blocks, "regions of --voronoi: the sides of voxels");
+  app.add_option("--image", o.image,
+                 "regions of --voronoi as an image has them: smooth, or the sides of blocks")
+      ->check(CLI::IsMember({"smooth", "blocks"}));
 }
 
 }  // namespace

@@ -2,9 +2,31 @@
 #include "formats/foreign/tetgen.h"
 
 #include "formats/foreign/polygons.h"
+#include "formats/stream/region_tables.h"
 #include "formats/text.h"
 
 namespace meshpipe {
+
+/// Appends the points of the outside within the surface, as holes, or those of the regions with their labels.
+static void append_seeds(std::string& out, const RegionSeeds& seeds, bool outside) {
+  std::string rows;
+  long long count = 0;
+  for (std::size_t i = 0; i < seeds.label.size(); ++i) {
+    if ((seeds.label[i] <= 0) != outside) continue;
+    append(rows, ++count);
+    for (double x : {seeds.point[i].x, seeds.point[i].y, seeds.point[i].z}) {
+      rows += ' ';
+      append(rows, x);
+    }
+    if (!outside) {
+      rows += ' ';
+      append(rows, static_cast<long long>(seeds.label[i]));
+    }
+    rows += '\n';
+  }
+  append(out, count);
+  out += '\n' + rows;
+}
 
 std::string write_poly(const Stream& stream, bool) {
   const Surface& s = stream.surface;
@@ -29,7 +51,11 @@ std::string write_poly(const Stream& stream, bool) {
     }
     out += '\n';
   }
-  return out + "0\n0\n";
+  if (!has_sheets(stream)) return out + "0\n0\n";
+  const RegionSeeds seeds = region_seeds(s);
+  append_seeds(out, seeds, true);
+  append_seeds(out, seeds, false);
+  return out;
 }
 
 }  // namespace meshpipe

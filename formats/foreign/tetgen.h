@@ -5,7 +5,8 @@
 
 namespace meshpipe {
 
-/// Writes text with patches as markers of facets. Output only.
+/// Writes text with patches as markers of facets, and a point in each region between sheets, whose label is
+/// its attribute (tetgen -A). Output only.
 std::string write_poly(const Stream& stream, bool ascii);
 
 }  // namespace meshpipe

@@ -31,21 +31,26 @@ std::vector<SheetPatch> read_sheets(const Stream& stream) {
   return sheets;
 }
 
-void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
-                   const std::vector<double>& volume) {
+Table sheet_table(const std::vector<SheetPatch>& sheets) {
   std::vector<int> column[3];
   for (const SheetPatch& s : sheets) {
     column[0].push_back(s.patch);
     column[1].push_back(s.front);
     column[2].push_back(s.back);
   }
-  Table sheet{"sheet", 0, {}}, region{"region", 0, {}};
-  sheet.set("patch", std::move(column[0]));
-  sheet.set("front", std::move(column[1]));
-  sheet.set("back", std::move(column[2]));
+  Table table{"sheet", 0, {}};
+  table.set("patch", std::move(column[0]));
+  table.set("front", std::move(column[1]));
+  table.set("back", std::move(column[2]));
+  return table;
+}
+
+void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
+                   const std::vector<double>& volume) {
+  Table region{"region", 0, {}};
   region.set("label", std::vector<int>(label.begin() + 1, label.end()));
   region.set("volume", std::vector<double>(volume.begin() + 1, volume.end()));
-  stream.set(std::move(sheet));
+  stream.set(sheet_table(sheets));
   stream.set(std::move(region));
 }
 
@@ -91,6 +96,66 @@ Stream with_sheets_joined(const Stream& stream) {
   take_rows(s.vertex, vertex);
   if (s.vertex.columns.empty()) s.vertex.rows = s.points.size();
   return joined;
+}
+
+RegionSeeds region_seeds(const Surface& surface) {
+  const Solids solids = find_solids(surface);
+  const std::vector<std::array<int, 2>> labels = side_labels(surface);
+  const std::vector<Vec3> points = points_within(surface, solids);
+  RegionSeeds seeds{{points.begin() + 1, points.end()}, std::vector<int>(solids.count(), 0)};
+  for (std::size_t t = labels.size(); t-- > 0;)
+    for (int i : {0, 1})
+      if (solids.sides[t][i] > 0) seeds.label[solids.sides[t][i] - 1] = labels[t][i];
+  return seeds;
+}
+
+static void drop_unused_vertices(Surface& s) {
+  std::vector<int> number(s.points.size(), -1), used;
+  for (const Tri& t : s.tris)
+    for (int v : t) number[v] = 0;
+  for (int v = 0; v < (int)number.size(); ++v)
+    if (number[v] == 0) {
+      number[v] = (int)used.size();
+      s.points[used.size()] = s.points[v];
+      used.push_back(v);
+    }
+  s.points.resize(used.size());
+  take_rows(s.vertex, used);
+  for (Tri& t : s.tris)
+    for (int& v : t) v = number[v];
+}
+
+Stream region_boundaries(const Stream& stream, const std::vector<int>& labels) {
+  if (!has_sheets(stream)) throw NotAdmissible("no section 'sheet'; run mclean --sheets keep first");
+  Stream out = with_sheets_joined(stream);
+  const std::vector<std::array<int, 2>> sides = side_labels(out.surface);
+  std::vector<int> wanted = labels;
+  if (wanted.empty())
+    for (const auto& [front, back] : sides) wanted.insert(wanted.end(), {front, back});
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  out.tables.clear();
+  out.names.clear();
+  const std::vector<Tri> tris = std::move(out.surface.tris);
+  out.surface.tris.clear();
+  std::vector<int> patch;
+  for (int label : wanted) {
+    if (labels.empty() && label <= 0) continue;
+    const std::size_t before = patch.size();
+    for (std::size_t t = 0; t < sides.size(); ++t) {
+      if (sides[t][0] == sides[t][1] || (sides[t][0] != label && sides[t][1] != label)) continue;
+      Tri tri = tris[t];
+      if (sides[t][0] == label) std::swap(tri[1], tri[2]);
+      out.surface.tris.push_back(tri);
+      patch.push_back(label);
+    }
+    if (patch.size() == before) throw NotAdmissible("no region has label " + std::to_string(label));
+    out.names.push_back({2, label, "region-" + std::to_string(label)});
+  }
+  out.surface.face = Table{"face", patch.size(), {}};
+  out.surface.face.set("patch", std::move(patch));
+  drop_unused_vertices(out.surface);
+  return out;
 }
 
 }  // namespace meshpipe

@@ -13,7 +13,8 @@ void expect_no_sheets(const Stream& stream, const std::string& why);
 /// Returns table `sheet`, by patch; empty if the stream has none.
 /// Throws: BadInput for a patch that is there twice.
 std::vector<SheetPatch> read_sheets(const Stream& stream);
-/// Sets the tables.
+Table sheet_table(const std::vector<SheetPatch>& sheets);
+/// Sets both tables.
 void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
                    const std::vector<double>& volume);
 
@@ -24,5 +25,17 @@ std::vector<std::array<int, 2>> side_labels(const Surface& surface);
 /// Returns the stream as other formats have it: sheets share their vertices, and face columns
 /// boundary_labels.0 and .1 hold the regions in front and behind.
 Stream with_sheets_joined(const Stream& stream);
+
+/// A point in each region of a surface with face columns boundary_labels, and its label.
+struct RegionSeeds {
+  std::vector<Vec3> point;
+  std::vector<int> label;
+};
+RegionSeeds region_seeds(const Surface& surface);
+
+/// Returns each region's whole boundary, oriented away from it, as a patch of its own, region-LABEL: what
+/// two regions share is there twice. `labels`: only these; empty: all.
+/// Throws: NotAdmissible if the stream has no sheets, or not one of these labels.
+Stream region_boundaries(const Stream& stream, const std::vector<int>& labels);
 
 }  // namespace meshpipe

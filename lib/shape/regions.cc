@@ -33,9 +33,9 @@ void add_quad(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 up) {
 }
 
 /// A grid of labels, and what decides between them: the nearest seed; 0 outside the unit ball.
-class Diagram {
+class Image {
  public:
-  Diagram(int n_seeds, bool ball, double h, int seed) : ball_(ball) {
+  Image(int n_seeds, bool ball, double h, int seed) : ball_(ball) {
     const double half = ball ? 1 : 0.5;
     n_ = std::max(4, (int)std::ceil(2 * half / h)) + (ball ? 4 : 0);
     h_ = 2 * half / (n_ - (ball ? 4 : 0));
@@ -70,7 +70,7 @@ class Diagram {
   std::vector<int> label_;
 };
 
-int Diagram::label_at(Vec3 p) const {
+int Image::label_at(Vec3 p) const {
   if (ball_ && norm(p) > 1) return 0;
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -80,7 +80,7 @@ int Diagram::label_at(Vec3 p) const {
 }
 
 /// Random seeds, which then move to the middle of their regions a few times (Lloyd).
-void Diagram::spread(int n_seeds, int seed) {
+void Image::spread(int n_seeds, int seed) {
   Random random(seed);
   const double half = ball_ ? 1 : 0.5;
   while ((int)seeds_.size() < n_seeds) {
@@ -106,7 +106,7 @@ void Diagram::spread(int n_seeds, int seed) {
 
 /// The point between two to four grid points of as many labels where all of these are equally near, by linear
 /// interpolation, kept off the rim.
-Vec3 Diagram::equal_point(std::vector<int> corners) const {
+Vec3 Image::equal_point(std::vector<int> corners) const {
   std::sort(corners.begin(), corners.end());  // rounds alike wherever it is needed
   const int n = (int)corners.size();
   std::vector<int> labels;
@@ -139,7 +139,7 @@ Vec3 Diagram::equal_point(std::vector<int> corners) const {
 
 /// Adds the pieces of sheets in a tetrahedron: cones of one of its points over lines in its faces, so that
 /// they do not intersect.
-void Diagram::cut(Mesh& mesh, std::array<int, 4> c) const {
+void Image::cut(Mesh& mesh, std::array<int, 4> c) const {
   std::sort(c.begin(), c.end(),
             [&](int p, int q) { return label_[p] != label_[q] ? label_[p] < label_[q] : p < q; });
   const int l[4] = {label_[c[0]], label_[c[1]], label_[c[2]], label_[c[3]]};
@@ -171,7 +171,7 @@ void Diagram::cut(Mesh& mesh, std::array<int, 4> c) const {
 }
 
 /// Adds a triangle of the box's side, cut where sheets end at it.
-void Diagram::cut_side(Mesh& mesh, std::array<int, 3> c, Vec3 up) const {
+void Image::cut_side(Mesh& mesh, std::array<int, 3> c, Vec3 up) const {
   std::sort(c.begin(), c.end(),
             [&](int p, int q) { return label_[p] != label_[q] ? label_[p] < label_[q] : p < q; });
   const int l[3] = {label_[c[0]], label_[c[1]], label_[c[2]]};
@@ -188,7 +188,7 @@ void Diagram::cut_side(Mesh& mesh, std::array<int, 3> c, Vec3 up) const {
   add_quad(mesh, at(alone, a), at(alone, a + 1), p[a + 1], p[a], up);
 }
 
-Mesh Diagram::smooth() const {
+Mesh Image::smooth() const {
   constexpr int paths[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};  // from corner 0 to 7 (Kuhn)
   Mesh mesh;
   auto corner = [&](int i, int j, int k, int c) { return at(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)); };
@@ -216,7 +216,7 @@ Mesh Diagram::smooth() const {
 }
 
 /// The squares between voxels of different labels, around the grid's points.
-Mesh Diagram::blocks() const {
+Mesh Image::blocks() const {
   Mesh mesh;
   auto label = [&](int i, int j, int k) {
     const bool within = i >= 0 && j >= 0 && k >= 0 && i <= n_ && j <= n_ && k <= n_;
@@ -288,12 +288,12 @@ Mesh nested_spheres(int count, int n) {
   return mesh;
 }
 
-Mesh voronoi(int seeds, bool ball, bool blocks, int n, int seed) {
+Mesh labeled_image(int seeds, bool ball, bool blocks, int n, int seed) {
   // a region of volume v has about 5.4 v^(2/3) of surface, half of it shared; a square of the grid that is
   // crossed has about 12 triangles, a voxel's side 2
   const double unit = ball ? 2.6 : 1, area = unit * (5 + 2.7 * std::cbrt(seeds));
-  const Diagram diagram(seeds, ball, std::sqrt((blocks ? 2.2 : 12) * area / n), seed);
-  return blocks ? diagram.blocks() : diagram.smooth();
+  const Image image(seeds, ball, std::sqrt((blocks ? 2.2 : 12) * area / n), seed);
+  return blocks ? image.blocks() : image.smooth();
 }
 
 }  // namespace meshpipe

@@ -56,9 +56,12 @@ Mesh voxels(Mesh mesh, double h);
 Mesh brick(std::array<int, 3> count, int n);
 /// Spheres around one center, of radii 1/count, 2/count ... 1, about n triangles.
 Mesh nested_spheres(int count, int n);
-/// The Voronoi diagram of seeds in the unit ball (or the unit cube), spread by Lloyd's method, as a labeled
-/// image of it shows it: interpolated between voxels, or with `blocks` their sides. About n triangles.
-Mesh voronoi(int seeds, bool ball, bool blocks, int n, int seed);
+/// The Voronoi diagram of seeds in the unit cube, spread by Lloyd's method, about n triangles; for `ball`, in
+/// a polyhedron of up to 1000 facets around the unit ball.
+Mesh voronoi(int seeds, bool ball, int n, int seed);
+/// A Voronoi diagram in the unit cube or the unit ball as a labeled image shows it: interpolated between
+/// voxels, or with `blocks` their sides. About n triangles.
+Mesh labeled_image(int seeds, bool ball, bool blocks, int n, int seed);
 
 /// Moves every vertex by a random vector of length up to amount times the mean edge length.
 void add_noise(Mesh& mesh, double amount, int seed);
