@@ -33,7 +33,7 @@ bool clean_both(Surface& reference, Surface& result, int& opened) {
 }  // namespace
 
 Findings compare(const Io& io, Stream& stream, const std::string& file, const Contract& contract, int samples,
-                 Surface& reference) {
+                 Surface& reference, double least_size) {
   Surface& result = stream.surface;
   const bool own = file.empty();
   Stream other;
@@ -52,7 +52,7 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
   Findings f = examine(result, reference, own ? &lines : nullptr, samples,
-                       required_distance(contract) - removed, meet);
+                       required_distance(contract) - removed, meet, least_size);
   f.opened = opened + opened_unasked(stream);
   f.distance.bound += removed;
   if (meet) f.sheets = compare_sheets(reference, result, read_sheets(stream), own);

@@ -10,9 +10,9 @@ namespace meshpipe {
 
 /// Compares the result in a stream with the surface in `file`, or with the stream's own if that is empty, and
 /// puts that surface into `reference`. Where every triangle of the result has vertices of its own, they are
-/// welded. `contract` and `samples` say how closely distances are measured.
+/// welded. `contract` and `samples` say how closely distances are measured; `least_size` as in examine.
 /// Throws: BadInput or NotAdmissible if either surface is missing or cannot be measured.
 Findings compare(const Io& io, Stream& stream, const std::string& file, const Contract& contract, int samples,
-                 Surface& reference);
+                 Surface& reference, double least_size = 0);
 
 }  // namespace meshpipe

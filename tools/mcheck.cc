@@ -53,7 +53,8 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   Surface reference;
-  const Findings f = compare(io, stream, o.reference, contract, o.samples, reference);
+  const Findings f = compare(io, stream, o.reference, contract, o.samples, reference, verdict.first_size());
+  verdict.outcome.mean_size = f.mean_size;
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
   if (!o.refine.empty() && !failures.empty())
     verdict.outcome.refined =

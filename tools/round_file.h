@@ -17,6 +17,8 @@ class RoundFile {
   RoundFile(Io& io, std::string file, bool bounded_distance);
   /// Returns whether the chain is to be repeated: then this round writes nothing else.
   bool repeats() const { return !file_.empty() && is_repeated(before_, outcome); }
+  /// Mean size of the first round's result: a size to judge later rounds by, which may be finer; 0: none.
+  double first_size() const { return first_size_in(before_); }
   void write() const;
 
   Outcome outcome;

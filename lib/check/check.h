@@ -29,6 +29,7 @@ struct Findings {
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
   int reference_intersections = -1;                    ///< counted only when the mesh has some
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
+  double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
   int farthest = -1;             ///< the vertex with the largest `off`
   std::vector<char> forced;      ///< per triangle, see forced_needles; empty if kappa is above 0.1
@@ -52,9 +53,10 @@ constexpr double most_deviation = 0.5;
 /// columns `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it
 /// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
 /// `lines`: those that the result was made with, or null. `samples`, `most`: see distance_between.
-/// `sheets_meet`: border vertices at the same place are one.
+/// `sheets_meet`: border vertices at the same place are one. No size counts as smaller than `least_size`.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
-                 double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false);
+                 double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false,
+                 double least_size = 0);
 
 /// Finds the edges where two triangles turn by more than 150 degrees while the reference within an edge
 /// length has only one of their two orientations. Thin plates and sharp ridges are no folds.

@@ -9,6 +9,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/topology.h"
+#include "lib/core/triangle_count.h"
 #include "lib/lift/lift.h"
 
 namespace meshpipe {
@@ -41,19 +42,18 @@ std::vector<double> mean_edges(const Mesh& mesh) {
 /// The distance allowed at each triangle: half the size, and what the smooth surface is off. The size is that
 /// of the field asked for, or of the mean edges at the vertices; where a surface admits only triangles that
 /// are smaller, one and a half of their longest edge, the most that a mesh has that obeys its field. But no
-/// less than the mean: sizes are lowered where something fails, and that must not make the contract harder to
-/// meet.
+/// less than the mean, or `least_size`: sizes are lowered where something fails, and that must not make the
+/// contract harder to meet.
 std::vector<double> allowed_distances(const Mesh& mesh, const std::vector<double>& size,
-                                      const std::vector<double>& smooth_off) {
+                                      const std::vector<double>& smooth_off, double least_size) {
   constexpr double longest = 1.5;
-  const double mean = std::sqrt(4 / std::sqrt(3.0) * total_area(mesh) / (double)mesh.tris.size());
   std::vector<double> allowed(mesh.tris.size());
   for (int t = 0; t < (int)allowed.size(); ++t) {
     const Tri& v = mesh.tris[t];
     const double edge =
         std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
     const double local = std::min((size[v[0]] + size[v[1]] + size[v[2]]) / 3, longest * edge);
-    allowed[t] = most_deviation * std::max(local, mean) +
+    allowed[t] = most_deviation * std::max(local, least_size) +
                  std::max({smooth_off[v[0]], smooth_off[v[1]], smooth_off[v[2]]});
   }
   return allowed;
@@ -178,10 +178,24 @@ Mesh joined(Mesh mesh) {
   return mesh;
 }
 
+/// Measures the distances of borders, and of borders and model edges where both surfaces know theirs.
+void measure_curves(Findings& f, const Connectivity& result, const Mesh& reference, const Surface& given) {
+  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  Mesh curves, reference_curves;
+  add_segments(curves, result.mesh, [&](int h) { return result.is_border(h); });
+  add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
+  f.boundary = curve_distance(reference_curves, curves) / unit;
+  const std::vector<std::uint8_t>& marks = model_of(given);
+  if (result.model.empty() || marks.empty()) return;
+  add_segments(curves, result.mesh, [&](int h) { return result.is_model(h); });
+  add_segments(reference_curves, given, [&](int h) { return marks[h / 3] >> h % 3 & 1; });
+  f.features = curve_distance(reference_curves, curves) / unit;
+}
+
 }  // namespace
 
 Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples, double most,
-                 bool sheets_meet) {
+                 bool sheets_meet, double least_size) {
   Findings f;
   Mesh reference;
   parallel_for(2, [&](int side) {
@@ -213,13 +227,15 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_progress(0.3);
   f.folds = find_folds(mesh, reference, reference_tree);
   const std::vector<double> edges = mean_edges(result);
-  const double d = diagonal(reference);
+  f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
   f.off = vertex_distances(result, mesh_tree, reference_tree);
   std::vector<double> smooth_off = f.off;
   if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
   for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
-  f.distance = distance_between(reference, reference_tree, result, mesh_tree, samples,
-                                allowed_distances(result, size.empty() ? edges : size, smooth_off), most);
+  f.distance = distance_between(
+      reference, reference_tree, result, mesh_tree, samples,
+      allowed_distances(result, size.empty() ? edges : size, smooth_off, std::max(least_size, f.mean_size)),
+      most);
   add_progress(0.4);
   for (std::size_t v = 0; v < f.off.size(); ++v)
     f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;
@@ -227,21 +243,11 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
                                       [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
                      f.off.begin());
 
-  const double unit = d > 0 ? d : 1;
-  Mesh curves, reference_curves;
-  add_segments(curves, result, [&](int h) { return f.mesh.opposite[h] < 0; });
-  add_segments(reference_curves, reference, [&](int h) { return f.reference.opposite[h] < 0; });
-  f.boundary = curve_distance(reference_curves, curves) / unit;
+  measure_curves(f, mesh, reference, given);
   find_needles(f, mesh, given);
   f.kappa_off_corners = f.quality.kappa_min;
   f.worst_off_corners = f.quality.worst;
   if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);
-  if (marked && reference_marked) {
-    const auto& marks = given.face.get<std::uint8_t>("model");
-    add_segments(curves, result, [&](int h) { return mesh.is_model(h); });
-    add_segments(reference_curves, given, [&](int h) { return marks[h / 3] >> h % 3 & 1; });
-    f.features = curve_distance(reference_curves, curves) / unit;
-  }
   if (f.mesh.sound()) f.reversed = reversed_components(mesh, reference, reference_tree);
   if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
     f.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));

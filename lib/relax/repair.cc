@@ -139,7 +139,9 @@ void repair_worst(State& s, Repairs& memory) {
     }
     before = count;
     // far more than can be repaired: then there is time for fewer
-    if (const int few = count > 4 * most ? most / 2 : most; count > few) triangles.resize(few);
+    int few = count > 4 * most ? most / 2 : most;
+    if (round > 0) few = std::min(few, rules::thorough_repairs + s.mesh.live / rules::triangles_per_thorough);
+    if (count > few) triangles.resize(few);
     const bool done = triangles.empty();
     int changes = repair_each(s, std::move(triangles), round > 0, memory.failed[round > 0],
                               [&](int t) { return quality(s, t) < 1; });

@@ -75,14 +75,16 @@ constexpr int sweeps_to_settle = 3;
 constexpr int repair_rounds = 4;
 constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
-constexpr int hopeless = 100;              // triangles: if more are left, look whether rounds help
+constexpr int thorough_repairs = 30,
+              triangles_per_thorough = 1000;  // of pairs of edits: for the worst; the others may be forced
+constexpr int hopeless = 100;                 // triangles: if more are left, look whether rounds help
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
 // faults (faults.cc)
 constexpr double parallel = 0.8;  // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.43;  // of the size: half of it is for mcheck to warn of
-constexpr double bearable_kappa = 0.12, worst_needle = 10;  // kappa, and what a needle adds at most
+constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double growth = 1.5,

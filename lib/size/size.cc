@@ -431,10 +431,17 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
           f.s.points[at]};
 }
 
+/// Is the surface a tube or a closed line somewhere that is too narrow for these sizes?
+bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const std::vector<double>& size) {
+  const auto model = model_of(s);
+  const Connectivity surface{s, opposite, model};
+  const std::vector<double> feature = local_feature_size(surface, face_curvature(surface), size);
+  return !std::equal(feature.begin(), feature.end(), size.begin(), std::greater_equal<>());
+}
+
 /// Makes a field that is not uniform.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
                                SizeReport& report, std::vector<SizeBound> bounds = {}) {
-  const bool uniform = !bounds.empty();
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinite;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
@@ -470,7 +477,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     std::iota(f.root.begin(), f.root.end(), 0);
     follow_field();
   }
-  if (!uniform) lower_where_narrow(f, report);
+  lower_where_narrow(f, report);
   report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
   report.added = static_cast<int>(s.points.size() - n_before);
   report.scale = f.scale;
@@ -556,7 +563,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
         opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
     refuse_costly_tubes(surface, opposite, h, area / (0.25 * std::sqrt(3.0) * h * h));
     std::vector<SizeBound> bounds = bounds_below(surface, opposite, size, options, report);
-    if (!bounds.empty()) {
+    if (!bounds.empty() || has_narrow_tubes(surface, opposite, size)) {
       SizeOptions o = options;
       o.max = o.max > 0 ? std::min(o.max, most_growth * h) : most_growth * h;
       size = make_field(surface, chart, o, may_split, report, std::move(bounds));

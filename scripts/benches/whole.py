@@ -21,7 +21,9 @@ result by mcheck or another evaluator.
   --bin DIR                programs (default build/bin)
   --threads N              for mremesh (default all)
   --json FILE              the same figures as JSON
+  --svg FILE               a picture: wall seconds against mean kappa, a color for each program, a mark for each surface
 """
+import html
 import json
 import math
 import os
@@ -165,6 +167,49 @@ def measure(args, found, size):
             p.runs.append(p.run(p.size, args.timeout))
 
 
+COLORS = ["#d62728", "#1f77b4", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b", "#17becf", "#7f7f7f"]
+
+
+def picture(rows, width=640, height=420):
+    """SVG text: wall seconds, by a logarithmic scale, against the mean kappa of each run that has a result; runs of a surface
+    are joined by a line. A run that changed the topology is an open circle."""
+    rows = [r for r in rows if r.get("status") == 0 and "kappa_mean" in r and r["wall"] > 0]
+    if not rows:
+        return f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}"/>\n'
+    names = list(dict.fromkeys(r["program"] for r in rows))
+    low = math.floor(math.log10(min(r["wall"] for r in rows)))
+    high = max(low + 1, math.ceil(math.log10(max(r["wall"] for r in rows))))
+    least = math.floor(20 * min(r["kappa_mean"] for r in rows)) / 20
+
+    def x(r):
+        return 60 + (math.log10(r["wall"]) - low) / (high - low) * (width - 210)
+
+    def y(kappa):
+        return 20 + (1 - kappa) / (1 - least) * (height - 70)
+
+    text = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="12">',
+            f'<title>Time against quality of {len(names)} remeshers</title>', '<rect width="100%" height="100%" fill="#fff"/>']
+    for e in range(low, high + 1):
+        at = x({"wall": 10.0**e})
+        text.append(f'<path d="M{at:.1f} 20V{height - 50}" stroke="#ddd"/><text x="{at:.1f}" y="{height - 34}" text-anchor="middle">{10.0**e:g}</text>')
+    for i in range(6):
+        k = least + (1 - least) * i / 5
+        text.append(f'<path d="M60 {y(k):.1f}H{width - 150}" stroke="#ddd"/><text x="54" y="{y(k) + 4:.1f}" text-anchor="end">{k:.2f}</text>')
+    text.append(f'<text x="{(width - 90) / 2}" y="{height - 12}" text-anchor="middle">wall seconds</text><text x="10" y="14">mean kappa</text>')
+    for surface in dict.fromkeys(r["surface"] for r in rows):
+        points = " ".join(f"{x(r):.1f},{y(r['kappa_mean']):.1f}" for r in rows if r["surface"] == surface)
+        text.append(f'<polyline points="{points}" fill="none" stroke="#bbb" stroke-dasharray="2 3"/>')
+    for r in rows:
+        color = COLORS[names.index(r["program"]) % len(COLORS)]
+        fill = color if r.get("topology_same") in ("same", True) else "#fff"
+        text.append(f'<circle cx="{x(r):.1f}" cy="{y(r["kappa_mean"]):.1f}" r="5" fill="{fill}" stroke="{color}" stroke-width="2">'
+                    f'<title>{html.escape(r["program"])}, {html.escape(r["surface"])}: {r["wall"]:.2f} s, kappa {r["kappa_mean"]:.4f}</title></circle>')
+    for i, name in enumerate(names):
+        text.append(f'<circle cx="{width - 132}" cy="{30 + 20 * i}" r="5" fill="{COLORS[i % len(COLORS)]}"/>'
+                    f'<text x="{width - 120}" y="{34 + 20 * i}">{html.escape(name)}</text>')
+    return "\n".join([*text, "</svg>\n"])
+
+
 def main(words):
     p = common.parser(__doc__)
     p.add_argument("--runs", type=int, default=5)
@@ -172,6 +217,7 @@ def main(words):
     p.add_argument("--gmsh", default="gmsh")
     p.add_argument("--no-gmsh", action="store_true")
     p.add_argument("--evaluator")
+    p.add_argument("--svg")
     p.add_argument("--timeout", type=float, default=600)
     p.add_argument("--slow", type=float, default=30)
     p.add_argument("--threads", type=int)
@@ -212,4 +258,7 @@ def main(words):
                     f"{ratio[1]:.2f}", f"{cost[2]:.0f}", f"{ratio[2]:.2f}")
                 rows.append(figures)
     common.save(args, rows)
+    if args.svg:
+        with open(args.svg, "w") as f:
+            f.write(picture(rows))
     return 0

@@ -47,6 +47,11 @@ std::vector<Score> scores_in(std::string_view verdict) {
   return rounds;
 }
 
+double first_size_in(std::string_view verdict) {
+  const std::size_t at = verdict.find("\nsize=");
+  return at == verdict.npos ? 0 : std::strtod(std::string(verdict.substr(at + 6, 40)).c_str(), nullptr);
+}
+
 bool another_round(const std::vector<Score>& rounds, int most) {
   if ((int)rounds.size() >= most) return false;
   std::map<std::string, double> best;
@@ -78,6 +83,7 @@ std::string verdict_block(std::string_view verdict, const Outcome& outcome) {
   std::string block = "round=" + std::to_string(round) + "\nstatus=" + std::to_string(outcome.status) +
                       "\nprogram=" + outcome.program + "\nmessage=" + outcome.message + '\n';
   for (const Failure& f : outcome.failures) block += "failure=" + failure_line(f) + '\n';
+  if (outcome.mean_size > 0) block += "size=" + shown(outcome.mean_size) + '\n';
   if (score) block += "score=" + score->requirement + ' ' + shown(score->value) + '\n';
   block += std::string("count=") + (free ? "free" : "kept") + '\n';
   return block + "next=" + (is_repeated(verdict, outcome) ? "refine" : "stop") + '\n';

@@ -22,13 +22,14 @@ struct Outcome {
   int status = 0;
   std::string program, message;   ///< the program that failed, and its error
   std::vector<Failure> failures;  ///< in the order of the contract
+  double mean_size = 0;           ///< of the result, see Findings
   bool refined = false;           ///< were sizes written that may meet the contract?
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
 
-/// The number of rounds of a chain at most: the whole takes at most three times as long as the first, since
+/// The number of rounds of a chain at most: the whole takes about three times as long as the first, since
 /// later ones have the charts. What is not met by then hardly ever was, except a distance.
-constexpr int most_rounds = 3, most_rounds_for_distance = 6;
+constexpr int most_rounds = 4, most_rounds_for_distance = 6;
 /// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
 /// sizes.
 constexpr int rounds_of_count = 2;
@@ -41,6 +42,9 @@ std::optional<Score> score_of(const Failure& failure);
 
 /// Returns the scores of the rounds in a verdict's text, an empty requirement where a round has none.
 std::vector<Score> scores_in(std::string_view verdict);
+
+/// Returns the mean size of the first round's result in a verdict's text, 0 if it has none.
+double first_size_in(std::string_view verdict);
 
 /// Returns whether the last of these rounds is worth another. `most`: how many there may be.
 bool another_round(const std::vector<Score>& rounds, int most);

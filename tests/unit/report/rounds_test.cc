@@ -89,4 +89,15 @@ TEST(rounds, the_count_is_given_up_after_two_rounds_or_for_a_distance) {
 }
 
 }  // namespace
+TEST(Rounds, TheSizeOfTheFirstOneIsKnownLater) {
+  EXPECT_EQ(first_size_in(""), 0);
+  Outcome first, second;
+  first.mean_size = 0.25, second.mean_size = 0.125;
+  std::string verdict = verdict_block("", first);
+  EXPECT_EQ(first_size_in(verdict), 0.25);
+  verdict += verdict_block(verdict, second);
+  EXPECT_EQ(first_size_in(verdict), 0.25);
+  EXPECT_EQ(first_size_in(verdict_block("", Outcome{})), 0) << "a program before mcheck has failed";
+}
+
 }  // namespace meshpipe
