@@ -158,6 +158,8 @@ bool triangles_intersect(const Mesh& mesh, int s, int t) {
   return orient2d(from, to, drop(w, axis)) == orient2d(from, to, drop(x, axis));
 }
 
+bool has_area(const Mesh& mesh, int t) { return view_axis(corners(mesh, t)) >= 0; }
+
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
   if (mesh.tris.empty()) return {};
   return self_intersections(mesh, Bvh(mesh));
@@ -186,9 +188,7 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
   std::vector<std::pair<int, int>> all;
   for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
   // a triangle without area has no plane: it is counted as such elsewhere
-  std::erase_if(all, [&](const auto& p) {
-    return view_axis(corners(mesh, p.first)) < 0 || view_axis(corners(mesh, p.second)) < 0;
-  });
+  std::erase_if(all, [&](const auto& p) { return !has_area(mesh, p.first) || !has_area(mesh, p.second); });
   std::sort(all.begin(), all.end());
   return all;
 }

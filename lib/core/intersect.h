@@ -13,6 +13,9 @@ namespace meshpipe {
 /// opposite edge meets the other.
 bool triangles_intersect(const Mesh& mesh, int s, int t);
 
+/// Has triangle t area, by exact arithmetic?
+bool has_area(const Mesh& mesh, int t);
+
 /// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
 /// plane.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
 #include "lib/core/intersect.h"
-#include "lib/core/triangle_count.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -10,7 +9,11 @@ namespace {
 /// What is asked of the reference more than once, computed when it is needed.
 struct Known {
   const Surface& reference;
-  std::vector<Sample>& samples;
+  Samples& samples;
+  Crossings crossings;
+  std::vector<double> walked;    ///< per triangle, `deviation` over the size, at `time`
+  std::vector<double> searched;  ///< `distance_of` then, or -1
+  int time = -1;
   std::optional<Mesh> intersections;
   std::optional<Bvh> tree;
 };
@@ -30,16 +33,14 @@ struct Fault {
 };
 
 void find_intersections(const State& s, Known& known, Fault& found) {
-  std::vector<int> number;
-  const Mesh now = without_gaps(s, number);
-  found.pairs = self_intersections(now);
+  renew(known.crossings, s, known.samples.search);
+  found.pairs = known.crossings.pairs;
   if (found.pairs.empty()) return;
   if (!known.intersections)
     known.intersections = contacts(known.reference, self_intersections(known.reference));
   const int all = (int)found.pairs.size();
-  found.pairs = new_intersections(now, found.pairs, *known.intersections);
+  found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.intersections);
   found.of_reference = all - (int)found.pairs.size();
-  for (auto& [a, b] : found.pairs) a = number[a], b = number[b];
 }
 
 /// The largest distance of the middles of triangle t and its edges from the reference. By a search: a walk
@@ -53,32 +54,42 @@ double distance_of(const State& s, int t, const Bvh& tree) {
   return most;
 }
 
+/// Walks from the corners of triangles that have changed, except where no edge between their normals sags.
+void look_at_changed(const State& s, Known& known) {
+  const int n = (int)s.mesh.tris.size(), before = (int)known.walked.size();
+  known.walked.resize(n), known.searched.resize(n);
+#pragma omp parallel for schedule(dynamic, 256) if (n > 10000)
+  for (int t = 0; t < n; ++t) {
+    if (s.mesh.dead(t) || (t < before && !changed_since(s, t, known.time))) continue;
+    const auto [a, b, c] = s.mesh.tris[t];
+    const Vec3 n = s.face_normal(t);
+    const bool flat =
+        std::min({dot(n, s.normal[a]), dot(n, s.normal[b]), dot(n, s.normal[c])}) > rules::parallel;
+    known.walked[t] = flat ? 0 : deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
+    known.searched[t] = -1;
+  }
+  known.time = s.clocks.now;
+}
+
 /// Triangles that are farther from the reference than a share of the size, and those that samples of it are
 /// nearest to and yet as far from.
 void find_far(const State& s, Known& known, Fault& found) {
-  double area = 0;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
-    if (const Tri& v = s.mesh.tris[t]; !s.mesh.dead(t))
-      area += 0.5 * norm(area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]));
-  const double mean_size = size_for_count(area, s.mesh.live);
-  const double least = rules::too_far * mean_size;
+  const double mean = mean_size(s), least = rules::too_far * mean;
   std::vector<std::pair<int, double>> far;
   auto look = [&](int t, double distance) {
     const Tri& v = s.mesh.tris[t];
-    const double size = std::max(mean_size, (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3);
+    const double size = std::max(mean, (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3);
     if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
   };
   const std::vector<double> distance = sample_distances(s, known.samples, least);
   for (std::size_t i = 0; i < distance.size(); ++i)
-    if (distance[i] > least) look(known.samples[i].near, distance[i]);
+    if (distance[i] > least) look(known.samples.list[i].near, distance[i]);
+  look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t)) continue;
-    const auto [a, b, c] = s.mesh.tris[t];
-    const Vec3 n = s.face_normal(t);
-    if (std::min({dot(n, s.normal[a]), dot(n, s.normal[b]), dot(n, s.normal[c])}) > rules::parallel) continue;
-    if (deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)}) <= least) continue;
+    if (s.mesh.dead(t) || known.walked[t] <= least) continue;
     if (!known.tree) known.tree.emplace(known.reference);
-    look(t, distance_of(s, t, *known.tree));
+    if (known.searched[t] < 0) known.searched[t] = distance_of(s, t, *known.tree);
+    look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());
   for (auto [t, ratio] : far) {
@@ -143,11 +154,11 @@ void refine_at(State& s, const Fault& fault) {
 
 }  // namespace
 
-Intersections remove_faults(State& s, std::vector<Sample>& samples) {
+Intersections remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   std::optional<std::pair<State, Fault>> best;
-  forget_near(samples);
-  Known known{s.reference->surface, samples, {}, {}};
+  samples.forget();
+  Known known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}};
   Repairs memory;
   for (int round = 0, since_best = 0;; ++round) {
     Fault found;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
-#include "lib/core/triangle_count.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -30,42 +29,71 @@ Vec3 nearest_point(const State& s, int t, Vec3 p) {
   return b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
 }
 
+/// For each triangle of the reference a triangle of the mesh that should not be far: of a vertex on it, or on
+/// a triangle around it.
+std::vector<int> first_guesses(const State& s) {
+  const Mesh& surface = s.reference->surface;
+  std::vector<int> at(surface.points.size(), -1), guess(surface.tris.size(), -1);
+  for (int v = 0; v < (int)s.mesh.out.size(); ++v)
+    if (s.mesh.out[v] >= 0) guess[s.place[v].face] = s.mesh.out[v] / 3;
+  for (int round = 0; round < rules::guess_rounds; ++round)
+    for (std::size_t t = 0; t < guess.size(); ++t) {
+      for (int v : surface.tris[t])
+        if (guess[t] < 0) guess[t] = at[v];
+      for (int v : surface.tris[t])
+        if (at[v] < 0) at[v] = guess[t];
+    }
+  return guess;
+}
+
 /// Measures the samples that are not known to be within `enough`, from where `distance` is infinite.
-void measure(const State& s, const Bvh& tree, const std::vector<int>& number, std::vector<Sample>& samples,
-             std::vector<double>& distance, double enough) {
-  const int n = (int)samples.size();
-  constexpr int chunk = 256;
-#pragma omp parallel for schedule(dynamic) if (n > 10000)
+void measure(const State& s, Samples& samples, std::vector<double>& distance, double enough) {
+  const int n = (int)distance.size(), now = s.clocks.now;
+  constexpr int chunk = 256, worth_threads = 10000;
+  std::vector<Sample>& list = samples.list;
+  std::vector<int> guess;
+  if (list.front().near < 0) guess = first_guesses(s);
+#pragma omp parallel for schedule(dynamic) if (n > worth_threads)
   for (int first = 0; first < n; first += chunk)
     for (int i = first; i < std::min(n, first + chunk); ++i) {
       if (distance[i] <= enough) continue;
-      Sample& sample = samples[i];
-      const Vec3 p = s.reference->walk.point(sample.place);
-      // most are still near to the triangle that they were near to, or to that of the sample before
-      if ((sample.near < 0 || s.mesh.dead(sample.near)) && i > first) sample.near = samples[i - 1].near;
-      if (sample.near >= 0 && !s.mesh.dead(sample.near)) {
-        distance[i] = walk_near(s, p, sample.near, enough);
-        if (distance[i] <= enough) continue;
+      Sample& x = list[i];
+      // most are as they were, or still near to the triangle that they were near to, or to that of the sample
+      // before
+      if (x.near < 0 && !guess.empty()) x.near = guess[x.place.face];
+      if ((x.near < 0 || s.mesh.dead(x.near)) && i > first) x.near = list[i - 1].near;
+      if (x.near < 0 || s.mesh.dead(x.near)) continue;
+      if (!(x.distance <= enough) || changed_since(s, x.near, x.time)) {
+        x.distance = walk_near(s, s.reference->walk.point(x.place), x.near, enough);
+        x.time = now;
       }
-      const Bvh::Hit hit = tree.nearest(p, distance[i], enough);
-      sample.near = number[hit.place.face];
-      distance[i] = hit.distance;
+      distance[i] = x.distance;
     }
+  std::vector<int> far;
+  for (int i = 0; i < n; ++i)
+    if (!(distance[i] <= enough)) far.push_back(i);
+  if (far.empty()) return;
+  samples.search.renew(s);
+#pragma omp parallel for schedule(dynamic, chunk) if (far.size() > chunk)
+  for (int i : far) {
+    Sample& x = list[i];
+    const Bvh::Hit hit = samples.search.tree().nearest(s.reference->walk.point(x.place), distance[i], enough);
+    x.near = samples.search.number(hit.place.face);
+    x.time = now;
+    distance[i] = x.distance = hit.distance;
+  }
 }
 
 /// The samples farther from the mesh than `wanted`, which is set, and at least `least` times its size; the
 /// farthest first, with distances, negative.
-std::vector<std::pair<double, int>> farthest_samples(const State& s, std::vector<Sample>& samples,
-                                                     double least, double& wanted) {
-  std::vector<int> number;
-  const Mesh mesh = without_gaps(s, number);
-  const Bvh tree(mesh);
-  const double h = size_for_count(total_area(mesh), mesh.tris.size());
-  const int n = (int)samples.size();
+std::vector<std::pair<double, int>> farthest_samples(const State& s, Samples& samples, double least,
+                                                     double& wanted) {
+  const double h = mean_size(s);
+  const int n = (int)samples.list.size();
   std::vector<double> distance(n, 1e300);
   // only the farthest are wanted: the others need not be known any better
   for (double enough = 0.5 * h;; enough = std::max(least * h, 0.5 * enough)) {
-    measure(s, tree, number, samples, distance, enough);
+    measure(s, samples, distance, enough);
     const double most = *std::max_element(distance.begin(), distance.end());
     wanted = std::max(least * h, rules::farthest_share * most);
     if (!(enough > wanted)) break;
@@ -74,7 +102,7 @@ std::vector<std::pair<double, int>> farthest_samples(const State& s, std::vector
   for (int i = 0; i < n; ++i) {
     if (distance[i] <= wanted) continue;
     // where the size is larger than elsewhere, so is the distance that it stands for
-    const double here = s.target(s.mesh.tris[samples[i].near][0]) / h;
+    const double here = s.target(s.mesh.tris[samples.list[i].near][0]) / h;
     if (distance[i] > wanted * (here > rules::larger_size ? here : 1)) farthest.push_back({-distance[i], i});
   }
   std::sort(farthest.begin(), farthest.end());
@@ -170,22 +198,20 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
   return samples;
 }
 
-std::vector<double> sample_distances(const State& s, std::vector<Sample>& samples, double enough) {
-  std::vector<int> number;
-  const Mesh mesh = without_gaps(s, number);
-  std::vector<double> distance(samples.size(), 1e300);
-  measure(s, Bvh(mesh), number, samples, distance, enough);
+std::vector<double> sample_distances(const State& s, Samples& samples, double enough) {
+  std::vector<double> distance(samples.list.size(), 1e300);
+  if (!distance.empty()) measure(s, samples, distance, enough);
   return distance;
 }
 
-bool reach_features(State& s, std::vector<Sample>& samples, double least, int most) {
-  if (s.mesh.live == 0 || samples.empty()) return false;
+bool reach_features(State& s, Samples& samples, double least, int most) {
+  if (s.mesh.live == 0 || samples.list.empty()) return false;
   double wanted = 0;
   const auto farthest = farthest_samples(s, samples, least, wanted);
   using Item = std::pair<double, int>;
   auto around = [&](const Item& item, std::vector<int> before) -> std::vector<int> {
     if (!before.empty()) return before;
-    const Sample& sample = samples[item.second];
+    const Sample& sample = samples.list[item.second];
     const Vec3 p = s.reference->walk.point(sample.place);
     int t = sample.near;
     if (s.mesh.dead(t) || walk_near(s, p, t, wanted) <= wanted) return {};
@@ -197,7 +223,7 @@ bool reach_features(State& s, std::vector<Sample>& samples, double least, int mo
     return triangles_around(s.mesh, t, rules::rings);
   };
   auto attempt = [&](const Item& item, const std::vector<int>& patch) {
-    return reached(s, samples[item.second].place, wanted, patch);
+    return reached(s, samples.list[item.second].place, wanted, patch);
   };
   return change_neighborhoods(s, farthest, most, rules::tries_per_feature * most, around, attempt,
                               [](const std::vector<int>&) {}) > 0;

@@ -50,8 +50,8 @@ void meet_count(State& s, double target) {
 }
 
 /// Sweeps with `target` triangles, then the places that need more than sweeps.
-void optimize(State& s, int sweeps, double target, std::vector<Sample>& samples) {
-  forget_near(samples);
+void optimize(State& s, int sweeps, double target, Samples& samples) {
+  samples.forget();
   for (int i = 0; i < sweeps; ++i) {
     // edits unsettle the mesh, so they come first and the last sweeps only settle it
     if (2 * i < sweeps) {
@@ -82,7 +82,7 @@ void optimize(State& s, int sweeps, double target, std::vector<Sample>& samples)
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
 /// a coarse mesh has less area than its reference: the count is known only after optimization, so repeat with
 /// a rescaled size field until it is within 1.5 %, unless the worst triangle gets worse.
-int optimize_to_count(State& s, int sweeps, double target, std::vector<Sample>& samples) {
+int optimize_to_count(State& s, int sweeps, double target, Samples& samples) {
   const State start = s;
   std::optional<State> best;
   double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
@@ -121,7 +121,7 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<in
   const double natural = reference.sizes ? count_for_size(surface, *reference.sizes) : s.mesh.live;
   coarse_rounds(s);
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
-  std::vector<Sample> samples = feature_samples(reference, size_for_count(total_area(surface), target));
+  Samples samples{feature_samples(reference, size_for_count(total_area(surface), target)), {}};
   int tries = 1;
   if (options.target_triangles > 0)
     tries = optimize_to_count(s, options.sweeps, target, samples);

@@ -96,11 +96,17 @@ int repair_each(State& s, std::vector<int> triangles, bool thorough, std::vector
 }
 
 /// The triangles that are not good enough, the worst first.
-std::vector<int> bad_triangles(const State& s) {
+std::vector<int> bad_triangles(const State& s, Repairs& memory) {
+  const int n = (int)s.mesh.tris.size(), before = (int)memory.quality.size();
+  memory.quality.resize(n);
+#pragma omp parallel for schedule(dynamic, 1024) if (n > 10000)
+  for (int t = 0; t < n; ++t)
+    if (!s.mesh.dead(t) && (t >= before || changed_since(s, t, memory.time)))
+      memory.quality[t] = quality(s, t);
+  memory.time = s.clocks.now;
   std::vector<std::pair<double, int>> bad;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
-    if (!s.mesh.dead(t))
-      if (const double q = quality(s, t); q < 1) bad.push_back({q, t});
+  for (int t = 0; t < n; ++t)
+    if (!s.mesh.dead(t) && memory.quality[t] < 1) bad.push_back({memory.quality[t], t});
   std::sort(bad.begin(), bad.end());
   std::vector<int> triangles;
   for (auto [q, t] : bad) triangles.push_back(t);
@@ -130,7 +136,7 @@ void repair_worst(State& s, Repairs& memory) {
   const int most = rules::repairs + s.mesh.live / rules::triangles_per_repair;
   int before = 0, first = 0;
   for (int round = 0; round < (memory.forced ? 1 : rules::repair_rounds); ++round) {
-    std::vector<int> triangles = bad_triangles(s), irregular;
+    std::vector<int> triangles = bad_triangles(s, memory), irregular;
     const int count = (int)triangles.size();
     if (round == 0) first = count;
     if (round > 1 && count > rules::hopeless) {

@@ -87,6 +87,7 @@ constexpr double too_far = 0.43;  // of the size: half of it is for mcheck to wa
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
+constexpr double stale_share = 0.25;  // of the triangles: more changes are worth a new search tree
 constexpr double growth = 1.5,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 16, useless_rounds = 4;
@@ -95,6 +96,7 @@ constexpr int fault_rounds = 16, useless_rounds = 4;
 constexpr double bent = 0.985;          // cosine: 10 degrees, from where edges have samples
 constexpr double samples_per_edge = 3;  // of the mesh: one is half way at most
 constexpr double most_samples = 50;     // of an edge
+constexpr int guess_rounds = 4;         // sweeps over the reference, to guess which triangles are near
 constexpr double missed = 0.1;          // length: the distance from which features are reached
 constexpr double farthest_share = 0.7;  // of the largest distance: those are reached first
 constexpr double larger_size = 1.2;     // over the mean: from here the distance is seen against it

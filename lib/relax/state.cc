@@ -2,6 +2,7 @@
 #include "lib/relax/state.h"
 
 #include "lib/core/normals.h"
+#include "lib/core/triangle_count.h"
 
 namespace meshpipe {
 namespace {
@@ -121,6 +122,14 @@ std::vector<int> finish(State& s, LiftedMesh& r) {
   r.kind = std::move(kind), r.line = std::move(line);
   r.patch = std::move(patch), r.part = std::move(part);
   return row;
+}
+
+double mean_size(const State& s) {
+  double area = 0;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (const Tri& v = s.mesh.tris[t]; !s.mesh.dead(t))
+      area += 0.5 * norm(area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]));
+  return size_for_count(area, s.mesh.live);
 }
 
 Mesh without_gaps(const State& s, std::vector<int>& number) {

@@ -134,6 +134,9 @@ State start_state(LiftedMesh& mesh, const Reference& reference, const std::vecto
 /// there, or -1.
 std::vector<int> finish(State& s, LiftedMesh& mesh);
 
+/// The edge length that the triangles would have if all were equilateral and equal.
+double mean_size(const State& s);
+
 /// The mesh without gaps, for searches; number[i] is the triangle of s that is its triangle i.
 Mesh without_gaps(const State& s, std::vector<int>& number);
 

@@ -53,7 +53,7 @@ TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
   Surface flat = cut_off();
   Drawn m(reference, &flat);
   put_on_rim(m, reference);
-  std::vector<Sample> samples = feature_samples(m.reference, 1000);
+  Samples samples{feature_samples(m.reference, 1000), {}};
   EXPECT_TRUE(reach_features(m.s, samples, rules::missed, rules::features));
   ASSERT_EQ(m.s.points.size(), 7u);
   EXPECT_LT(norm(m.s.points[6] - Vec3{4, 4, 2}), 1e-9);
@@ -67,9 +67,9 @@ TEST(Faults, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
     Surface flat = cut_off();
     Drawn m(reference, &flat);
     put_on_rim(m, reference);
-    std::vector<Sample> samples = feature_samples(m.reference, 1000);
+    Samples samples{feature_samples(m.reference, 1000), {}};
     EXPECT_TRUE(remove_faults(m.s, samples).pairs.empty());
-    forget_near(samples);
+    samples.forget();
     const std::vector<double> distance = sample_distances(m.s, samples, 0);
     EXPECT_LT(*std::max_element(distance.begin(), distance.end()), 2) << height;
     EXPECT_EQ(m.s.mesh.live > 4, height > 2) << "what is near enough stays as it is";

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/mesh_tree.h"
+
+#include <gtest/gtest.h>
+
+#include "lib/core/intersect.h"
+#include "lib/relax/operations.h"
+#include "tests/unit/relax/drawn.h"
+
+using namespace meshpipe;
+
+namespace {
+
+// a strip of ten squares along x, and one above it
+Surface two_strips() {
+  Mesh m;
+  for (int sheet = 0; sheet < 2; ++sheet)
+    for (int i = 0; i <= 10; ++i)
+      for (double y : {0.0, 1.0}) m.points.push_back({(double)i, y, (double)sheet});
+  for (int sheet = 0; sheet < 2; ++sheet)
+    for (int i = 0; i < 10; ++i) {
+      const int a = 22 * sheet + 2 * i;
+      m.tris.push_back({a, a + 2, a + 1});
+      m.tris.push_back({a + 1, a + 2, a + 3});
+    }
+  Surface s = surface_of(m);
+  s.vertex.set("size", std::vector<double>(m.points.size(), 1));
+  return s;
+}
+
+TEST(MeshTree, CrossingsAreThoseOfASearchFromScratch) {
+  Drawn m(two_strips());
+  MeshTree search;
+  Crossings crossings;
+  auto expect = [&](bool some) {
+    renew(crossings, m.s, search);
+    EXPECT_EQ(crossings.pairs, self_intersections({m.s.points, m.s.mesh.tris}));
+    EXPECT_EQ(!crossings.pairs.empty(), some);
+  };
+  auto lower = [&](int v, double z) {
+    m.s.points[v].z = z;
+    mark_changed(m.s, v);
+  };
+  expect(false);
+  lower(22 + 6, -1);  // through the strip below
+  expect(true);
+  lower(14, 2);  // far from there, in the strip below
+  expect(true);
+  flip_edge(m.s, 1);
+  lower(22 + 6, 1);  // back
+  expect(true);
+  lower(14, 0);
+  expect(false);
+  for (int i = 0; i < 22; ++i) lower(22 + i, -1);  // all of it
+  expect(false);
+  lower(3, -2);
+  expect(true);
+}
+
+TEST(MeshTree, KnowsWhatHasChanged) {
+  Drawn m(two_strips());
+  const int before = m.s.clocks.now;
+  mark_changed(m.s, 0);
+  EXPECT_TRUE(changed_since(m.s, 0, before));
+  EXPECT_FALSE(changed_since(m.s, 0, m.s.clocks.now));
+  EXPECT_FALSE(changed_since(m.s, 1, before));
+}
+
+}  // namespace
