@@ -235,14 +235,10 @@ Box Bvh::build(Item* items, int first, int count, int node) {
   return all;
 }
 
-Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
-  // the boxes are in single precision: what they say is taken with some slack
-  constexpr double trust = 1 + 1e-5;
-  const auto q = own_units(p);
-  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
-  auto limit = [&] { return (float)std::min(best * scale_ * scale_ * trust, 1e35); };
-  float most = limit();
-  Hit hit;
+/// Visits triangles in the order of their boxes' distances, as far as `most`, which `visit` may lower;
+/// `visit` returns whether to stop. distances(node): those of its four children's boxes.
+template <class Nodes, class Distances, class Visit>
+static void nearest_first(const Nodes& nodes, const float& most, Distances&& distances, Visit&& visit) {
   struct Entry {
     float distance;
     int child;
@@ -253,21 +249,32 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
     const Entry e = stack[--n];
     if (e.distance > most) continue;
     if (e.child < 0) {
-      const int t = -1 - e.child;
-      const Tri& v = mesh_.tris[t];
-      const Vec3 &x = mesh_.points[v[0]], &y = mesh_.points[v[1]], &z = mesh_.points[v[2]];
-      const auto w = closest_on_triangle(p, x, y, z);
-      const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
-      const double dd = dot(d, d);
-      if (dd < best || (hit.place.face < 0 && dd <= best)) {
-        best = dd;
-        most = limit();
-        hit.place = {t, w[0], w[1], w[2]};
-        if (best <= enough * enough) break;
-      }
+      if (visit(-1 - e.child)) return;
       continue;
     }
-    const Node& b = nodes_[e.child];
+    const auto& node = nodes[e.child];
+    const auto each = distances(node);
+    // the nearest child on top
+    const int bottom = n;
+    for (int k = 0; k < 4; ++k) {
+      const float d = each[k];
+      if (!(d <= most)) continue;
+      int at = n++;
+      for (; at > bottom && stack[at - 1].distance < d; --at) stack[at] = stack[at - 1];
+      stack[at] = {d, node.child[k]};
+    }
+  }
+}
+
+Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
+  // the boxes are in single precision: what they say is taken with some slack
+  constexpr double trust = 1 + 1e-5;
+  const auto q = own_units(p);
+  double best = std::min(bound * bound * (1 + 1e-12), std::numeric_limits<double>::max());
+  auto limit = [&] { return (float)std::min(best * scale_ * scale_ * trust, 1e35); };
+  float most = limit();
+  Hit hit;
+  auto distances = [&](const Node& b) {
     Four sum{};
     for (int k = 0; k < 3; ++k) {
       const Four below = b.lo[k] - q[k], above = q[k] - b.hi[k];
@@ -275,16 +282,20 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
       out = out > 0 ? out : Four{};
       sum += out * out;
     }
-    // the nearest child on top
-    const int bottom = n;
-    for (int k = 0; k < 4; ++k) {
-      const float d = sum[k];
-      if (!(d <= most)) continue;
-      int at = n++;
-      for (; at > bottom && stack[at - 1].distance < d; --at) stack[at] = stack[at - 1];
-      stack[at] = {d, b.child[k]};
-    }
-  }
+    return sum;
+  };
+  nearest_first(nodes_, most, distances, [&](int t) {
+    const Tri& v = mesh_.tris[t];
+    const Vec3 &x = mesh_.points[v[0]], &y = mesh_.points[v[1]], &z = mesh_.points[v[2]];
+    const auto w = closest_on_triangle(p, x, y, z);
+    const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
+    const double dd = dot(d, d);
+    if (!(dd < best || (hit.place.face < 0 && dd <= best))) return false;
+    best = dd;
+    most = limit();
+    hit.place = {t, w[0], w[1], w[2]};
+    return best <= enough * enough;
+  });
   if (hit.place.face < 0) return nearest(p, 1e300, enough);  // the bound was too small after all
   hit.distance = std::sqrt(best);
   return hit;
@@ -292,38 +303,14 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
 
 Bvh::RayHit Bvh::first_hit(Vec3 p, Vec3 direction, int side) const {
   // the ray in own units, its boxes a little larger than rounding makes them
-  constexpr float trust = 1 + 1e-5f, margin = 1e-5f;
+  constexpr float trust = 1 + 1e-5f, margin = 1e-5f, far = 1e30f;
   const auto q = own_units(p);
   const float d[3] = {(float)direction.x, (float)direction.y, (float)direction.z};
   float inverse[3];
   for (int k = 0; k < 3; ++k) inverse[k] = 1 / (std::abs(d[k]) > 1e-12f ? d[k] : 1e-12f);
   RayHit hit{infinity};
-  float most = 1e30f;
-  struct Entry {
-    float distance;
-    int child;
-  } stack[96];
-  int n = 0;
-  stack[n++] = {0, 0};
-  while (n) {
-    const auto [entry, child] = stack[--n];
-    if (entry > most) continue;
-    if (child < 0) {
-      const auto& [i, j, k] = mesh_.tris[-1 - child];
-      const Vec3 a = mesh_.points[i], u = mesh_.points[j] - a, v = mesh_.points[k] - a;
-      // Moeller and Trumbore 1997
-      const Vec3 across = cross(direction, v), from = p - a;
-      const double det = dot(u, across);  // against the normal
-      if (!(-side * det > 0)) continue;
-      const Vec3 over = cross(from, u);
-      const double b1 = dot(from, across) / det, b2 = dot(direction, over) / det, t = dot(v, over) / det;
-      if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1 && t >= 0 && t < hit.distance) {
-        hit = {t, -1 - child, b1, b2};
-        most = (float)std::min(t * scale_ * trust + margin, 1e30);
-      }
-      continue;
-    }
-    const Node& b = nodes_[child];
+  float most = far;
+  auto distances = [&](const Node& b) {
     Four first{}, last = first + most;
     for (int k = 0; k < 3; ++k) {
       const Four lo = (b.lo[k] - margin - q[k]) * inverse[k], hi = (b.hi[k] + margin - q[k]) * inverse[k];
@@ -331,15 +318,24 @@ Bvh::RayHit Bvh::first_hit(Vec3 p, Vec3 direction, int side) const {
       first = low > first ? low : first;
       last = high < last ? high : last;
     }
-    // the nearest child on top
-    const int bottom = n;
-    for (int k = 0; k < 4; ++k) {
-      if (!(first[k] <= last[k]) || b.lo[0][k] > b.hi[0][k]) continue;
-      int at = n++;
-      for (; at > bottom && stack[at - 1].distance < first[k]; --at) stack[at] = stack[at - 1];
-      stack[at] = {first[k], b.child[k]};
+    const Four missed = Four{} + 2 * far;
+    return (first <= last) & (b.lo[0] <= b.hi[0]) ? first : missed;
+  };
+  nearest_first(nodes_, most, distances, [&](int face) {
+    const auto& [i, j, k] = mesh_.tris[face];
+    const Vec3 a = mesh_.points[i], u = mesh_.points[j] - a, v = mesh_.points[k] - a;
+    // Moeller and Trumbore 1997
+    const Vec3 across = cross(direction, v), from = p - a;
+    const double det = dot(u, across);  // against the normal
+    if (!(-side * det > 0)) return false;
+    const Vec3 over = cross(from, u);
+    const double b1 = dot(from, across) / det, b2 = dot(direction, over) / det, t = dot(v, over) / det;
+    if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1 && t >= 0 && t < hit.distance) {
+      hit = {t, face, b1, b2};
+      most = (float)std::min(t * scale_ * trust + margin, (double)far);
     }
-  }
+    return false;
+  });
   return hit;
 }
 
