@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "lib/core/take_rows.h"
+
 namespace meshpipe {
 namespace {
 
@@ -144,11 +146,7 @@ std::vector<int> insert_vertices(Surface& s, const std::vector<char>& active,
   });
 
   std::vector<int> cut(3 * s.tris.size(), -1);
-  struct Place {
-    int a, b;
-    double t;
-  };
-  std::vector<Place> places;
+  std::vector<RowBetween> places;
   int n = (int)s.points.size();
   for (std::size_t i = 0; i < crossed.size();) {
     auto [a, b, h, is_active] = crossed[i];
@@ -162,19 +160,8 @@ std::vector<int> insert_vertices(Surface& s, const std::vector<char>& active,
     i = j;
   }
 
-  for (const Place& p : places) s.points.push_back(lerp(s.points[p.a], s.points[p.b], p.t));
-  for (Column& c : s.vertex.columns)
-    std::visit(
-        [&](auto& values) {
-          for (const Place& p : places) {
-            auto a = values[p.a], b = values[p.b];
-            if constexpr (std::is_same_v<decltype(a), double>)
-              values.push_back((1 - p.t) * a + p.t * b);
-            else
-              values.push_back(p.t < 0.5 ? a : b);  // a label has no value in between
-          }
-        },
-        c.data);
+  for (const RowBetween& p : places) s.points.push_back(lerp(s.points[p.a], s.points[p.b], p.t));
+  interpolate_rows(s.vertex, places);
   s.vertex.rows = s.points.size();
   return cut;
 }

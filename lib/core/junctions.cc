@@ -5,6 +5,7 @@
 
 #include "lib/core/chart_rows.h"
 #include "lib/core/edges.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
@@ -104,15 +105,15 @@ std::vector<Missing> compare_pieces(Mesh& mesh, const std::vector<Piece>& pieces
   return missing;
 }
 
-/// Appends rows for vertices from number `vertex` on: in the part of triangle inside[i], at weight[i] along
-/// an edge.
+/// Appends rows for vertices from number `vertex` on: in the part of triangle inside[i], between others.
 void extend(Table& chart, const std::vector<int>& part, const std::vector<int>& inside,
-            const std::vector<int>& ends, const std::vector<double>& weight, int vertex) {
+            const std::vector<RowBetween>& added, int vertex) {
   const ChartRows rows(chart, vertex);
   std::vector<Vec2> uv;
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    uv.push_back(
-        lerp(rows.uv(part[inside[i]], ends[2 * i]), rows.uv(part[inside[i]], ends[2 * i + 1]), weight[i]));
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const auto& [a, b, t] = added[i];
+    uv.push_back(lerp(rows.uv(part[inside[i]], a), rows.uv(part[inside[i]], b), t));
+  }
   for (std::size_t i = 0; i < uv.size(); ++i) {
     chart.get<int>("part").push_back(part[inside[i]]);
     chart.get<int>("vertex").push_back(vertex + (int)i);
@@ -125,9 +126,9 @@ void extend(Table& chart, const std::vector<int>& part, const std::vector<int>& 
 /// Splits border edges at points, at most one edge of a triangle. Face columns are copied, vertex columns
 /// interpolated.
 void split_at(Surface& s, Table* chart, const std::vector<Missing>& points) {
-  std::vector<int> face, ends;  // of the triangles and vertices appended
-  std::vector<double> weight;
-  std::vector<int> inside;  // the triangle whose edge a vertex is on
+  std::vector<int> face;          // of the triangles appended
+  std::vector<RowBetween> added;  // vertices
+  std::vector<int> inside;        // the triangle whose edge a vertex is on
   int last = -1;
   auto* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
   std::vector<std::uint8_t> bits;
@@ -142,8 +143,7 @@ void split_at(Surface& s, Table* chart, const std::vector<Missing>& points) {
     for (; i < end; ++i) {
       const int v = (int)s.points.size();
       s.points.push_back(points[i].point);
-      ends.push_back(a), ends.push_back(b);
-      weight.push_back(points[i].t);
+      added.push_back({a, b, points[i].t});
       inside.push_back(t);
       if (from == 0) {
         s.tris[t][(k + 1) % 3] = v;
@@ -157,28 +157,10 @@ void split_at(Surface& s, Table* chart, const std::vector<Missing>& points) {
     s.tris.push_back({from, b, apex});
     face.push_back(t), bits.push_back((mark >> k & 1) | (mark >> (k + 1) % 3 & 1) << 1);
   }
-  for (Column& c : s.face.columns)
-    std::visit(
-        [&](auto& x) {
-          for (int t : face) x.push_back(x[t]);
-        },
-        c.data);
-  s.face.rows = s.tris.size();
+  append_rows(s.face, face);
   if (model) std::copy(bits.begin(), bits.end(), s.face.get<std::uint8_t>("model").end() - (long)bits.size());
-  for (Column& c : s.vertex.columns)
-    std::visit(
-        [&]<class T>(std::vector<T>& x) {
-          for (std::size_t i = 0; i < weight.size(); ++i) {
-            const T p = x[ends[2 * i]], q = x[ends[2 * i + 1]];
-            if constexpr (std::is_same_v<T, double>)
-              x.push_back((1 - weight[i]) * p + weight[i] * q);
-            else
-              x.push_back(weight[i] < 0.5 ? p : q);
-          }
-        },
-        c.data);
-  if (chart) extend(*chart, s.face.get<int>("part"), inside, ends, weight, (int)s.vertex.rows);
-  s.vertex.rows = s.points.size();
+  if (chart) extend(*chart, s.face.get<int>("part"), inside, added, (int)s.vertex.rows);
+  interpolate_rows(s.vertex, added);
 }
 
 }  // namespace

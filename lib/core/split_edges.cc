@@ -5,6 +5,7 @@
 
 #include "lib/core/chart_rows.h"
 #include "lib/core/predicates.h"
+#include "lib/core/take_rows.h"
 
 namespace meshpipe {
 namespace {
@@ -55,14 +56,6 @@ int edge_below(int a, int b) {
   for (int i = 0; i < 3; ++i)
     if (on(a, i) && on(b, i)) return i;
   return -1;
-}
-
-template <class T>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<int>& parent) {
-  std::vector<T> out;
-  out.reserve(parent.size());
-  for (int t : parent) out.push_back(values[t]);
-  return out;
 }
 
 /// How a surface is split: the marked half-edges, on both sides of an edge.
@@ -165,8 +158,7 @@ class EdgeSplit {
         parent.push_back(t);
       }
     }
-    for (Column& c : surface_.face.columns) std::visit([&](auto& v) { v = gathered(v, parent); }, c.data);
-    surface_.face.rows = parent.size();
+    take_rows(surface_.face, parent);
     if (has_model) surface_.face.get<std::uint8_t>("model") = std::move(model);
     surface_.tris = std::move(tris);
     return parent;
@@ -175,18 +167,10 @@ class EdgeSplit {
   /// Appends the new vertices with their columns.
   void append_vertices() {
     for (auto [a, b] : ends_) surface_.points.push_back(lerp(surface_.points[a], surface_.points[b], 0.5));
-    for (Column& c : surface_.vertex.columns)
-      std::visit(
-          [&]<class T>(std::vector<T>& v) {
-            for (auto [p, q] : ends_) {
-              const int a = std::min(p, q), b = std::max(p, q);
-              if constexpr (std::is_same_v<T, double>)
-                v.push_back(0.5 * v[a] + 0.5 * v[b]);
-              else
-                v.push_back(v[a]);
-            }
-          },
-          c.data);
+    std::vector<RowBetween> middles;
+    for (auto [a, b] : ends_)
+      middles.push_back({std::max(a, b), std::min(a, b), 0.5});  // labels of the lower
+    interpolate_rows(surface_.vertex, middles);
     surface_.vertex.rows = surface_.points.size();
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rearranges the rows of a table.
+// Rearranges and repeats rows of a table.
 #pragma once
 #include <type_traits>
 #include <utility>
@@ -21,6 +21,36 @@ inline void take_rows(Table& table, const std::vector<int>& rows) {
         },
         c.data);
   table.rows = rows.size();
+}
+
+/// A row between two others, t = 0: a, 1: b.
+struct RowBetween {
+  int a, b;
+  double t;
+};
+/// Appends rows between others: numbers are interpolated, labels those of the nearer row.
+inline void interpolate_rows(Table& table, const std::vector<RowBetween>& rows) {
+  for (Column& c : table.columns)
+    std::visit(
+        [&]<class T>(std::vector<T>& values) {
+          for (const RowBetween& r : rows)
+            if constexpr (std::is_same_v<T, double>)
+              values.push_back((1 - r.t) * values[r.a] + r.t * values[r.b]);
+            else
+              values.push_back(values[r.t < 0.5 ? r.a : r.b]);
+        },
+        c.data);
+  table.rows += rows.size();
+}
+/// Appends copies of rows.
+inline void append_rows(Table& table, const std::vector<int>& rows) {
+  for (Column& c : table.columns)
+    std::visit(
+        [&](auto& values) {
+          for (int row : rows) values.push_back(values[row]);
+        },
+        c.data);
+  table.rows += rows.size();
 }
 
 }  // namespace meshpipe

@@ -28,21 +28,6 @@ std::vector<int> images(const MergedSurface& z) {
   return image;
 }
 
-/// Appends rows between those of the input, for the vertices that splits have added.
-void add_rows(Table& table, const std::vector<SplitVertex>& added) {
-  for (Column& column : table.columns)
-    std::visit(
-        [&](auto& all) {
-          for (const SplitVertex& s : added) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(all[0])>, double>)
-              all.push_back((1 - s.t) * all[s.a] + s.t * all[s.b]);
-            else
-              all.push_back(all[s.t < 0.5 ? s.a : s.b]);
-          }
-        },
-        column.data);
-}
-
 /// The result; per triangle, vertex and half-edge of it the triangle of the input, the number in `z`, and the
 /// given line.
 Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int>& face,
@@ -72,7 +57,7 @@ Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int
     }
     model.push_back(bits);
   }
-  add_rows(s.vertex, z.added);
+  interpolate_rows(s.vertex, z.added);
   take_rows(s.vertex, vertex);
   take_rows(s.face, face);
   s.face.set("model", std::move(model));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/core/edit_mesh.h"
+#include "lib/core/take_rows.h"
 #include "lib/defeature/defeature.h"
 
 namespace meshpipe {
@@ -26,12 +27,6 @@ struct FeatureLines {
 FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<int>* given,
                         const std::vector<char>& wrinkles);
 
-/// A vertex on an edge: a + t (b - a).
-struct SplitVertex {
-  int a, b;
-  double t;
-};
-
 /// A merge of the vertex `gone`, which was at `at`, with the vertex `kept`.
 struct Merge {
   int gone, kept;
@@ -44,9 +39,9 @@ struct Merge {
 struct MergedSurface {
   EditMesh mesh;
   std::vector<Vec3> points;
-  std::vector<double> drift;       ///< per vertex: how far what was merged into it has come, at most
-  std::vector<int> origin;         ///< per triangle: the one of the input
-  std::vector<SplitVertex> added;  ///< vertices after those of the input
+  std::vector<double> drift;      ///< per vertex: how far what was merged into it has come, at most
+  std::vector<int> origin;        ///< per triangle: the one of the input
+  std::vector<RowBetween> added;  ///< vertices on edges, after those of the input
   std::vector<Merge> merges;
   FeatureLines lines;
 

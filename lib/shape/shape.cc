@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lib/core/random.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
@@ -265,22 +266,6 @@ void add_noise(Mesh& mesh, double amount, int seed) {
   for (Vec3& p : mesh.points) p = p + length * random.in_ball();
 }
 
-namespace {
-
-/// Appends triangles and the face columns of the triangle each was made from.
-void append(Surface& s, const std::vector<Tri>& tris, const std::vector<int>& from) {
-  s.tris.insert(s.tris.end(), tris.begin(), tris.end());
-  for (Column& c : s.face.columns)
-    std::visit(
-        [&](auto& values) {
-          for (int f : from) values.push_back(values[f]);
-        },
-        c.data);
-  s.face.rows = s.tris.size();
-}
-
-}  // namespace
-
 void add_slivers(Surface& s, double fraction, int seed) {
   const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
   Random random(seed);
@@ -305,7 +290,8 @@ void add_slivers(Surface& s, double fraction, int seed) {
       done[e / 3] = 1;
     }
   }
-  append(s, tris, from);
+  s.tris.insert(s.tris.end(), tris.begin(), tris.end());
+  append_rows(s.face, from);
   s.vertex.rows = s.points.size();
 }
 
@@ -331,7 +317,8 @@ void add_dirt(Surface& s, double fraction, int seed) {
     s.tris[loose][0] = v + 1;
     s.points.push_back(random.in_ball());
   }
-  append(s, tris, from);
+  s.tris.insert(s.tris.end(), tris.begin(), tris.end());
+  append_rows(s.face, from);
   s.vertex.rows = s.points.size();
 }
 
