@@ -65,8 +65,7 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
                                  {"extended", r.extended},
                                  {"cap_triangles", r.cap},
                                  {"flat", r.flat}});
-    std::string line = e.name + ": at " + shown(e.center.x) + ' ' + shown(e.center.y) + ' ' +
-                       shown(e.center.z) + ", radius " + shown(e.radius);
+    std::string line = e.name + ": at " + shown(e.center) + ", radius " + shown(e.radius);
     if (r.trimmed > 0) line += ", cut back by " + shown(r.trimmed);
     if (r.moved > 0) line += ", moved by " + shown(r.moved);
     if (r.extended > 0) line += ", extended by " + shown(r.extended);

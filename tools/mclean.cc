@@ -157,8 +157,7 @@ void remark_on_spikes(const Io& io, Stream& stream) {
   if (spikes.count == 0) return;
   stream.remarks.push_back("spikes " + std::to_string(spikes.count));
   const Vec3 p = spikes.longest;
-  io.say("vertices that stick out: " + std::to_string(spikes.count) + ", the farthest at " + shown(p.x) +
-         ' ' + shown(p.y) + ' ' + shown(p.z));
+  io.say("vertices that stick out: " + std::to_string(spikes.count) + ", the farthest at " + shown(p));
 }
 
 }  // namespace

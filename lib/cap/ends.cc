@@ -191,12 +191,6 @@ CapPatches parse_caps(const std::string& remark) {
   return patches;
 }
 
-std::string shown(Vec3 p) {
-  char text[100];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x, p.y, p.z);
-  return text;
-}
-
 std::string title_of(const std::vector<End>& ends, int i) {
   return "end " + std::to_string(i + 1) + ", " + ends[i].name + ", at " + shown(ends[i].center);
 }

@@ -27,8 +27,6 @@ End end_of(const Mesh& mesh, std::vector<int> rim);
 /// Returns the vertices of border loops, each counterclockwise as seen from outside.
 std::vector<std::vector<int>> rims_of(const Connectivity& c);
 
-/// Returns "(x, y, z)".
-std::string shown(Vec3 p);
 [[noreturn]] void refuse(const std::vector<End>& ends, int i, const std::string& why);
 
 /// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.

@@ -28,7 +28,7 @@ bool among(const Names& names, const std::string& name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-std::string place(Vec3 p) { return "at (" + shown(p.x) + " " + shown(p.y) + " " + shown(p.z) + ")"; }
+std::string place(Vec3 p) { return "at (" + shown(p) + ")"; }
 
 std::string triangle(const Mesh& mesh, int t) {
   return "triangle " + std::to_string(t) + " " + place(centroid(mesh, t));

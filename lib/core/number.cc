@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/number.h"
 
-#ifndef __cpp_lib_to_chars
 #include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
 
+#include "lib/core/vec.h"
+
 namespace meshpipe {
 
+std::string shown(const Vec3& place) { return shown(place.x) + ' ' + shown(place.y) + ' ' + shown(place.z); }
+
+#ifndef __cpp_lib_to_chars
 std::from_chars_result from_chars(const char* first, const char* last, double& value) {
   auto may_belong = [](unsigned char c) { return std::isalnum(c) || c == '.' || c == '+' || c == '-'; };
   const char* end = first;
@@ -24,6 +28,6 @@ std::from_chars_result from_chars(const char* first, const char* last, double& v
   value = x;
   return {at, std::errc()};
 }
+#endif
 
 }  // namespace meshpipe
-#endif

@@ -14,6 +14,10 @@ inline std::string shown(double x) {
   return text;
 }
 
+struct Vec3;
+/// The coordinates: "0.25 0 -1".
+std::string shown(const Vec3& place);
+
 /// As std::from_chars, also for doubles where the library reads integers only (libc++ before 20).
 template <class T>
 std::from_chars_result from_chars(const char* first, const char* last, T& value) {

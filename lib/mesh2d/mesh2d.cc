@@ -229,8 +229,7 @@ PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const 
     std::string where;
     if (std::exchange(facts.in_plane, false)) {
       place_on_surface(chart, facts);
-      where = " in the plane, (" + shown(facts.place.x) + " " + shown(facts.place.y) + " " +
-              shown(facts.place.z) + ") on the surface";
+      where = " in the plane, (" + shown(facts.place) + ") on the surface";
     }
     throw Informed<GoalMissed>("part " + std::to_string(part) + ": " + e.what() + where, facts);
   } catch (const NotAdmissible& e) {

@@ -108,7 +108,7 @@ std::vector<std::string> describe(const LayerReport& r) {
   if (!(r.total > 0)) return {};
   if (r.all == 0)
     return {"layers of " + shown(r.total) + " in all fit everywhere; " + shown(r.least) + " do"};
-  const std::string where = " at " + shown(r.at.x) + ' ' + shown(r.at.y) + ' ' + shown(r.at.z);
+  const std::string where = " at " + shown(r.at);
   const char* const names[] = {"the distance to the next sheet", "the radius of curvature",
                                "the angle in degrees between two sides"};
   return {"layers of " + shown(r.total) + " in all do not fit at " + std::to_string(r.all) + " vertices (" +

@@ -36,8 +36,8 @@ std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, boo
     if (m.vertices == 0)
       lines.push_back(what + ": no sheet of the surface faces another there, which bounds no size");
     else
-      lines.push_back(what + ": " + m.column + " from " + shown(m.value) + ", at " + shown(m.at.x) + ' ' +
-                      shown(m.at.y) + ' ' + shown(m.at.z) + ", where that asks for " + shown(m.size));
+      lines.push_back(what + ": " + m.column + " from " + shown(m.value) + ", at " + shown(m.at) +
+                      ", where that asks for " + shown(m.size));
   }
   for (const std::string& line : describe(r.layers)) lines.push_back(line);
   if (r.scale != 1)
@@ -46,13 +46,11 @@ std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, boo
   if (r.lowered > 0)
     lines.push_back("the size is lowered at " + std::to_string(r.lowered) +
                     " vertices of narrow tubes or closed lines, which need four edges around them: at " +
-                    shown(r.lowered_at.x) + ' ' + shown(r.lowered_at.y) + ' ' + shown(r.lowered_at.z) +
-                    " from " + shown(r.lowered_from) + " to " + shown(r.lowered_to));
+                    shown(r.lowered_at) + " from " + shown(r.lowered_from) + " to " + shown(r.lowered_to));
   if (r.narrow > 0)
     lines.push_back("lines or sheets are too near each other for the size at " + std::to_string(r.narrow) +
-                    " places: at " + shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' +
-                    shown(r.narrow_at.z) + ", " + shown(r.narrow_gap) + " apart, it is lowered from " +
-                    shown(r.narrow_from) + " to " + shown(r.narrow_to));
+                    " places: at " + shown(r.narrow_at) + ", " + shown(r.narrow_gap) +
+                    " apart, it is lowered from " + shown(r.narrow_from) + " to " + shown(r.narrow_to));
   if (o.triangles > 0 && r.narrow > 0 && r.triangles > (1 + more) * o.triangles)
     lines.push_back("no fewer than about " + std::to_string(std::llround(r.triangles)) +
                     " triangles are good there, instead of " + std::to_string(std::llround(o.triangles)));

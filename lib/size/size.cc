@@ -80,9 +80,7 @@ double by_curvature(const SizeOptions& o, double k) {
 
 double asked(const SizeOptions& o, Vec3 p, double curvature) {
   const double h = o.at(p, curvature);
-  if (!(h > 0))
-    throw BadInput("the size at " + shown(p.x) + ' ' + shown(p.y) + ' ' + shown(p.z) + " is " + shown(h) +
-                   ", but sizes are positive");
+  if (!(h > 0)) throw BadInput("the size at " + shown(p) + " is " + shown(h) + ", but sizes are positive");
   return h;
 }
 
@@ -320,8 +318,7 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
   while (left() > limit) facts.strip_width *= 2;
   throw Informed<GoalMissed>("narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
                                  shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow_gap) +
-                                 " wide at " + shown(r.narrow_at.x) + ' ' + shown(r.narrow_at.y) + ' ' +
-                                 shown(r.narrow_at.z),
+                                 " wide at " + shown(r.narrow_at),
                              facts);
 }
 
@@ -354,7 +351,7 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
   throw GoalMissed("slender parts ask for " + shown(std::round(asked)) + " triangles instead of " +
                    shown(std::round(triangles)) + ": the size is " + shown(size) +
                    ", and the mean way around one is " + shown(narrowest) + ", its middle at " +
-                   shown(place.x) + ' ' + shown(place.y) + ' ' + shown(place.z));
+                   shown(place));
 }
 
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number

@@ -370,8 +370,7 @@ std::vector<std::string> describe(const SmoothReport& r) {
             shown(r.angle_before) + " degrees"};
   std::vector<std::string> lines{"angle between adjacent triangles " + shown(r.angle_before) + " -> " +
                                  shown(r.angle_after) + " degrees; moved by at most " + shown(r.farthest) +
-                                 ", at " + shown(r.farthest_at.x) + ' ' + shown(r.farthest_at.y) + ' ' +
-                                 shown(r.farthest_at.z)};
+                                 ", at " + shown(r.farthest_at)};
   lines.push_back("volume " + shown(r.volume) + ", changed by " +
                   shown(r.volume != 0 ? 100 * r.volume_change / r.volume : 0) + " %");
   if (r.bounded)

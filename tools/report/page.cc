@@ -15,8 +15,6 @@ namespace {
 
 std::string escaped(const std::string& text) { return xml_escaped(text); }
 
-std::string point(Vec3 p) { return shown(p.x) + ' ' + shown(p.y) + ' ' + shown(p.z); }
-
 /// A table, row by row. A row's first cell is its heading.
 class HtmlTable {
  public:
@@ -159,7 +157,7 @@ std::string worst_html(const PageItem& item, std::size_t number) {
   if (item.worst.empty()) return "";
   HtmlTable table("The worst triangles", {"triangle", "kappa#", "center"});
   for (const ListedTriangle& t : item.worst)
-    table.row({button(number, t.triangle), text_of(t.kappa, 4), point(t.center)});
+    table.row({button(number, t.triangle), text_of(t.kappa, 4), shown(t.center)});
   return scrolled("The worst triangles of " + item.name, table.finish());
 }
 
@@ -169,7 +167,7 @@ std::string offending_html(const PageItem& item, std::size_t number) {
   HtmlTable table("Triangles at fault: " + std::to_string(all), {"triangle", "kappa#", "center", "fault"},
                   "faults");
   for (const ListedTriangle& t : item.offending)
-    table.row({button(number, t.triangle), text_of(t.kappa, 4), point(t.center), t.why});
+    table.row({button(number, t.triangle), text_of(t.kappa, 4), shown(t.center), t.why});
   std::string html = table.finish();
   if (all > item.offending.size())
     html += "<button type=\"button\" class=\"more\" data-all=\"" + std::to_string(number) + "\">Show all " +

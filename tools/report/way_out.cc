@@ -18,12 +18,6 @@ std::string at_least(double x) {
   return shown(std::ceil(x / unit) * unit);
 }
 
-std::string place(Vec3 p) {
-  std::string text = shown(p.x);
-  text += ' ' + shown(p.y) + ' ' + shown(p.z);
-  return text;
-}
-
 struct Case {
   int status;
   const FailureFacts& facts;
@@ -121,7 +115,7 @@ const Row table[] = {
        return WayOut{c.used("mclean", "--resolve") ? "mwrap" : "mclean --resolve outer",
                      std::to_string(c.found.intersections) +
                          " pairs of triangles of the input intersect, first at " +
-                         place(c.found.intersection)};
+                         shown(c.found.intersection)};
      }},
     {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
      [](const Case&) {
