@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <new>
 
@@ -110,9 +111,19 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
   return "; try " + way->what + " (" + way->why + ")";
 }
 
+/// Throws: BadUsage if a file has another extension than those listed; devices and pipes have none.
+void expect_extension(const std::string& path, std::string_view known) {
+  const std::string extension = extension_of(path);
+  if (path == "-" || (!extension.empty() && known.find(extension) != known.npos)) return;
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) return;
+  throw BadUsage("'" + path + "' has extension '" + extension + "'; known are " + std::string(known));
+}
+
 /// Runs the body of a program between the checks of its files and its report.
 void run_body(Io& io, const std::function<void(Io&)>& body, const Usage& usage) {
-  io.expect_report("-o", io.output, usage.writes_mesh);
+  io.expect_report("-o", io.output, usage.writes.empty());
+  if (!usage.writes.empty()) expect_extension(io.output, usage.writes);
   if (!io.json.empty()) io.expect_report("--json", io.json);
   if (!usage.reads) set_phase(Phase::working);
   try {

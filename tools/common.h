@@ -13,10 +13,10 @@ namespace meshpipe {
 
 /// In what a program differs from the others.
 struct Usage {
-  bool reads = true;        ///< takes FILE
-  bool writes_mesh = true;  ///< -o is a mesh, its format by extension
-  bool passes = false;      ///< makes a few passes over arrays as large as its input: freed memory is kept
-  bool any_size = false;    ///< computes nothing from coordinates, so that their size does not matter
+  bool reads = true;          ///< takes FILE
+  std::string_view writes{};  ///< extensions of -o FILE; empty: those of meshes
+  bool passes = false;        ///< makes a few passes over arrays as large as its input: freed memory is kept
+  bool any_size = false;      ///< computes nothing from coordinates, so that their size does not matter
 };
 
 /// Returns the number of triangles that the machine's memory holds in a pipeline of these programs.

@@ -111,15 +111,21 @@ void Io::expect_report(const std::string& option, const std::string& path, bool 
                       : other == "-o" ? "standard output is for the result; give -o FILE"
                                       : "standard output is for " + other));
     }
+  if (path != "-" && is_same_file(path, input) && !(mesh && option == "-o"))
+    throw BadUsage(option + ' ' + path + ": that is the input");
   expected_files_.push_back({option, path});
   if (mesh && !is_stream_name(path)) writer_of(path);
   expect_writable(path);
 }
 
-void Io::say(const std::string& line) const {
+void Io::warn(const std::string& line) const {
   // on a terminal, over the progress line
   const char* clear = ::isatty(STDERR_FILENO) ? "\r\033[K" : "";
-  if (!quiet) std::fprintf(stderr, "%s%s: %s\n", clear, program.c_str(), line.c_str());
+  std::fprintf(stderr, "%s%s: %s\n", clear, program.c_str(), line.c_str());
+}
+
+void Io::say(const std::string& line) const {
+  if (!quiet) warn(line);
 }
 
 void Io::detail(const std::string& line) const {

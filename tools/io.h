@@ -34,11 +34,13 @@ class Io : public CommonOptions {
   /// Writes bytes to another file, or standard output for "-".
   static void write_file(const std::string& path, std::string_view bytes);
   /// Checks before the work that a further file can be written; `option` is for the message.
-  /// Throws: CannotWrite, or BadUsage if a `mesh` has an unknown extension or another option has the same
-  /// file.
+  /// Throws: CannotWrite, or BadUsage if a `mesh` has an unknown extension, or if another option or the input
+  /// is the same file; only -o may overwrite the input, by another mesh.
   void expect_report(const std::string& option, const std::string& path, bool mesh = false);
   /// Prints a line after the program's name on standard error, unless -q.
   void say(const std::string& line) const;
+  /// The same, even with -q.
+  void warn(const std::string& line) const;
   /// The same, only with -v.
   void detail(const std::string& line) const;
 

@@ -112,6 +112,9 @@ void run(Io& io, Options& o) {
     return io.write_bytes(table_of(ends));
   }
   io.say(std::to_string(ends.size()) + (ends.size() == 1 ? " open end" : " open ends"));
+  if (ends.empty() && (o.trim > 0 || o.extend > 0))
+    throw NotAdmissible("the surface has no open end to " + std::string(o.trim > 0 ? "cut back" : "extend"));
+  if (ends.empty() && (o.flatten || o.cap)) io.warn("warning: no open ends: nothing is made plane or capped");
   if (ends.empty() || !(o.trim > 0 || o.flatten || o.extend > 0 || o.cap)) {
     report(io, ends, std::vector<EndReport>(ends.size()));
   } else {

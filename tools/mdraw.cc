@@ -58,5 +58,5 @@ int main(int argc, char** argv) {
   return run_tool(argc, argv, "mdraw",
                   "Draw a mesh as a PNG picture; model edges are drawn thick. Needs no display.\n\n"
                   "example:\n  mdraw tree.stl -o tree.png",
-                  add_options, body, {.writes_mesh = false});
+                  add_options, body, {.writes = ".png"});
 }

@@ -120,5 +120,5 @@ int main(int argc, char** argv) {
       "Show results or intermediates as one HTML page with a 3-D view; it needs no network.\n\nexamples:\n"
       "  mremesh -q --triangles 6000 tree.stl -o mesh.ply && mreport mesh.ply -o mesh.html\n"
       "  mclean -q tree.stl | mpartition | mmultiscale | mparam | mreport -o charts.html",
-      add_options, [&](Io& io) { report(io, o); }, {.reads = false, .writes_mesh = false});
+      add_options, [&](Io& io) { report(io, o); }, {.reads = false, .writes = ".html .htm"});
 }

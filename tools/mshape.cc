@@ -78,6 +78,20 @@ Body make(const Options& o) {
   return body;
 }
 
+/// The options that only some kinds have.
+constexpr std::pair<const char*, const char*> kinds_of[] = {
+    {"--aspect", "tube or tree"}, {"--ratio", "tree or torus"}, {"--closed", "tube"},
+    {"--patches", "body"},        {"--genus", "genus"},         {"--generations", "tree"},
+    {"--outlets", "tree"},        {"--brick", "regions"},       {"--nested", "regions"},
+    {"--voronoi", "regions"},     {"--within", "regions"},      {"--image", "regions"},
+};
+
+void expect_own_options(const CLI::App& app, const std::string& kind) {
+  for (const auto& [option, kinds] : kinds_of)
+    if (app.count(option) > 0 && (' ' + std::string(kinds) + ' ').find(' ' + kind + ' ') == std::string::npos)
+      throw BadUsage(std::string(option) + " is an option of " + kinds + ", not of " + kind);
+}
+
 void add_region_options(CLI::App& app, Options& o) {
   auto* brick = app.add_option("--brick", o.brick, "regions: cubes with all their faces (default 2x1x1)")
                     ->type_name("NxMxK");
@@ -85,16 +99,18 @@ void add_region_options(CLI::App& app, Options& o) {
                      ->check(CLI::Range(1, 1000))
                      ->excludes(brick)
                      ->type_name("N");
-  app.add_option("--voronoi", o.voronoi, "regions: those nearest to each of N seeds")
-      ->check(CLI::Range(1, 1000))
-      ->excludes(brick)
-      ->excludes(nested)
-      ->type_name("N");
+  auto* voronoi = app.add_option("--voronoi", o.voronoi, "regions: those nearest to each of N seeds")
+                      ->check(CLI::Range(1, 1000))
+                      ->excludes(brick)
+                      ->excludes(nested)
+                      ->type_name("N");
   app.add_option("--within", o.within, "regions of --voronoi: ball (default) or box")
-      ->check(CLI::IsMember({"ball", "box"}));
+      ->check(CLI::IsMember({"ball", "box"}))
+      ->needs(voronoi);
   app.add_option("--image", o.image,
                  "regions of --voronoi as an image has them: smooth, or the sides of blocks")
-      ->check(CLI::IsMember({"smooth", "blocks"}));
+      ->check(CLI::IsMember({"smooth", "blocks"}))
+      ->needs(voronoi);
 }
 
 }  // namespace
@@ -102,7 +118,9 @@ void add_region_options(CLI::App& app, Options& o) {
 int main(int argc, char** argv) {
   Options o;
   CLI::Option* generations = nullptr;
+  const CLI::App* parsed = nullptr;
   auto add_options = [&](CLI::App& app) {
+    parsed = &app;
     app.add_option("KIND", o.kind, "tube, sphere, torus, genus, tree, body, cube or regions")
         ->required()
         ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube", "regions"}))
@@ -141,8 +159,9 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(30);
   };
   auto body = [&](Io& io) {
+    expect_own_options(*parsed, o.kind);
     if (o.voxels > 0 && o.kind == "regions")
-      throw BadUsage("--voxels takes one body, not regions; voxels of regions: --voronoi N --blocks");
+      throw BadUsage("--voxels takes one body, not regions; voxels of regions: --voronoi N --image blocks");
     Body shape = make(o);
     if (o.voxels > 0) {
       Body body{voxels(std::move(shape), o.voxels), {}, {}};
