@@ -2,6 +2,7 @@
 // mrelax: optimize a lifted mesh on its reference surface, across interfaces that are not model edges.
 #include "formats/stream/lift_tables.h"
 #include "formats/stream/line_tables.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/second_order.h"
 #include "lib/clean/clean.h"
 #include "lib/lift/lift.h"
@@ -45,6 +46,20 @@ std::string left_over(const RelaxReport& r, const LiftedMesh& mesh) {
   return text;
 }
 
+void put(Io& io, const RelaxReport& r, std::size_t triangles) {
+  io.report["corners_merged"] = r.corners_merged;
+  io.report["triangles"] = triangles;
+  io.report["kappa_mean"] = r.kappa_mean;
+  io.report["kappa_min"] = r.kappa_min;
+  io.report["tries"] = r.tries;
+  io.report["splits"] = r.splits;
+  io.report["collapses"] = r.collapses;
+  io.report["flips"] = r.flips;
+  io.report["moves"] = r.moves;
+  io.report["intersections"] = r.intersections;
+  io.report["intersections_of_reference"] = r.intersections_of_reference;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,6 +88,7 @@ int main(int argc, char** argv) {
         o.relax.keep_border = o.relax.keep_border || l.kept;
       }
       corners = line_corners(reference, lines);
+      o.relax.sheets_meet = has_sheets(stream);
       o.relax.target_triangles = stream.asked_triangles;
     } else {
       clean(stream.surface);
@@ -85,8 +101,8 @@ int main(int argc, char** argv) {
     }
     stream.surface = {};  // written anew later; frees its memory now
     const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
-    const bool second_order = stream.find("mid_vertex") != nullptr;
-    const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);
+    const std::string exceptions =
+        write_on_reference(stream, mesh, reference, stream.find("mid_vertex") != nullptr);
     if (!exceptions.empty()) io.say(exceptions);
     char text[200];
     std::snprintf(text, sizeof text,
@@ -101,17 +117,7 @@ int main(int argc, char** argv) {
     if (r.corners_merged > 0)
       io.say(std::to_string(r.corners_merged) +
              " corners merged with another that was nearer than a twentieth of the size");
-    io.report["corners_merged"] = r.corners_merged;
-    io.report["triangles"] = mesh.tris.size();
-    io.report["kappa_mean"] = r.kappa_mean;
-    io.report["kappa_min"] = r.kappa_min;
-    io.report["tries"] = r.tries;
-    io.report["splits"] = r.splits;
-    io.report["collapses"] = r.collapses;
-    io.report["flips"] = r.flips;
-    io.report["moves"] = r.moves;
-    io.report["intersections"] = r.intersections;
-    io.report["intersections_of_reference"] = r.intersections_of_reference;
+    put(io, r, mesh.tris.size());
     const std::string missed = left_over(r, mesh);
     if (!missed.empty() && !o.accept) throw GoalMissed(missed);
     if (!missed.empty()) io.say("accepted: " + missed);

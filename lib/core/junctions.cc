@@ -2,6 +2,7 @@
 #include "lib/core/junctions.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "lib/core/chart_rows.h"
 #include "lib/core/edges.h"
@@ -23,87 +24,96 @@ namespace {
 constexpr double same_place = 1e-9;  // of an edge: cuts nearer than this are one
 constexpr double straight = 1e-9;    // of an edge: what is farther off it is no piece of it
 
-/// A border from one junction to the next, straight: the pieces of one edge that cuts have left.
-struct Piece {
-  int from, to;           ///< the places of its ends, from < to
-  std::vector<int> edge;  ///< half-edges, in the direction of the border
-  bool reversed;          ///< the border runs from `to`
-};
-
 /// A point that a border edge lacks.
 struct Missing {
   int half_edge;
   double t;
   Vec3 point;
+  int vertex;  ///< of the other border
   bool operator<(const Missing& o) const {
-    return half_edge != o.half_edge ? half_edge < o.half_edge : t < o.t;
+    return std::tie(half_edge, t, vertex) < std::tie(o.half_edge, o.t, o.vertex);
   }
 };
 
-std::vector<Piece> find_pieces(const Connectivity& c, const std::vector<int>& place) {
+/// A border half-edge as it leaves a place: that of its origin, or backwards that of its target.
+struct Ray {
+  int place, half_edge, forward;
+  auto operator<=>(const Ray&) const = default;
+};
+
+std::vector<Ray> find_rays(const Connectivity& c, const std::vector<int>& place) {
   std::vector<char> shared(c.n_vertices(), 0);
   for (int v = 0; v < c.n_vertices(); ++v)
-    if (place[v] != v) shared[v] = shared[place[v]] = 1;
-  std::vector<Piece> pieces;
+    if (place[v] != v) shared[place[v]] = 1;
+  std::vector<Ray> rays;
   for (int h = 0; h < c.n_half_edges(); ++h) {
-    if (!c.is_border(h) || !shared[c.from(h)]) continue;
-    Piece p{place[c.from(h)], 0, {h}, false};
-    const std::size_t most = c.n_half_edges();
-    while (!shared[c.to(p.edge.back())] && p.edge.size() < most)
-      p.edge.push_back(next_on_border(c.opposite, p.edge.back()));
-    p.to = place[c.to(p.edge.back())];
-    const Vec3 a = c.point(p.from), along = c.point(p.to) - a;
-    const double length = norm(along);
-    bool is_straight = length > 0;
-    for (std::size_t i = 1; i < p.edge.size() && is_straight; ++i)
-      is_straight = norm(cross(c.point(c.from(p.edge[i])) - a, along)) <= straight * length * length;
-    if (!is_straight) continue;
-    p.reversed = p.from > p.to;
-    if (p.reversed) std::swap(p.from, p.to);
-    pieces.push_back(std::move(p));
+    if (!c.is_border(h)) continue;
+    if (const int from = place[c.from(h)]; shared[from]) rays.push_back({from, h, 1});
+    if (const int to = place[c.to(h)]; shared[to]) rays.push_back({to, h, 0});
   }
-  std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) {
-    return std::pair(p.from, p.to) < std::pair(q.from, q.to);
-  });
-  return pieces;
+  std::sort(rays.begin(), rays.end());
+  return rays;
 }
 
-/// Finds the points that some pieces between the same places have and others lack; those that are almost the
-/// same become the same.
-std::vector<Missing> compare_pieces(Mesh& mesh, const std::vector<Piece>& pieces) {
-  std::vector<Missing> missing;
-  for (std::size_t i = 0, end; i < pieces.size(); i = end) {
-    for (end = i;
-         end < pieces.size() && pieces[end].from == pieces[i].from && pieces[end].to == pieces[i].to;)
-      ++end;
-    const Vec3 a = mesh.points[pieces[i].from], along = mesh.points[pieces[i].to] - a;
-    auto at = [&](Vec3 p) { return dot(p - a, along) / dot(along, along); };
-    std::vector<std::pair<double, int>> cuts;
-    for (std::size_t k = i; k < end; ++k)
-      for (std::size_t j = 1; j < pieces[k].edge.size(); ++j) {
-        const int v = origin(mesh.tris, pieces[k].edge[j]);
-        cuts.push_back({at(mesh.points[v]), v});
-      }
-    if (cuts.empty() || end - i < 2) continue;
-    std::sort(cuts.begin(), cuts.end());
-    std::vector<double> place{cuts[0].first};
-    std::vector<Vec3> point{mesh.points[cuts[0].second]};
-    for (const auto& [t, v] : cuts) {
-      if (t - place.back() > same_place) place.push_back(t), point.push_back(mesh.points[v]);
-      mesh.points[v] = point.back();
+/// Finds the vertices of other borders on border edges that lack them: along each pair of edges that leave a
+/// place in the same direction. Those that are almost the same become the same.
+class Comparison {
+ public:
+  Comparison(Mesh& mesh, const Connectivity& c, const std::vector<int>& place)
+      : mesh_(mesh), c_(c), place_(place), before_(c.n_vertices(), -1) {
+    for (int h = 0; h < c.n_half_edges(); ++h)
+      if (c.is_border(h)) before_[c.to(h)] = h;
+    const std::vector<Ray> rays = find_rays(c, place);
+    for (std::size_t i = 0, end; i < rays.size(); i = end) {
+      for (end = i; end < rays.size() && rays[end].place == rays[i].place;) ++end;
+      for (std::size_t j = i; j < end; ++j)
+        for (std::size_t k = i; k < end; ++k)
+          if (j != k) follow(rays[j], rays[k]);
     }
-    for (std::size_t k = i; k < end; ++k)
-      for (int h : pieces[k].edge) {
-        const double x = at(mesh.points[origin(mesh.tris, h)]), y = at(mesh.points[target(mesh.tris, h)]);
-        for (std::size_t j = 0; j < place.size(); ++j)
-          if (const double t = (place[j] - x) / (y - x);
-              place[j] > std::min(x, y) + same_place && place[j] < std::max(x, y) - same_place)
-            missing.push_back({h, t, point[j]});
-      }
+    std::sort(found_.begin(), found_.end());
   }
-  std::sort(missing.begin(), missing.end());
-  return missing;
-}
+
+  /// The points that edges lack, each once.
+  std::vector<Missing> missing() {
+    std::vector<Missing> points;
+    for (const Missing& m : found_) {
+      if (!points.empty() && points.back().half_edge == m.half_edge && m.t - points.back().t <= same_place)
+        mesh_.points[m.vertex] = points.back().point;
+      else
+        points.push_back(m);
+    }
+    return points;
+  }
+
+ private:
+  int end_of(const Ray& r) const { return r.forward ? c_.to(r.half_edge) : c_.from(r.half_edge); }
+
+  /// Adds what lies on the edge `along` of the border that leaves its place with `other`.
+  void follow(const Ray& along, Ray other) {
+    const int last = end_of(along);
+    if (place_[end_of(other)] == place_[last]) return;
+    const Vec3 a = c_.point(along.place), edge = c_.point(last) - a;
+    const double l2 = dot(edge, edge);
+    for (int steps = c_.n_half_edges(); steps > 0; --steps) {
+      const int v = end_of(other);
+      const Vec3 d = c_.point(v) - a;
+      const double t = dot(d, edge) / l2;
+      if (!(t > same_place && t < 1 + same_place && norm(cross(d, edge)) <= straight * l2)) return;
+      if (t > 1 - same_place) {
+        if (place_[v] != place_[last]) mesh_.points[std::max(v, last)] = c_.point(std::min(v, last));
+        return;
+      }
+      found_.push_back({along.half_edge, along.forward ? t : 1 - t, c_.point(v), v});
+      other.half_edge = other.forward ? next_on_border(c_.opposite, other.half_edge) : before_[v];
+    }
+  }
+
+  Mesh& mesh_;
+  const Connectivity& c_;
+  const std::vector<int>& place_;
+  std::vector<int> before_;  ///< the border half-edge that ends at a vertex
+  std::vector<Missing> found_;
+};
 
 /// Appends rows for vertices from number `vertex` on: in the part of triangle inside[i], between others.
 void extend(Table& chart, const std::vector<int>& part, const std::vector<int>& inside,
@@ -170,7 +180,8 @@ int match_borders(Surface& surface, Table* chart) {
   for (;;) {
     const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
     const Connectivity c{surface, opposite};
-    const std::vector<Missing> missing = compare_pieces(surface, find_pieces(c, first_at_border(c)));
+    const std::vector<int> place = first_at_border(c);
+    const std::vector<Missing> missing = Comparison(surface, c, place).missing();
     if (missing.empty()) return (int)(surface.points.size() - before);
     split_at(surface, chart, missing);
   }

@@ -22,6 +22,7 @@ constexpr double border_reach = 2;     // borders of scans are rougher than crea
 constexpr double corner_apart = 0.5;   // on a rough border only the sharpest corner within this counts,
 constexpr double sharper = 1.1;        // unless another one turns almost as much (ratio),
 constexpr double too_close = 0.15;     // and is farther away than this
+constexpr double rough_end = 1;        // nearer to an end of a junction of sheets none counts
 constexpr double most_sag = 1.0 / 16;  // of a segment from its model edge, before segments become shorter
 constexpr double least_share = 0.8;    // of h, down to which they do
 constexpr double cut_off = 0.1;        // of h: a segment that is farther off its chain cuts a bend off
@@ -241,9 +242,10 @@ class Course {
 };
 
 /// Marks the inner vertices of a chain that turn by more than `limit` at every scale from its edges up to the
-/// size. The zig-zag of a scan's border fades with scale; a circle is straight at the small ones.
+/// size. The zig-zag of a scan's border fades with scale; a circle is straight at the small ones. Next to its
+/// ends the larger scales are missing: with `rough_ends` there are no corners there.
 void mark_corners(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
-                  double limit, std::vector<char>& corner) {
+                  double limit, bool rough_ends, std::vector<char>& corner) {
   const Course course(s, chains, c);
   struct Candidate {
     int index;
@@ -256,6 +258,8 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
     double turn =
         angle(x - s.points[course.vertex(i > 0 ? i - 1 : c.count - 2)], s.points[course.vertex(i + 1)] - x);
     const double reach = (c.kind == border_line ? border_reach : 1) * size[v];
+    const double to_end = std::min(course.length(i), course.length(c.count - 1) - course.length(i));
+    if (rough_ends && !c.closed && to_end < rough_end * size[v]) continue;
     for (double scale : {0.25, 0.5, 1.0})
       if (turn > limit) turn = std::min(turn, course.turn(i, scale * reach));
     if (turn > limit) found.push_back({i, turn});
@@ -300,7 +304,7 @@ std::vector<char> mark_corners(const Surface& s, const std::vector<double>& size
   for (std::size_t v = 0; v < s.points.size(); ++v)
     corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
   const Chains chains = chain_edges(kept, corner, place);
-  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, corner);
+  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, !place.first.empty(), corner);
   return corner;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
 namespace meshpipe {
@@ -31,26 +32,16 @@ bool line_stays(const State& s, int gone, int kept, Vec3 p) {
            rules::line_deviation * s.target(gone) * norm(chord));
 }
 
-/// Collapses the edge whichever way works.
-bool collapse_either(State& s, int h, const rules::Collapse& limits) {
-  const int a = s.mesh.from(h), b = s.mesh.to(h);
-  return collapse_edge(s, h, a, limits) || collapse_edge(s, h, b, limits);
-}
+/// Where the vertex that stays will be.
+struct Kept {
+  Place place;
+  Vec3 p, normal;
+};
 
-}  // namespace
-
-bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge) {
+/// Does the star get no worse than `limits`, or than it was, when `gone` goes?
+bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::Collapse& limits) {
   const EditMesh& m = s.mesh;
   const int kept = m.from(h) == gone ? m.to(h) : m.from(h), g = m.opp[h];
-  if (!may_collapse(s, h, gone, kept, merge)) return false;
-  Place place = s.place[kept];
-  Vec3 p = s.points[kept];
-  if (s.hold[kept] == loose) {
-    place = s.reference->walk.closest(s.place[kept], lerp(s.points[gone], p, 0.5));
-    p = s.reference->walk.point(place);
-  }
-  if (s.hold[gone] == slides && !line_stays(s, gone, kept, p)) return false;
-  const Vec3 normal = s.hold[kept] ? s.normal[kept] : s.reference->normal(place);
   double shape_before = 0, shape_after = 0, cosine_before = 1, cosine_after = 1;
   bool short_enough = true;
   for (int v : {gone, kept})
@@ -60,15 +51,51 @@ bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, boo
       shape_before = std::max(shape_before, shape_energy(x, y, z));
       cosine_before = std::min(cosine_before, s.cosine(v, b, f));
       if (e / 3 == h / 3 || (g >= 0 && e / 3 == g / 3)) return;
-      shape_after = std::max(shape_after, shape_energy(p, y, z));
-      cosine_after = std::min(cosine_after, normal_cosine(p, y, z, normal + s.normal[b] + s.normal[f]));
-      const double l = norm(y - p);
+      shape_after = std::max(shape_after, shape_energy(at.p, y, z));
+      cosine_after = std::min(cosine_after, normal_cosine(at.p, y, z, at.normal + s.normal[b] + s.normal[f]));
+      const double l = norm(y - at.p);
       if (l > limits.length * 0.5 * (s.target(b) + s.target(kept)) && l > norm(y - x)) short_enough = false;
     });
-  if (!short_enough || (shape_after > limits.shape && shape_after > shape_before) ||
-      folds(cosine_before, cosine_after))
-    return false;
-  if (s.hold[kept] == loose) put(s, kept, place, p, normal);
+  return short_enough && (shape_after <= limits.shape || shape_after <= shape_before) &&
+         !folds(cosine_before, cosine_after);
+}
+
+/// Collapses the edge whichever way works.
+bool collapse_either(State& s, int h, const rules::Collapse& limits) {
+  const int a = s.mesh.from(h), b = s.mesh.to(h);
+  return collapse_edge(s, h, a, limits) || collapse_edge(s, h, b, limits);
+}
+
+}  // namespace
+
+static bool collapse_copies(State& s, int h, int gone, const rules::Collapse& limits) {
+  const EditMesh& m = s.mesh;
+  const Vec3 p = s.points[m.from(h) == gone ? m.to(h) : m.from(h)];
+  const std::vector<std::pair<int, int>> edges = with_copies(s, h, gone);
+  for (const auto& [e, v] : edges) {
+    const int kept = m.from(e) == v ? m.to(e) : m.from(e);
+    if (!may_collapse(s, e, v, kept, false) || doubles_edges(s, e, v) || !line_stays(s, v, kept, p) ||
+        !leaves_sound(s, e, v, {s.place[kept], p, s.normal[kept]}, limits))
+      return false;
+  }
+  for (const auto& [e, v] : edges) remove_vertex(s, e, v);
+  return !edges.empty();
+}
+
+bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge) {
+  if (is_shared(s, gone)) return !merge && collapse_copies(s, h, gone, limits);
+  const EditMesh& m = s.mesh;
+  const int kept = m.from(h) == gone ? m.to(h) : m.from(h);
+  if (!may_collapse(s, h, gone, kept, merge) || doubles_edges(s, h, gone)) return false;
+  Kept at{s.place[kept], s.points[kept], s.normal[kept]};
+  if (s.hold[kept] == loose) {
+    at.place = s.reference->walk.closest(s.place[kept], lerp(s.points[gone], at.p, 0.5));
+    at.p = s.reference->walk.point(at.place);
+    at.normal = s.reference->normal(at.place);
+  }
+  if (s.hold[gone] == slides && !line_stays(s, gone, kept, at.p)) return false;
+  if (!leaves_sound(s, h, gone, at, limits)) return false;
+  if (s.hold[kept] == loose) put(s, kept, at.place, at.p, at.normal);
   remove_vertex(s, h, gone);
   return true;
 }

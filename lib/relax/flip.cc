@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
 namespace meshpipe {
@@ -90,7 +91,8 @@ bool may_flip(const State& s, int h) {
     return false;
   return !folds(std::min(s.cosine(a, b, c), s.cosine(b, a, d)),
                 std::min(s.cosine(a, d, c), s.cosine(b, c, d))) &&
-         !(s.hold[c] == frozen ? m.joined(d, c) : m.joined(c, d));  // the rim may meet itself in a vertex
+         !(s.hold[c] == frozen ? m.joined(d, c) : m.joined(c, d)) &&  // the rim may meet itself in a vertex
+         !joined_elsewhere(s, c, d);
 }
 
 void flip_edge(State& s, int h) {

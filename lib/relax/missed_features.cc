@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
+#include "lib/relax/junctions.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -140,9 +141,16 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     if (stays || !(reaches(from, on_line) || (insert && hard && reaches(to, true)))) continue;
     State& after = trials.emplace_back(Trial{0, before}).state;
     const int v = insert ? (int)after.mesh.out.size() : after.mesh.from(h);
-    if (insert) insert_vertex(after, h, place, p, {});
-    put(after, v, place, p, on_line && !after.mesh.on_border(v) ? Vec3{} : s.reference->normal(place));
-    after.hold[v] = on_line ? fixed : anchored;
+    const std::vector<CopyPlace> places =
+        insert ? places_on_edge(after, h, place, p) : copies_at(after, v, place, p);
+    if (places.empty()) {
+      trials.pop_back();
+      continue;
+    }
+    if (insert) insert_copies(after, places, p);
+    if (!insert)
+      for (const CopyPlace& c : places) put(after, c.at, c.place, p, c.normal);
+    for_copies(after, v, [&](int c) { after.hold[c] = on_line ? fixed : anchored; });
     after.coloring.listed = false;
     settle(after, 1);
   }
@@ -217,10 +225,10 @@ bool reach_features(State& s, Samples& samples, double least, int most) {
     if (s.mesh.dead(t) || walk_near(s, p, t, wanted) <= wanted) return {};
     t = sample.near;
     double least = 1e300;
-    for (int near : triangles_around(s.mesh, sample.near, rules::rings))
+    for (int near : triangles_around(s, sample.near, rules::rings))
       if (const double d = norm(nearest_point(s, near, p) - p); d < least) least = d, t = near;
     if (least <= wanted) return {};
-    return triangles_around(s.mesh, t, rules::rings);
+    return triangles_around(s, t, rules::rings);
   };
   auto attempt = [&](const Item& item, const std::vector<int>& patch) {
     return reached(s, samples.list[item.second].place, wanted, patch);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numeric>
 
+#include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
 namespace meshpipe {
@@ -75,10 +76,9 @@ double Star::worst_cosine(Vec3 p, Vec3 normal_p) const {
   return least;
 }
 
-/// False for a star too large to be worth it.
+/// Adds the triangles of v. False if there are too many to be worth it.
 bool gather(const State& s, int v, Star& star) {
-  star.n = 0;
-  if (s.mesh.valence(v) > Star::most) return false;
+  if (star.n + s.mesh.valence(v) > Star::most) return false;
   s.mesh.star(v, [&](int h) {
     const int i = star.n++, a = s.mesh.to(h), b = s.mesh.apex(h);
     const Vec3 &y = s.points[a], &z = s.points[b], f = s.normal[a] + s.normal[b];
@@ -144,25 +144,29 @@ Derivatives derivatives(const Star& star, Vec3 x, Vec3 n, Vec3 s, Vec3 t, double
 bool settled(const State& s, int v) {
   if (s.hold[v] >= fixed) return true;
   const std::vector<int>&tried = s.clocks.tried, &changed = s.clocks.changed;
-  if (tried[v] <= changed[v]) return false;
   bool quiet = true;
-  s.mesh.neighbors(v, [&](int w) { quiet &= changed[w] < tried[v]; });
+  for_copies(s, v, [&](int c) {
+    quiet &= tried[c] > changed[c];
+    if (quiet) s.mesh.neighbors(c, [&](int w) { quiet &= changed[w] < tried[c]; });
+  });
   return quiet;
 }
 
 /// Moves v at time `now` unless it is settled.
 bool advance(State& s, int v, int now) {
   if (settled(s, v)) return false;
-  s.clocks.tried[v] = now;
+  for_copies(s, v, [&](int c) { s.clocks.tried[c] = now; });
   return s.hold[v] == slides ? slide_vertex(s, v) : move_vertex(s, v);
 }
 
-/// Lists the vertices that may move, by color.
+/// Lists the vertices that may move by themselves, by color.
 void list_by_color(State& s) {
   const std::vector<signed char>& color = s.coloring.color;
   std::vector<int>& start = s.coloring.start;
   const int n = (int)s.mesh.out.size();
-  auto moves = [&](int v) { return s.mesh.out[v] >= 0 && s.hold[v] < fixed && color[v] >= 0; };
+  auto moves = [&](int v) {
+    return s.mesh.out[v] >= 0 && s.hold[v] < fixed && color[v] >= 0 && !is_shared(s, v);
+  };
   start.assign(65, 0);
   for (int v = 0; v < n; ++v)
     if (moves(v)) ++start[color[v] + 1];
@@ -174,11 +178,39 @@ void list_by_color(State& s) {
   s.coloring.listed = true;
 }
 
+/// Moves vertices with copies, one after the other: they are few. Returns how many moved.
+int slide_shared(State& s) {
+  int moves = 0;
+  for (int v = 0; v < (int)s.copy.size(); ++v) {
+    if (!is_shared(s, v) || s.mesh.out[v] < 0 || s.hold[v] != slides) continue;
+    bool first = true;
+    for_copies(s, v, [&](int c) { first &= c >= v; });
+    const int now = ++s.clocks.now;
+    if (!first || !advance(s, v, now)) continue;
+    for_copies(s, v, [&](int c) { s.clocks.changed[c] = now; });
+    ++moves;
+  }
+  return moves;
+}
+
+/// Returns where v and its copies are when v is at `place`, whose point is p; none if a star would fold, or a
+/// copy would be elsewhere.
+std::vector<CopyPlace> places_at(const State& s, int v, const Place& place, Vec3 p) {
+  std::vector<CopyPlace> places = copies_at(s, v, place, p);
+  for (const CopyPlace& c : places) {
+    Star star;
+    if (!gather(s, c.at, star) || folds_star(s, star, c.at, s.points[c.at], p, c.normal)) return {};
+  }
+  return places;
+}
+
 }  // namespace
 
 bool slide_vertex(State& s, int v) {
   Star star;
-  if (!gather(s, v, star)) return false;
+  bool small = true;
+  for_copies(s, v, [&](int c) { small = small && gather(s, c, star); });
+  if (!small) return false;
   Vec3 ahead{}, behind{};
   s.mesh.star(v, [&](int e) {
     if (s.mesh.hard[e]) ahead = s.points[s.mesh.to(e)];
@@ -197,13 +229,13 @@ bool slide_vertex(State& s, int v) {
   step = std::clamp(rules::line_relaxation * step, -rules::reach * reach, rules::reach * reach);
   if (!(std::abs(step) >= rules::shortest_step * size)) return false;
   const Place place = place_at(step);
-  const Vec3 p = walk.point(place), normal = s.mesh.on_border(v) ? s.reference->normal(place) : Vec3{};
+  const Vec3 p = walk.point(place);
   if (star.energy_on_line(p, size) > now * (1 - rules::least_gain)) return false;
   for (const Vec3& end : {ahead, behind})
     if (norm(end - p) > std::max(rules::longest_segment * size, norm(end - x))) return false;
-  if (folds_star(s, star, v, x, p, normal)) return false;
-  put(s, v, place, p, normal);
-  return true;
+  const std::vector<CopyPlace> places = places_at(s, v, place, p);
+  for (const CopyPlace& c : places) put(s, c.at, c.place, p, c.normal);
+  return !places.empty();
 }
 
 bool move_vertex(State& state, int v) {
@@ -249,7 +281,7 @@ bool move_vertex(State& state, int v) {
 
 bool improve_vertex(State& s, int v) {
   if (s.mesh.out[v] < 0 || !advance(s, v, ++s.clocks.now)) return false;
-  mark_changed(s, v);
+  for_copies(s, v, [&](int c) { mark_changed(s, c); });
   ++s.counts.moves;
   return true;
 }
@@ -273,7 +305,7 @@ void smooth(State& s, int sweeps) {
         for (int k = first; k < last; ++k) moves += one(order[k]);
       }
     }
-    s.counts.moves += moves;
+    s.counts.moves += moves + slide_shared(s);
   }
 }
 

@@ -9,7 +9,8 @@ namespace meshpipe {
 // --- split.cc ---
 
 /// Splits the edge of h at the place on the reference nearest to its point `at` (0 to 1 from where h starts);
-/// a border or model edge at a place on the line. False if the pieces would fold.
+/// a border or model edge at a place on the line, and the edges of other sheets there alike. False if the
+/// pieces would fold.
 bool split_edge(State& s, int h, double at = 0.5);
 /// Puts a new vertex on the edge of h, without a look at the triangles.
 void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal);
@@ -23,7 +24,8 @@ void split_long(State& s, double above, double most);
 
 /// Takes the vertex `gone` of the edge of h out, into the edge's other end, or into the middle if that end is
 /// loose. False if the star would fold or leave `limits` (unless it did before). A vertex on a line goes only
-/// along it, if the line hardly changes. With `merge`, `gone` is a corner that goes into another.
+/// along it, if the line hardly changes, and with its copies. With `merge`, `gone` is a corner that goes into
+/// another.
 bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge = false);
 /// Takes the vertex `gone` out without a look at the triangles.
 void remove_vertex(State& s, int h, int gone);
@@ -59,7 +61,8 @@ void remove_dislocations(State& s, int depth);
 /// Moves a loose vertex by a Newton step on the energy of its star along the tangent plane, walked to on the
 /// reference; kept if the energy falls. False if it stays.
 bool move_vertex(State& s, int v);
-/// Slides a vertex along its border or model edge to the minimum of a parabola through three energies.
+/// Slides a vertex and its copies along their border or model edge to the minimum of a parabola through three
+/// energies.
 bool slide_vertex(State& s, int v);
 /// Moves or slides v unless it is held or nothing around it has changed since the last try.
 bool improve_vertex(State& s, int v);

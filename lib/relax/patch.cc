@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "lib/relax/junctions.h"
+
 namespace meshpipe {
 namespace {
 
@@ -86,13 +88,15 @@ double deviation(const State& s) {
   return most;
 }
 
-std::vector<int> triangles_around(const EditMesh& mesh, int t, int rings) {
+std::vector<int> triangles_around(const State& s, int t, int rings) {
   std::vector<int> found{t}, sorted{t};
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<int> more;
-    for (int v : vertices_of(mesh, found))
-      mesh.star(v, [&](int h) {
-        if (!std::binary_search(sorted.begin(), sorted.end(), h / 3)) more.push_back(h / 3);
+    for (int v : vertices_of(s.mesh, found))
+      for_copies(s, v, [&](int c) {
+        s.mesh.star(c, [&](int h) {
+          if (!std::binary_search(sorted.begin(), sorted.end(), h / 3)) more.push_back(h / 3);
+        });
       });
     sort_unique(more);
     found.insert(found.end(), more.begin(), more.end());
@@ -137,6 +141,7 @@ State extract(const State& s, const std::vector<int>& triangles) {
   for (int h = 0; h < (int)patch.mesh.opp.size(); ++h)
     if (patch.mesh.opp[h] < 0 && s.mesh.opp[3 * triangles[h / 3] + h % 3] >= 0)
       patch.hold[patch.mesh.from(h)] = patch.hold[patch.mesh.to(h)] = frozen;
+  if (!s.copy.empty()) extract_copies(s, vertices, patch);
   return patch;
 }
 
@@ -167,6 +172,7 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
     const Hold held = patch.hold[i];
     if (patch.mesh.out[i] < 0 || held == frozen || (held == fixed && s.hold[v] == fixed)) continue;
     s.hold[v] = held;
+    if (!s.copy.empty()) s.copy[v] = vertices[patch.copy[i]];
     put(s, v, patch.place[i], patch.points[i], patch.normal[i]);
     mark_changed(s, v);
   }

@@ -40,8 +40,8 @@ double deviation(const State& s);
 /// no patch can tell apart.
 bool has_double_edge(const EditMesh& mesh, const std::vector<int>& triangles);
 
-/// Triangle t, then those that are up to `rings` vertices away.
-std::vector<int> triangles_around(const EditMesh& mesh, int t, int rings);
+/// Triangle t, then those that are up to `rings` vertices away, on other sheets too.
+std::vector<int> triangles_around(const State& s, int t, int rings);
 /// These triangles as a mesh of its own whose rim is frozen, and which records its edits. Its vertices are
 /// those of the triangles, ascending.
 State extract(const State& s, const std::vector<int>& triangles);

@@ -8,6 +8,7 @@
 #include "lib/core/progress.h"
 #include "lib/core/triangle_count.h"
 #include "lib/core/weld.h"
+#include "lib/relax/junctions.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -21,7 +22,8 @@ void hold_seams(State& s) {
   double sum = 0;
   std::size_t count = 0;
   for (int v = 0; v < n; ++v)
-    if (s.mesh.out[v] >= 0 && s.mesh.on_border(v)) on_border[v] = 1, sum += s.target(v), ++count;
+    if (s.mesh.out[v] >= 0 && s.mesh.on_border(v) && !is_shared(s, v))
+      on_border[v] = 1, sum += s.target(v), ++count;
   if (count == 0) return;
   std::vector<int> same(n);
   std::iota(same.begin(), same.end(), 0);
@@ -115,8 +117,9 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<in
                   const std::vector<char>& corner, const RelaxOptions& options) {
   if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
   const Reference reference(surface);
-  State s = start_state(mesh, reference, line_kind, corner);
+  State s = start_state(mesh, reference, line_kind, corner, options.sheets_meet);
   s.keep_border = options.keep_border;
+  part_double_edges(s);
   hold_seams(s);
   const double natural = reference.sizes ? count_for_size(surface, *reference.sizes) : s.mesh.live;
   coarse_rounds(s);

@@ -13,6 +13,7 @@ struct RelaxOptions {
   /// asks, and narrow places have more.
   double target_triangles = 0;
   bool keep_border = false;  ///< no new vertex on the border
+  bool sheets_meet = false;  ///< border vertices at the same place, to the last bit, are copies of one
 };
 
 struct RelaxCounts {

@@ -8,7 +8,7 @@ namespace {
 bool try_edit(State& s, const Edit& edit) {
   if (edit.kind == Edit::split) return split_edge(s, edit.h, edit.at);
   if (edit.kind == Edit::collapse)
-    return s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h] &&
+    return ((s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.gone)) &&
            collapse_edge(s, edit.h, edit.gone, rules::on_trial);
   const bool may = may_flip(s, edit.h);
   if (may) flip_edge(s, edit.h);
@@ -33,8 +33,8 @@ void add_aligned_splits(const State& s, int t, std::vector<Edit>& edits) {
 std::vector<Edit> edits_around(const State& s, int t, bool wide) {
   const EditMesh& m = s.mesh;
   std::vector<int> halfedges;
-  for (int s : wide ? triangles_around(m, t, 1) : std::vector<int>{t})
-    for (int h = 3 * s; h < 3 * s + 3; ++h) {
+  for (int u : wide ? triangles_around(s, t, 1) : std::vector<int>{t})
+    for (int h = 3 * u; h < 3 * u + 3; ++h) {
       const int g = m.opp[h];
       if (!wide || g < h) halfedges.push_back(h);
       if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
@@ -83,7 +83,7 @@ int repair_each(State& s, std::vector<int> triangles, bool thorough, std::vector
                 Wanted wanted) {
   auto around = [&](int t, std::vector<int> found) -> std::vector<int> {
     if (s.mesh.dead(t) || !wanted(t)) return {};
-    if (found.empty()) found = triangles_around(s.mesh, t, thorough ? rules::thorough_rings : rules::rings);
+    if (found.empty()) found = triangles_around(s, t, thorough ? rules::thorough_rings : rules::rings);
     if ((int)found.size() > rules::largest_patch || failed_before(s, failed, found)) return {};
     return found;
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <initializer_list>
 
+#include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
 namespace meshpipe {
@@ -25,6 +26,20 @@ Place place_near(const State& s, Vec3 p, std::initializer_list<int> vertices, Ve
   return best;
 }
 
+/// Do the pieces fold when the edge of h gets a vertex at p?
+bool folds_split(const State& s, int h, Vec3 p, Vec3 normal) {
+  const EditMesh& m = s.mesh;
+  const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
+  const int ring[5] = {b, c, a, d, b};
+  for (int i = 0; i < (g < 0 ? 2 : 4); ++i) {
+    const int v = ring[i], w = ring[i + 1];
+    if (folds(i < 2 ? s.cosine(a, b, c) : s.cosine(b, a, d),
+              normal_cosine(p, s.points[v], s.points[w], normal + s.normal[v] + s.normal[w])))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int end_on_line(const State& s, int a, int b) {
@@ -42,19 +57,14 @@ bool split_edge(State& s, int h, double at) {
   const Place place = m.hard[h]
                           ? s.reference->walk.slide(s.place[from < 0 ? a : from], wanted)
                           : place_near(s, wanted, {a, b, c, d}, s.face_normal(h / 3) + s.face_normal(g / 3));
-  const Vec3 normal = m.hard[h] && g >= 0 ? Vec3{} : s.reference->normal(place);
   const Vec3 p = s.reference->walk.point(place);
   if (norm(p - wanted) > (m.hard[h] ? rules::off_line : rules::off_edge) * norm(s.points[b] - s.points[a]))
     return false;
-  const int ring[5] = {b, c, a, d, b};
-  for (int i = 0; i < (g < 0 ? 2 : 4); ++i) {
-    const int v = ring[i], w = ring[i + 1];
-    if (folds(i < 2 ? s.cosine(a, b, c) : s.cosine(b, a, d),
-              normal_cosine(p, s.points[v], s.points[w], normal + s.normal[v] + s.normal[w])))
-      return false;
-  }
-  insert_vertex(s, h, place, p, normal);
-  return true;
+  const std::vector<CopyPlace> places = places_on_edge(s, h, place, p);
+  for (const CopyPlace& e : places)
+    if (folds_split(s, e.at, p, e.normal)) return false;
+  insert_copies(s, places, p);
+  return !places.empty();
 }
 
 void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal) {
@@ -68,6 +78,7 @@ void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal) {
   s.size.push_back(s.reference->sizes ? s.reference->size(place) : 0.5 * (s.size[a] + s.size[b]));
   s.refinement.push_back(std::min(s.refinement[a], s.refinement[b]));
   s.hold.push_back(hard ? slides : loose);
+  if (!s.copy.empty()) s.copy.push_back((int)s.copy.size());
   for (std::vector<int>* times : {&s.clocks.tried, &s.clocks.changed, &s.clocks.edited}) times->push_back(0);
   s.coloring.color.push_back(-1);
   if (Labels& l = s.labels; !l.kind.empty()) {

@@ -3,6 +3,7 @@
 
 #include "lib/core/normals.h"
 #include "lib/core/triangle_count.h"
+#include "lib/relax/junctions.h"
 
 namespace meshpipe {
 namespace {
@@ -60,7 +61,7 @@ bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r) 
 }
 
 State start_state(LiftedMesh& lifted, const Reference& reference, const std::vector<int>& line_kind,
-                  const std::vector<char>& corner) {
+                  const std::vector<char>& corner, bool sheets_meet) {
   const int n = (int)lifted.points.size();
   State s(reference, EditMesh(std::move(lifted.tris), n, lifted.model), std::move(lifted.points),
           std::move(lifted.place), std::move(lifted.size));
@@ -88,6 +89,7 @@ State start_state(LiftedMesh& lifted, const Reference& reference, const std::vec
     const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
     if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) s.hold[v] = fixed;
   }
+  if (sheets_meet) share_vertices(s);
   return s;
 }
 

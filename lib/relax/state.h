@@ -112,6 +112,8 @@ struct State {
   std::vector<double> size;        ///< the size field
   std::vector<double> refinement;  ///< factor on it, below 1 where triangles intersected
   std::vector<Hold> hold;
+  /// The next copy of each vertex, in a ring, where sheets meet; empty: none meet. Copies move together.
+  std::vector<int> copy;
   Labels labels;
   Clocks clocks;
   Coloring coloring;
@@ -121,14 +123,28 @@ struct State {
   std::vector<Edit> edits;  ///< while recording
 };
 
+/// Is v one of several copies?
+inline bool is_shared(const State& s, int v) { return !s.copy.empty() && s.copy[v] != v; }
+
+/// Calls f for v and its copies.
+template <class F>
+void for_copies(const State& s, int v, F&& f) {
+  int w = v;
+  do {
+    f(w);
+    if (s.copy.empty()) return;
+    w = s.copy[w];
+  } while (w != v);
+}
+
 /// Has the triangle p, q, r the orientation of the reference at the place nearest to its middle, walked to
 /// from `from`? Where the reference bends much within an edge, as at a spike, the normals at the corners do
 /// not tell.
 bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r);
 
-/// The mesh to optimize, which is moved from. `line_kind` and `corner` as in relax.
+/// The mesh to optimize, which is moved from. The others as in relax.
 State start_state(LiftedMesh& mesh, const Reference& reference, const std::vector<int>& line_kind,
-                  const std::vector<char>& corner);
+                  const std::vector<char>& corner, bool sheets_meet = false);
 
 /// Numbers vertices and triangles without gaps and moves them to `mesh`; returns for each triangle its row
 /// there, or -1.

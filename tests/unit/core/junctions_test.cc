@@ -68,3 +68,20 @@ TEST(Junctions, BordersAreCutAtTheSamePoints) {
     }
   }
 }
+
+TEST(Junctions, AnEdgeIsCutWhereTwoOthersAlreadyAre) {
+  Surface s = three_sheets();
+  for (int t : {0, 1}) {
+    const Tri old = s.tris[t];
+    const int v = (int)s.points.size();
+    s.points.push_back({0.5, 0, 0});
+    s.tris[t][1] = v;
+    s.tris.push_back({v, old[1], old[2]});
+    s.vertex.get<double>("size").push_back(0.5);
+    s.face.get<int>("part").push_back(t);
+  }
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  EXPECT_EQ(match_borders(s, nullptr), 1);
+  EXPECT_EQ(s.tris.size(), 6u);
+}

@@ -27,7 +27,7 @@ TEST(Repair, TheBestEditIsFoundAndAdopted) {
   Drawn m(drawn_surface(two_centers, eight));
   hold_rim(m.s);
   const double before = objective(m.s);
-  const std::vector<int> all = triangles_around(m.s.mesh, worst(m.s), 2);
+  const std::vector<int> all = triangles_around(m.s, worst(m.s), 2);
   ASSERT_EQ(all.size(), 8u);
   const std::optional<State> best = repaired(m.s, all, false);
   ASSERT_TRUE(best);
@@ -106,11 +106,11 @@ TEST(Patch, ItsRimIsFrozen) {
 TEST(Patch, TrianglesAroundComeRingByRing) {
   Drawn m(drawn_surface(two_centers, eight));
   const int t = m.edge('f', 'a') / 3;
-  EXPECT_EQ(triangles_around(m.s.mesh, t, 0), std::vector<int>{t});
-  const std::vector<int> one = triangles_around(m.s.mesh, t, 1);
+  EXPECT_EQ(triangles_around(m.s, t, 0), std::vector<int>{t});
+  const std::vector<int> one = triangles_around(m.s, t, 1);
   EXPECT_EQ(one.front(), t);
   EXPECT_EQ(one.size(), 6u);  // all but those of c
-  EXPECT_EQ(triangles_around(m.s.mesh, t, 2).size(), 8u);
+  EXPECT_EQ(triangles_around(m.s, t, 2).size(), 8u);
 }
 
 // neighborhoods that overlap and cannot be changed: each is looked at once, and tried until the bound
