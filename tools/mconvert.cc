@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
         app.add_option(
                "--regions", o.regions,
                "the whole boundary of each region between sheets (or only of these), as a patch of its own")
+            ->check([](const std::string& list) { return list.empty() ? "expected all or labels" : ""; })
             ->type_name("all|L,L");
         app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
         app.add_flag("--surface", o.surface, "leave out all except vertices, faces, patches and colors");

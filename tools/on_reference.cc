@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "formats/stream/lift_tables.h"
+#include "formats/stream/region_tables.h"
 #include "formats/stream/second_order.h"
 
 namespace meshpipe {
@@ -19,6 +20,7 @@ std::string write_on_reference(Stream& stream, LiftedMesh& mesh, const Surface& 
   if (smooth)
     report(raise_vertices(mesh, *smooth), " vertices stay on the input, where triangles would intersect");
   write_lifted(stream, mesh);
+  update_volumes(stream);
   if (second_order) {
     const MidPoints middle = mid_points(mesh, reference, smooth ? &*smooth : nullptr);
     report(middle.straight, " edges stay straight, where triangles of second order would fold");

@@ -12,7 +12,9 @@ namespace meshpipe {
 bool has_sheets(const Stream& stream) { return stream.find("sheet") != nullptr; }
 
 void expect_no_sheets(const Stream& stream, const std::string& why) {
-  if (has_sheets(stream))
+  if (!has_sheets(stream)) return;
+  Mesh joined = stream.surface;
+  if (join_borders(joined).size() < stream.surface.points.size())
     throw NotAdmissible("sheets of the surface meet, and " + why +
                         "; run mclean --resolve outer first to keep only what bounds the outside");
 }
@@ -52,6 +54,27 @@ void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const 
   region.set("volume", std::vector<double>(volume.begin() + 1, volume.end()));
   stream.set(sheet_table(sheets));
   stream.set(std::move(region));
+}
+
+void update_volumes(Stream& stream) {
+  if (!stream.find("region")) return;
+  Table table = *stream.find("region");
+  const auto& label = table.get<int>("label");
+  auto& volume = table.get<double>("volume");
+  const std::vector<RegionMeasure> measured = measure_regions(stream.surface, read_sheets(stream));
+  std::vector<double> before(measured.size(), 0);
+  auto row = [&](int of) {
+    return std::lower_bound(measured.begin(), measured.end(), of,
+                            [](const RegionMeasure& r, int l) { return r.label < l; }) -
+           measured.begin();
+  };
+  auto known = [&](std::size_t r, int of) { return r < measured.size() && measured[r].label == of; };
+  for (std::size_t i = 0; i < label.size(); ++i)
+    if (const std::size_t r = row(label[i]); known(r, label[i])) before[r] += volume[i];
+  for (std::size_t i = 0; i < label.size(); ++i)
+    if (const std::size_t r = row(label[i]); known(r, label[i]) && before[r] != 0)
+      volume[i] *= measured[r].volume / before[r];
+  stream.set(std::move(table));
 }
 
 std::vector<std::array<int, 2>> side_labels(const Surface& surface) {

@@ -8,7 +8,7 @@ namespace meshpipe {
 
 /// Returns whether sheets of the stream meet: then border vertices at the same place are one.
 bool has_sheets(const Stream& stream);
-/// Throws: NotAdmissible, with the reason, if they do.
+/// Throws: NotAdmissible, with the reason, if they do along an edge or at a vertex.
 void expect_no_sheets(const Stream& stream, const std::string& why);
 /// Returns table `sheet`, by patch; empty if the stream has none.
 /// Throws: BadInput for a patch that is there twice.
@@ -17,6 +17,10 @@ Table sheet_table(const std::vector<SheetPatch>& sheets);
 /// Sets both tables.
 void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
                    const std::vector<double>& volume);
+
+/// Sets the volumes of table `region` to those of the surface as it is; regions of one label share theirs as
+/// before.
+void update_volumes(Stream& stream);
 
 /// Returns the labels of both sides of each triangle, that other programs write: face columns
 /// boundary_labels.0 and .1 (VTK's, PyVista's; or BoundaryLabels); empty if there are none.

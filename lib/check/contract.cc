@@ -82,9 +82,6 @@ void judge_topology(const Findings& f, const Mesh& mesh, Facts& facts) {
   same("boundary loops", m.loops, r.loops, m.loop < 0 ? "" : "; the shortest passes " + edge(mesh, m.loop));
 }
 
-/// A region that differs by more is not the same.
-constexpr double most_volume_error = 0.1;
-
 void judge_volumes(const SheetFindings& f, double limit, Facts& facts) {
   if (!(f.volume_error > limit)) return;
   const RegionVolume& v = f.volumes[f.worst];
@@ -97,7 +94,16 @@ void judge_volumes(const SheetFindings& f, double limit, Facts& facts) {
 void judge_regions(const Findings& f, Facts& facts) {
   if (!f.sheets) return;
   for (const std::string& fault : f.sheets->faults) facts.push_back(fault);
-  judge_volumes(*f.sheets, most_volume_error, facts);
+  const RegionVolume* worst = nullptr;
+  double most = 1;
+  for (const RegionVolume& v : f.sheets->volumes)
+    if (const double excess = std::abs(v.result - v.reference) / v.explained; excess > most)
+      most = excess, worst = &v;
+  if (worst)
+    facts.push_back("region " + std::to_string(worst->label) + " has volume " + shown(worst->result) +
+                        ", in the reference " + shown(worst->reference) +
+                        ": its boundary is farther off than a twentieth of an edge, in the mean",
+                    f.sheets->volume_error);
 }
 
 void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Facts& facts) {

@@ -8,6 +8,7 @@
 #include "lib/core/edges.h"
 #include "lib/core/junctions.h"
 #include "lib/core/number.h"
+#include "lib/core/triangle_count.h"
 #include "lib/core/union_find.h"
 
 namespace meshpipe {
@@ -90,6 +91,15 @@ void compare_lines(const Junctions& r, const Junctions& m, bool named, SheetFind
       f.unmatched.push_back(t);
 }
 
+std::string name_of(int label) { return label > 0 ? "region " + std::to_string(label) : "the outside"; }
+
+/// The volume between the boundary of a region and a surface that is a share of an edge length away.
+double offset_of(const RegionMeasure& r) {
+  constexpr double most_offset =
+      0.05;  // of the edge length: chords sag by that where the radius is 2.5 edges
+  return most_offset * size_for_count(r.area, r.triangles) * r.area;
+}
+
 /// Checks that the regions found in the mesh have the labels that the table of sheets says.
 void compare_labels(const Solids& solids, const std::vector<int>& patch,
                     const std::vector<SheetPatch>& sheets, SheetFindings& f) {
@@ -103,8 +113,8 @@ void compare_labels(const Solids& solids, const std::vector<int>& patch,
       const int region = solids.sides[t][i], here = i ? s->back : s->front;
       if (triangle[region] == unknown) triangle[region] = t, label[region] = here;
       if (label[region] == here) continue;
-      f.faults.push_back("triangle " + std::to_string(t) + " bounds region " + std::to_string(here) +
-                         ", which is one with region " + std::to_string(label[region]) + " at triangle " +
+      f.faults.push_back("triangle " + std::to_string(t) + " bounds " + name_of(here) +
+                         ", which is one with " + name_of(label[region]) + " at triangle " +
                          std::to_string(triangle[region]));
       return;
     }
@@ -137,17 +147,24 @@ SheetFindings compare_sheets(const Surface& reference, const Surface& result,
                        std::to_string(f.regions[0]));
   if (named) {
     compare_labels(solids[1], result.face.get<int>("patch"), sheets, f);
-    std::vector<int> labels;
-    for (const SheetPatch& s : sheets) labels.push_back(s.front), labels.push_back(s.back);
-    std::sort(labels.begin(), labels.end());
-    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-    for (int label : labels)
-      if (label > 0)
-        f.volumes.push_back({label, volume_of(reference, sheets, label), volume_of(result, sheets, label)});
+    const std::vector<RegionMeasure> was = measure_regions(reference, sheets),
+                                     is = measure_regions(result, sheets);
+    for (std::size_t i = 0; i < is.size(); ++i)
+      if (const RegionMeasure& r = is[i]; r.label > 0)
+        f.volumes.push_back({r.label, was[i].volume, r.volume, offset_of(r)});
   } else if (f.regions[0] == f.regions[1]) {
-    for (Solids& s : solids) std::sort(s.volume.begin() + 1, s.volume.end());
+    std::vector<RegionMeasure> regions(f.regions[1] + 1);
+    for (int i = 1; i <= f.regions[1]; ++i) regions[i].volume = solids[1].volume[i];
+    for (int t = 0; t < (int)result.tris.size(); ++t)
+      for (int side : solids[1].sides[t]) {
+        regions[side].area += 0.5 * norm(area_vector(result, t));
+        ++regions[side].triangles;
+      }
+    std::sort(regions.begin() + 1, regions.end(),
+              [](const auto& a, const auto& b) { return a.volume < b.volume; });
+    std::sort(solids[0].volume.begin() + 1, solids[0].volume.end());
     for (int i = 1; i <= f.regions[0]; ++i)
-      f.volumes.push_back({i, solids[0].volume[i], solids[1].volume[i]});
+      f.volumes.push_back({i, solids[0].volume[i], regions[i].volume, offset_of(regions[i])});
   }
   for (int i = 0; i < (int)f.volumes.size(); ++i) {
     const RegionVolume& v = f.volumes[i];

@@ -15,6 +15,7 @@ using Both = std::array<int, 2>;
 struct RegionVolume {
   int label;
   double reference, result;
+  double explained = 0;  ///< by how much the volume may differ where the boundaries are near
 };
 
 struct SheetFindings {

@@ -189,7 +189,7 @@ void repair(Repair& r, const std::vector<Vec3>& points, const CleanOptions& opti
     for (int round = 1; !make_manifold(r, points, options, report) && round < most_rounds; ++round) unite(r);
     report.components = components(r.opposite, component);
     const std::vector<char> before = r.flipped;
-    face_outward(r, points, component, report.components);  // last, when holes are filled
+    report.sheets.nested = face_outward(r, points, component, report.components);  // when holes are filled
     // solids are on the other side now of triangles that were paired
     if (pass == most_passes || report.paired_edges == 0 || r.flipped == before) return;
     unite(r);
@@ -271,7 +271,7 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   const CleanReport welded = report;
   Repair r = start(surface, same, report);
   repair(r, surface.points, options, report);
-  if (automatic && report.nonmanifold_edges) {
+  if (automatic && (report.nonmanifold_edges || report.sheets.nested)) {
     CleanOptions keep = options;
     keep.sheets = CleanOptions::keep;
     CleanReport kept = welded;

@@ -20,8 +20,8 @@ struct CleanOptions {
   int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
   bool cap_patches = false;         ///< give each filled hole a patch of its own
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
-  /// split elsewhere, all split, or left to share their vertices; or kept if they divide space into regions
-  /// (lib/solids/solids.h), and else paired.
+  /// split elsewhere, all split, or left to share their vertices; or kept if they, or solids within solids,
+  /// divide space into regions (lib/solids/solids.h), and else paired.
   enum Sheets { pair, split, keep, automatic } sheets = pair;
   /// Self-intersections: left as they are, resolved into the boundary of the outside, or into all pieces.
   enum Resolve { none, outer, all } resolve = none;
@@ -52,6 +52,7 @@ struct HoleCounts {
 
 struct SheetCounts {
   bool kept = false;                        ///< sheets share their vertices where they meet
+  bool nested = false;                      ///< closed components are within others, and all face outward
   std::vector<std::array<int, 2>> patches;  ///< then: the new patch, and the one it was
 };
 

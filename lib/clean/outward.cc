@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <limits>
 
 #include "lib/clean/repair.h"
 #include "lib/core/bvh.h"
@@ -89,9 +90,31 @@ std::vector<std::vector<int>> containers(const Repair& r, const std::vector<Vec3
   return inside;
 }
 
+/// May one closed component be within another, by their boxes?
+bool boxes_nest(const Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component,
+                const std::vector<char>& closed) {
+  constexpr std::size_t most = 2000;  // components, which are compared in pairs
+  if (closed.size() > most) return true;
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::vector<Box> boxes(closed.size(), {{far, far, far}, {-far, -far, -far}});
+  for (std::size_t t = 0; t < component.size(); ++t)
+    for (int v : r.tris[t]) {
+      Box& box = boxes[component[t]];
+      const Vec3& p = points[r.vertex[v]];
+      box = {lower(box.lo, p), upper(box.hi, p)};
+    }
+  for (std::size_t a = 0; a < boxes.size(); ++a)
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+      const Vec3 below = boxes[a].lo - boxes[b].lo, above = boxes[b].hi - boxes[a].hi;
+      if (closed[a] && closed[b] && std::min({below.x, below.y, below.z, above.x, above.y, above.z}) > 0)
+        return true;
+    }
+  return false;
+}
+
 }  // namespace
 
-void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n) {
+bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n) {
   std::vector<char> closed(n, 1);
   std::vector<int> seed(n, -1);
   std::vector<double> volume(n, 0), area(n, 0);
@@ -115,9 +138,11 @@ void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<
     n_closed += closed[c];
     n_inward += closed[c] && inward[c];
   }
-  if (n_inward == 0) return;
   std::vector<std::vector<int>> inside(n);
-  if (n_closed > 1) inside = containers(r, points, component, closed, unclear);
+  if (n_closed > 1 && (n_inward > 0 || boxes_nest(r, points, component, closed)))
+    inside = containers(r, points, component, closed, unclear);
+  if (n_inward == 0)
+    return std::any_of(inside.begin(), inside.end(), [](const auto& of) { return !of.empty(); });
   auto outermost = [&](int c) {
     for (int d : inside[c])
       if (inside[d].empty()) return d;
@@ -130,6 +155,7 @@ void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<
     if (closed[c] && !unclear[c] && mixed[outermost(c)] && inward[c] != (char)(inside[c].size() % 2))
       flip(r, t);
   }
+  return false;
 }
 
 }  // namespace meshpipe

@@ -83,8 +83,8 @@ void unite(Repair& r);
 
 /// Orients closed components away from what they enclose: outward, or inward within an odd number of others.
 /// Leaves nested components alone if all are outward (each may be a solid), and those whose volume or place
-/// is unclear (one touches another). Requires: 0 <= component[t] < n.
-void face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n);
+/// is unclear (one touches another). Returns whether solids are nested so. Requires: 0 <= component[t] < n.
+bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n);
 
 struct FlatCounts {
   std::vector<int> removed;  ///< their `face`

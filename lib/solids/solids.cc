@@ -206,18 +206,32 @@ std::vector<SheetPatch> sheet_patches(Surface& surface, const Solids& solids, co
   return sheets;
 }
 
-double volume_of(const Surface& surface, const std::vector<SheetPatch>& sheets, int label) {
-  if (surface.points.empty()) return 0;
+std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets) {
+  std::vector<RegionMeasure> regions;
+  for (const SheetPatch& s : sheets)
+    for (int label : {s.front, s.back}) regions.push_back({label});
+  auto by_label = [](const RegionMeasure& a, const RegionMeasure& b) { return a.label < b.label; };
+  std::sort(regions.begin(), regions.end(), by_label);
+  regions.erase(
+      std::unique(regions.begin(), regions.end(),
+                  [](const RegionMeasure& a, const RegionMeasure& b) { return a.label == b.label; }),
+      regions.end());
   const std::vector<int>& patch = surface.face.get<int>("patch");
-  double sum = 0;
   for (int t = 0; t < (int)patch.size(); ++t) {
     const auto s = std::lower_bound(sheets.begin(), sheets.end(), patch[t],
                                     [](const SheetPatch& row, int p) { return row.patch < p; });
-    if (s == sheets.end() || s->patch != patch[t]) continue;
-    const int weight = (s->back == label) - (s->front == label);
-    if (weight) sum += weight * volume6(surface, t, surface.points[0]) / 6;
+    if (s == sheets.end() || s->patch != patch[t] || s->front == s->back) continue;
+    const double volume = volume6(surface, t, surface.points[0]) / 6,
+                 area = 0.5 * norm(area_vector(surface, t));
+    for (int side : {1, -1}) {
+      RegionMeasure& r = *std::lower_bound(regions.begin(), regions.end(),
+                                           RegionMeasure{side > 0 ? s->back : s->front}, by_label);
+      r.volume += side * volume;
+      r.area += area;
+      ++r.triangles;
+    }
   }
-  return sum;
+  return regions;
 }
 
 }  // namespace meshpipe

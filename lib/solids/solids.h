@@ -44,7 +44,14 @@ struct SheetPatch {
 std::vector<SheetPatch> sheet_patches(Surface& surface, const Solids& solids, const std::vector<int>& label,
                                       std::vector<std::array<int, 2>>& added);
 
-/// Returns the volume behind all patches with this label less that in front, by the divergence theorem.
-double volume_of(const Surface& surface, const std::vector<SheetPatch>& sheets, int label);
+/// What bounds the regions of one label.
+struct RegionMeasure {
+  int label = 0;
+  double volume = 0, area = 0;
+  int triangles = 0;
+};
+
+/// Measures the regions that have a label in `sheets`, by the divergence theorem; in ascending order.
+std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets);
 
 }  // namespace meshpipe
