@@ -14,9 +14,11 @@
 #include <new>
 
 #include "formats/stream/lift_tables.h"
+#include "formats/stream/region_tables.h"
 #include "lib/check/check.h"
 #include "lib/clean/clean.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/junctions.h"
 #include "tools/files.h"
 #include "tools/progress_line.h"
 #include "tools/report/way_out.h"
@@ -99,8 +101,10 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
   const FailureFacts facts = facts_of(failure);
   Diagnosis found;
   if (facts.nonorientable > 0 || (status > 4 && facts.least_size == 0 && facts.strip_width == 0)) {
-    const Surface reference = remeshed ? read_reference(io.stream) : Surface();
-    found = diagnose(remeshed ? reference : io.stream.surface, facts.place, facts.reach);
+    Surface surface = remeshed ? read_reference(io.stream) : io.stream.surface;
+    if (has_sheets(io.stream)) join_borders(surface);  // copies of a vertex are no intersections
+    found = diagnose(surface, facts.place, facts.reach);
+    found.sheets = has_sheets(io.stream);
   }
   for (const std::string& remark : io.stream.remarks) found.spikes += Spikes::parse(remark);
   std::vector<Provenance> history = io.stream.history;

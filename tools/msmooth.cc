@@ -59,7 +59,6 @@ int main(int argc, char** argv) {
                          within + "'");
         io.names_way_out = false;  // the messages have the number that helps
         Stream& stream = io.read();
-        expect_no_sheets(stream, "smoothing would separate them");
         Surface& s = stream.surface;
         if (!within.empty() && !s.tris.empty()) o.within = *parse_length(within, diagonal(s));
         if (o.keep_features && !s.face.has("model"))
@@ -67,8 +66,9 @@ int main(int argc, char** argv) {
         // lines that came with a file, and those of mfeature, by their place
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
         const std::vector<int> under = segments_under(s, lines);
-        const SmoothReport r = smooth(s, o);
+        const SmoothReport r = has_sheets(stream) ? smooth_sheets(s, o) : smooth(s, o);
         drop_stale(stream);
+        update_volumes(stream);
         write_model_edges(stream, moved_segments(lines, under, s, under));
         report(io, r);
         io.write(stream);

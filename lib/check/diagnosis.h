@@ -14,6 +14,7 @@ struct Diagnosis {
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others
   int spikes = 0;                 ///< vertices that stick out, as mclean has found them
+  bool sheets = false;            ///< meet, with regions between them, which a wrap would lose
   bool closed = false;            ///< no edge has one triangle only, where equal points are one
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;

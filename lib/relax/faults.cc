@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
 #include "lib/core/intersect.h"
+#include "lib/core/junctions.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -32,12 +33,29 @@ struct Fault {
   }
 };
 
+/// Drops the pairs that only touch in copies of the same vertices.
+void drop_contacts_of_sheets(const State& s, std::vector<std::pair<int, int>>& pairs) {
+  Mesh joined{s.points, s.mesh.tris};
+  for (Tri& t : joined.tris)
+    for (int& v : t)
+      if (v >= 0) {
+        int first = v;
+        for_copies(s, v, [&](int c) { first = std::min(first, c); });
+        v = first;
+      }
+  std::erase_if(pairs, [&](const auto& p) { return !triangles_intersect(joined, p.first, p.second); });
+}
+
 void find_intersections(const State& s, Known& known, Fault& found) {
   renew(known.crossings, s, known.samples.search);
   found.pairs = known.crossings.pairs;
+  if (!s.copy.empty()) drop_contacts_of_sheets(s, found.pairs);
   if (found.pairs.empty()) return;
-  if (!known.intersections)
-    known.intersections = contacts(known.reference, self_intersections(known.reference));
+  if (!known.intersections) {
+    Mesh joined = known.reference;
+    if (!s.copy.empty()) join_borders(joined);
+    known.intersections = contacts(joined, self_intersections(joined));
+  }
   const int all = (int)found.pairs.size();
   found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.intersections);
   found.of_reference = all - (int)found.pairs.size();

@@ -126,7 +126,7 @@ std::vector<std::pair<int, int>> with_copies(const State& s, int h, int gone) {
 }
 
 bool joined_elsewhere(const State& s, int a, int b) {
-  if (!is_shared(s, a) || !is_shared(s, b)) return false;
+  if (!is_shared(s, a) && !is_shared(s, b)) return false;
   bool joined = false;
   for_copies(s, a, [&](int v) {
     for_copies(s, b, [&](int w) { joined = joined || ((v != a || w != b) && s.mesh.joined(v, w)); });
@@ -137,7 +137,7 @@ bool joined_elsewhere(const State& s, int a, int b) {
 bool doubles_edges(const State& s, int h, int gone) {
   const EditMesh& m = s.mesh;
   const int kept = m.from(h) == gone ? m.to(h) : m.from(h), g = m.opp[h];
-  if (!is_shared(s, kept)) return false;
+  if (s.copy.empty()) return false;
   const int c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
   bool doubles = false;
   m.neighbors(gone, [&](int v) {

@@ -32,7 +32,7 @@ void insert_copies(State& s, const std::vector<CopyPlace>& edges, Vec3 p);
 /// copy has one.
 std::vector<std::pair<int, int>> with_copies(const State& s, int h, int gone);
 
-/// Is there an edge between other copies of a and b? A second one would make sheets meet along it.
+/// Is there an edge between a and b, one of them another copy? A second one would make sheets meet along it.
 bool joined_elsewhere(const State& s, int a, int b);
 /// Would collapsing the edge of h into its other vertex than `gone` make such edges?
 bool doubles_edges(const State& s, int h, int gone);

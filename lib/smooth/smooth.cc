@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "lib/core/error.h"
-#include "lib/core/intersect.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
+#include "lib/smooth/separate.h"
 
 namespace meshpipe {
 namespace {
@@ -224,46 +224,12 @@ void keep_volumes(Motion& m, const std::vector<double>& volume, const std::vecto
   }
 }
 
-/// Moves vertices back where triangles intersect that did not do so before: half the way, then, in growing
-/// neighborhoods, all of it, which ends with the surface as it was. Vertices moved back are held from then
-/// on.
-int separate(Motion& m) {
-  std::vector<char> back(m.n(), 0);
-  Mesh known;
-  bool has_known = false;
-  for (int round = 0;; ++round) {
-    auto pairs = self_intersections(m.s);
-    if (!pairs.empty() && !has_known) {
-      const Mesh before{m.start, m.s.tris};
-      known = contacts(before, self_intersections(before));
-      has_known = true;
-    }
-    if (!pairs.empty()) pairs = new_intersections(m.s, pairs, known);
-    if (pairs.empty()) break;
-    std::vector<char> near(m.n(), 0);
-    for (const auto& [a, b] : pairs)
-      for (int t : {a, b})
-        for (int v : m.s.tris[t]) near[v] = 1;
-    for (int ring = 0; ring < round; ++ring) {
-      const std::vector<char> inner = near;
-      for (const Tri& t : m.s.tris)
-        if (inner[t[0]] || inner[t[1]] || inner[t[2]]) near[t[0]] = near[t[1]] = near[t[2]] = 1;
-    }
-    for (int v = 0; v < m.n(); ++v) {
-      if (!near[v]) continue;
-      back[v] = m.held[v] = 1;
-      m.s.points[v] = round < 3 ? lerp(m.s.points[v], m.start[v], 0.5) : m.start[v];
-    }
-  }
-  return static_cast<int>(std::count(back.begin(), back.end(), 1));
-}
-
 /// Restores the volumes and separates what intersects, in turn. Returns the number of vertices moved back.
 int finish(Motion& m, const std::vector<double>& volume, const std::vector<double>& measure) {
   int all = 0;
   for (int i = 0; i < most_repairs; ++i) {
     keep_volumes(m, volume, measure);
-    const int back = separate(m);
+    const int back = separate(m.s, m.start, m.held);
     all += back;
     if (back == 0) break;
   }
@@ -373,6 +339,8 @@ std::vector<std::string> describe(const SmoothReport& r) {
                                  ", at " + shown(r.farthest_at)};
   lines.push_back("volume " + shown(r.volume) + ", changed by " +
                   shown(r.volume != 0 ? 100 * r.volume_change / r.volume : 0) + " %");
+  if (r.region_change > 0)
+    lines.push_back("the volume of a region changes by at most " + shown(100 * r.region_change) + " %");
   if (r.bounded)
     lines.push_back(count(r.bounded, "vertex is", "vertices are") + " held back by the bound of " +
                     shown(r.within));

@@ -22,6 +22,7 @@ struct SmoothReport {
   int bounded = 0;                           ///< vertices that the bound holds back
   int moved_back = 0;                        ///< vertices moved back where triangles would intersect
   int planar_ends = 0, kept_ends = 0;        ///< border loops that slide in their plane, or stay
+  double region_change = 0;                  ///< of sheets: the largest change of a region's volume, relative
 };
 
 /// Smooths the surface, its volume kept within 0.1 %. Border loops in a plane stay in it, others and what
@@ -31,6 +32,11 @@ struct SmoothReport {
 /// Source: the filter of Taubin, "A signal processing approach to fair surface design", 1995, with the
 /// normal displacement, averaged, in place of his negative steps.
 SmoothReport smooth(Surface& surface, const SmoothOptions& options);
+
+/// Smooths sheets that meet, whose border vertices at the same place are one. Lines where they meet are
+/// smoothed as lines; free borders stay. Volumes are almost kept, region by region. Throws: NotAdmissible if
+/// there are no triangles. Source: Taubin as above, with his negative steps.
+SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options);
 
 /// Returns lines for the user.
 std::vector<std::string> describe(const SmoothReport& report);

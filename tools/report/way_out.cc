@@ -117,6 +117,10 @@ const Row table[] = {
                          " pairs of triangles of the input intersect, first at " +
                          shown(c.found.intersection)};
      }},
+    {[](const Case& c) { return c.status >= goal_missed && c.found.sheets && !c.ran("msmooth"); },
+     [](const Case&) {
+       return WayOut{"msmooth", "sheets of labeled images meet along rough lines, which it smooths"};
+     }},
     {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
      [](const Case&) {
        return WayOut{"without --keep-boundary", "it is next to points of the border that are held"};
@@ -134,7 +138,8 @@ const Row table[] = {
        return WayOut{"without --min", "smaller triangles may fit"};
      }},
     {[](const Case& c) {
-       return c.status >= goal_missed && !c.ran("mwrap") && !c.used("mmultiscale", "--method");
+       return c.status >= goal_missed && !c.ran("mwrap") && !c.used("mmultiscale", "--method") &&
+              !c.found.sheets;
      },
      [](const Case&) {
        return WayOut{"mwrap", "a wrap has no details below its resolution"};

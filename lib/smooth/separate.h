@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Moves vertices back to `start` where triangles intersect that did not do so there: half the way, then, in
+/// growing neighborhoods, all of it, which ends with the surface as it was. Vertices moved back are held from
+/// then on. Returns their number.
+int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held);
+
+}  // namespace meshpipe

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/edges.h"
+#include "lib/core/error.h"
+#include "lib/core/junctions.h"
+#include "lib/core/normals.h"
+#include "lib/smooth/separate.h"
+#include "lib/smooth/smooth.h"
+#include "lib/solids/solids.h"
+
+namespace meshpipe {
+namespace {
+
+constexpr int steps = 25;                           // of each sign
+constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
+
+/// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors.
+struct Net {
+  std::vector<int> start, vertex;
+  std::vector<char> held;
+  double edge = 0;                          ///< mean length
+  std::vector<std::pair<int, int>> smooth;  ///< triangles that are adjacent within a sheet
+};
+
+Net make_net(const Mesh& mesh) {
+  const int n = (int)mesh.points.size();
+  struct Edge {
+    int a, b, uses;
+  };
+  std::vector<Edge> edges;
+  std::vector<char> on_line(n, 0);
+  Net net;
+  net.held.assign(n, 0);
+  for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]), a = origin(mesh.tris, h), b = target(mesh.tris, h);
+    edges.push_back({a, b, (int)uses.size()});
+    net.edge += norm(mesh.points[a] - mesh.points[b]);
+    if (uses.size() == 2) net.smooth.push_back({h / 3, half_edge(uses[1]) / 3});
+    if (uses.size() == 1) net.held[a] = net.held[b] = 1;
+    if (uses.size() > 2) on_line[a] = on_line[b] = 1;
+  });
+  net.edge /= (double)edges.size();
+  auto each = [&](auto f) {
+    for (const auto& [a, b, uses] : edges) {
+      if (!on_line[a] || uses > 2) f(a, b);
+      if (!on_line[b] || uses > 2) f(b, a);
+    }
+  };
+  net.start.assign(n + 1, 0);
+  each([&](int v, int) { ++net.start[v + 1]; });
+  for (int v = 0; v < n; ++v) net.start[v + 1] += net.start[v];
+  net.vertex.resize(net.start[n]);
+  std::vector<int> at(net.start.begin(), net.start.end() - 1);
+  each([&](int v, int w) { net.vertex[at[v]++] = w; });
+  return net;
+}
+
+void step(const Net& net, const std::vector<Vec3>& start, double within, double share, std::vector<Vec3>& p) {
+  std::vector<Vec3> to = p;
+#pragma omp parallel for schedule(static)
+  for (int v = 0; v < (int)p.size(); ++v) {
+    const int n = net.start[v + 1] - net.start[v];
+    if (net.held[v] || n == 0) continue;
+    Vec3 mean;
+    for (int k = net.start[v]; k < net.start[v + 1]; ++k) mean = mean + 1.0 / n * p[net.vertex[k]];
+    const Vec3 d = p[v] + share * (mean - p[v]) - start[v];
+    to[v] = start[v] + std::min(1.0, within / std::max(norm(d), 1e-300)) * d;
+  }
+  p = std::move(to);
+}
+
+/// Root mean square of the angles between triangles, each oriented as it is, in degrees.
+double mean_angle(const Mesh& mesh, const Net& net) {
+  const std::vector<Vec3> normal = face_normals(mesh);
+  double sum = 0;
+  for (auto [a, b] : net.smooth) sum += std::pow(angle(normal[a], normal[b]), 2);
+  return net.smooth.empty() ? 0 : std::sqrt(sum / (double)net.smooth.size()) * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
+  if (surface.tris.empty()) throw NotAdmissible("the surface has no triangles");
+  Mesh joined = surface;
+  join_borders(joined);
+  Net net = make_net(joined);
+  if (options.keep_features) {
+    const std::vector<std::uint8_t>& model = surface.face.get<std::uint8_t>("model");
+    for (int h = 0; h < 3 * (int)joined.tris.size(); ++h)
+      if (model[h / 3] >> h % 3 & 1) net.held[origin(joined.tris, h)] = net.held[target(joined.tris, h)] = 1;
+  }
+  SmoothReport r;
+  r.within = options.within > 0 ? options.within : net.edge;
+  r.angle_before = mean_angle(joined, net);
+  const std::vector<Vec3> start = joined.points;
+  const Solids before = find_solids(joined);
+  for (int i = 0; i < steps; ++i)
+    for (double share : {forward, backward}) step(net, start, r.within, share, joined.points);
+  r.moved_back = separate(joined, start, net.held);
+  r.angle_after = mean_angle(joined, net);
+  if (!(r.angle_after < r.angle_before)) {
+    joined.points = start;
+    r.angle_after = r.angle_before;
+    r.moved_back = 0;
+  }
+  const Solids after = find_solids(joined);
+  for (int i = 1; i <= before.count() && before.count() == after.count(); ++i) {
+    const double change = after.volume[i] - before.volume[i];
+    r.volume += before.volume[i];
+    r.volume_change += change;
+    if (before.volume[i] > 0)
+      r.region_change = std::max(r.region_change, std::abs(change) / before.volume[i]);
+  }
+  for (std::size_t v = 0; v < start.size(); ++v) {
+    const double way = norm(joined.points[v] - start[v]);
+    r.bounded += way > 0.999 * r.within;
+    if (way > r.farthest) r.farthest = way, r.farthest_at = start[v];
+  }
+  for (std::size_t t = 0; t < surface.tris.size(); ++t)
+    for (int i : {0, 1, 2}) surface.points[surface.tris[t][i]] = joined.points[joined.tris[t][i]];
+  return r;
+}
+
+}  // namespace meshpipe
