@@ -17,6 +17,7 @@
 #include "lib/core/split_edges.h"
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
+#include "lib/size/junction_lines.h"
 #include "lib/size/local_feature_size.h"
 #include "lib/size/permitted.h"
 #include "lib/size/sheet_distance.h"
@@ -534,6 +535,7 @@ int match_sheets(Surface& surface, Table* chart, double slope) {
   for (std::size_t t = 0; t < joined.tris.size(); ++t)
     for (int i = 0; i < 3; ++i)
       least[joined.tris[t][i]] = std::min(least[joined.tris[t][i]], size[surface.tris[t][i]]);
+  lower_along_short_lines(joined, least);
   limit_gradation(joined, slope, least);
   for (std::size_t t = 0; t < joined.tris.size(); ++t)
     for (int i = 0; i < 3; ++i) size[surface.tris[t][i]] = least[joined.tris[t][i]];

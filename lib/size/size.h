@@ -63,8 +63,8 @@ struct SizeReport {
 SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split = true);
 
 /// Makes copies of border edges, where sheets meet, the same: cut at the same points (match_borders), with
-/// the same size, the least of all, graded by `slope`. `chart` as above. Returns the number of vertices
-/// added.
+/// the same size, the least of all, smaller along lines shorter than that, graded by `slope`. `chart` as
+/// above. Returns the number of vertices added.
 int match_sheets(Surface& surface, Table* chart, double slope);
 
 /// Whether the field asks for the number of triangles that was requested; bounds may prevent that.
