@@ -18,7 +18,8 @@ namespace {
 constexpr int steps = 25;                           // of each sign
 constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
 
-/// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors.
+/// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
+/// as at the end of such a line, which would become ever shorter.
 struct Net {
   std::vector<int> start, vertex;
   std::vector<char> held;
@@ -32,7 +33,7 @@ Net make_net(const Mesh& mesh) {
     int a, b, uses;
   };
   std::vector<Edge> edges;
-  std::vector<char> on_line(n, 0);
+  std::vector<int> on_line(n, 0);
   Net net;
   net.held.assign(n, 0);
   for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
@@ -41,13 +42,13 @@ Net make_net(const Mesh& mesh) {
     net.edge += norm(mesh.points[a] - mesh.points[b]);
     if (uses.size() == 2) net.smooth.push_back({h / 3, half_edge(uses[1]) / 3});
     if (uses.size() == 1) net.held[a] = net.held[b] = 1;
-    if (uses.size() > 2) on_line[a] = on_line[b] = 1;
+    if (uses.size() > 2) ++on_line[a], ++on_line[b];
   });
   net.edge /= (double)edges.size();
   auto each = [&](auto f) {
     for (const auto& [a, b, uses] : edges) {
-      if (!on_line[a] || uses > 2) f(a, b);
-      if (!on_line[b] || uses > 2) f(b, a);
+      if (on_line[a] < 2 || uses > 2) f(a, b);
+      if (on_line[b] < 2 || uses > 2) f(b, a);
     }
   };
   net.start.assign(n + 1, 0);
