@@ -4,6 +4,7 @@
 
 #include "lib/cap/steps.h"
 #include "lib/core/cdt.h"
+#include "lib/core/segments.h"
 
 namespace meshpipe {
 namespace {
@@ -76,11 +77,6 @@ void join_rings(Mesh& mesh, const std::vector<int>& from, const std::vector<doub
 /// least one from anything else. Without such vertices a cap would have triangles as thin as the arc over a
 /// few edges of the rim is high, which are features to be removed.
 constexpr double height_of_apex = 0.866, least_distance = 0.5;
-
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 along = b - a;
-  return norm(p - lerp(a, b, std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0)));
-}
 
 /// Inserts a vertex opposite a border edge if there is enough space. Returns it, or -1.
 int add_apex(Cdt& cdt, Cavity& cavity, int a, int b) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lib/core/edges.h"
+#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -36,8 +37,7 @@ void find_components(Soundness& c) {
 void find_loops(const Mesh& mesh, Soundness& c) {
   double shortest = 0;
   for (const std::vector<int>& loop : boundary_loops(c.opposite)) {
-    double length = 0;
-    for (int h : loop) length += edge_length(mesh, h);
+    const double length = loop_length(mesh, loop);
     if (c.loops++ == 0 || length < shortest) {
       shortest = length;
       c.loop = loop[0];

@@ -20,6 +20,13 @@ std::vector<Vec3> vertex_area_vectors(const Mesh& mesh) {
   return sum;
 }
 
+std::vector<double> vertex_areas(const Mesh& mesh) {
+  std::vector<double> area(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t)
+    for (int v : mesh.tris[t]) area[v] += triangle_area(mesh, (int)t) / 3;
+  return area;
+}
+
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
   std::vector<Vec3> normal = vertex_area_vectors(mesh);
   for (Vec3& n : normal) n = normalized(n);

@@ -14,4 +14,7 @@ std::vector<Vec3> vertex_area_vectors(const Mesh& mesh);
 /// Returns the unit normals of the vertices, weighted by area; zero where the weighted sum vanishes.
 std::vector<Vec3> vertex_normals(const Mesh& mesh);
 
+/// Returns a third of the area of each vertex's triangles.
+std::vector<double> vertex_areas(const Mesh& mesh);
+
 }  // namespace meshpipe

@@ -2,6 +2,7 @@
 #include "lib/core/regions.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace meshpipe {
 namespace {
@@ -83,6 +84,26 @@ Regions find_regions(const Connectivity& c, const std::vector<int>& label, int n
     walk_border(
         c, r.border[l], outgoing, [&](int t) { return label[t] == l; }, r.region[l]);
   return r;
+}
+
+std::vector<Fan> pinched_fans(const Connectivity& c, const std::vector<int>& label, int l,
+                              const std::vector<int>& border) {
+  auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == l; };
+  std::vector<Fan> fans;
+  for (int h : border) {
+    if (label[h / 3] != l || inside(h)) continue;  // no border any more since another region's fan changed
+    int size = 1;
+    for (int g = prev(h); inside(g); g = prev(c.opposite[g])) ++size;
+    fans.push_back({c.from(h), size, h});
+  }
+  std::sort(fans.begin(), fans.end(), [](const Fan& p, const Fan& q) {
+    return std::tie(p.vertex, p.size, p.half_edge) < std::tie(q.vertex, q.size, q.half_edge);
+  });
+  std::size_t n = 0;
+  for (std::size_t i = 0; i + 1 < fans.size(); ++i)
+    if (fans[i].vertex == fans[i + 1].vertex) fans[n++] = fans[i];
+  fans.resize(n);
+  return fans;
 }
 
 int separate_pieces(const Connectivity& c, std::vector<int>& label) {

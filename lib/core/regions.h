@@ -37,6 +37,15 @@ Regions find_regions(const Connectivity& c, const std::vector<int>& label, int n
 /// Gives the edge-connected pieces of the labels the numbers 0..n-1, by their first triangles; returns n.
 int separate_pieces(const Connectivity& c, std::vector<int>& label);
 
+/// The triangles around the origin of a border half-edge of a region.
+struct Fan {
+  int vertex, size, half_edge;
+};
+/// Returns the fans of label `l` at vertices where its region touches itself, without the largest at each, by
+/// vertex and size. `border`: half-edges of the region's border.
+std::vector<Fan> pinched_fans(const Connectivity& c, const std::vector<int>& label, int l,
+                              const std::vector<int>& border);
+
 /// Joins regions one pair after another; looks only at their borders.
 class Joiner {
  public:

@@ -42,6 +42,8 @@ class SegmentTree {
 /// Turns of one segment as seen from p: the crossings of the ray from p along +x, counted upwards.
 int ray_crossing(Vec2 p, Vec2 from, Vec2 to);
 
+double distance_to_segment(Vec2 p, Vec2 a, Vec2 b);
+
 /// True if two segments meet elsewhere than at one common end.
 bool meet(const Segment& s, const Segment& t);
 

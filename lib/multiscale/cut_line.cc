@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "lib/core/segments.h"
+
 namespace meshpipe {
 namespace {
 
@@ -21,12 +23,6 @@ struct Stop {
   std::vector<Vec2> outline = {};  ///< of what no other piece of the line should run over
   double radius = 0;               ///< of the outline
 };
-
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
-  const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0., 1.) : 0;
-  return norm(a + t * d - p);
-}
 
 /// Length of a segment inside a stop's outline.
 double overlap(const Stop& stop, Vec2 a, Vec2 b) {

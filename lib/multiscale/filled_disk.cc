@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
 
@@ -32,16 +33,7 @@ FilledDisk fill_holes(const Mesh& part) {
   disk.part_tris = part.tris.size();
   disk.opposite = opposite_halfedges(part.tris, part.points.size());
   const std::vector<std::vector<int>> loops = boundary_loops(disk.opposite);
-  std::size_t longest = 0;
-  double length = -1;
-  for (std::size_t l = 0; l < loops.size(); l++) {
-    double sum = 0;
-    for (int h : loops[l]) sum += edge_length(part, h);
-    if (sum > length) {
-      length = sum;
-      longest = l;
-    }
-  }
+  const std::size_t longest = longest_loop(part, loops);
   for (std::size_t l = 0; l < loops.size(); l++) {
     if (l == longest) {
       for (int h : loops[l]) disk.rim.push_back(origin(part.tris, h));

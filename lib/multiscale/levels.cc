@@ -7,6 +7,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
 
@@ -85,12 +86,6 @@ std::vector<int> border_loop(const Solver& s, int h) {
   return loop;
 }
 
-double border_length(const Solver& s, const Pending& set) {
-  double sum = 0;
-  for (int h : set.loop) sum += edge_length(s.disk, h);
-  return sum;
-}
-
 Pending root(Solver& s) {
   Pending set;
   for (std::size_t h = 0; h < s.disk.opposite.size(); ++h)
@@ -98,7 +93,7 @@ Pending root(Solver& s) {
       set.loop = border_loop(s, h);
       break;
     }
-  const double total = border_length(s, set);
+  const double total = loop_length(s.disk, set.loop);
   double at = 0;
   for (int h : set.loop) {
     set.angle.push_back(2 * pi * at / total);
@@ -437,7 +432,6 @@ void withdraw(Solver& s, int set, const std::vector<int>& set_of, int parent) {
   child.parent = parent;
   double longest = 0;
   int deepest = -1;
-  std::vector<int> loop;
   for (std::size_t i = 0; i < s.domain.size(); ++i) {
     if (set_of[i] != set) continue;
     const int t = s.domain[i];
@@ -445,16 +439,10 @@ void withdraw(Solver& s, int set, const std::vector<int>& set_of, int parent) {
     if (touches_known(s, t)) child.seeds.push_back(t);
     for (int h = 3 * t; h < 3 * t + 3; ++h)
       if (on_border(s, h) && !s.passed[h]) {
-        loop = border_loop(s, h);
-        double sum = 0;
-        for (int e : loop) {
-          sum += edge_length(s.disk, e);
-          s.passed[e] = 1;
-        }
-        if (sum > longest) {
-          longest = sum;
-          child.loop = loop;
-        }
+        const std::vector<int> loop = border_loop(s, h);
+        for (int e : loop) s.passed[e] = 1;
+        if (const double length = loop_length(s.disk, loop); length > longest)
+          longest = length, child.loop = loop;
       }
   }
   for (int t : child.seeds) s.passed[3 * t] = s.passed[3 * t + 1] = s.passed[3 * t + 2] = 0;
@@ -467,9 +455,9 @@ void withdraw(Solver& s, int set, const std::vector<int>& set_of, int parent) {
 
 void solve(Solver& s, const Pending& set) {
   const int self = s.levels.size();
-  const double scale = 2 * pi / border_length(s, set);
+  const double scale = 2 * pi / loop_length(s.disk, set.loop);
   const double stretch_limit = least_stretch * scale * scale;
-  double depth = depth_in_diameters * border_length(s, set) / pi;
+  double depth = depth_in_diameters * loop_length(s.disk, set.loop) / pi;
   bool truncated;
   for (;; depth *= 2) {
     truncated = gather(s, set, depth);

@@ -24,11 +24,11 @@ constexpr double least_share = 0.02;  // of the area: a smaller half is no progr
 /// Gives the pieces of each side, except its largest, to the other side; then both are in one piece. Pieces
 /// are those of the vertices of one sign under the edges between them: no value is zero, so the sides that
 /// the cut makes have the same connectivity.
-void drop_fragments(const Part& part, std::vector<double>& field) {
+void drop_fragments(const ConnectedPart& part, std::vector<double>& field) {
   const int n = (int)field.size();
   for (bool positive : {true, false}) {
     UnionFind pieces(n);
-    for (const Tri& t : part.mesh.tris)
+    for (const Tri& t : part.tris)
       for (int k = 0; k < 3; ++k)
         if ((field[t[k]] > 0) == (field[t[(k + 1) % 3]] > 0)) pieces.join(t[k], t[(k + 1) % 3]);
     std::vector<int> size(n, 0);
@@ -55,18 +55,17 @@ bool better(const Assessment& a, const Assessment& b) {
 
 /// The last resort: cuts across the part, half way from its rim to its farthest vertex, which always shortens
 /// it.
-std::vector<double> across(const Part& part, const std::vector<int>& rim) {
-  const std::vector<Tri>& tris = part.mesh.tris;
-  std::vector<double> distance(part.mesh.points.size(), 1e300);
+std::vector<double> across(const ConnectedPart& part, const std::vector<int>& rim) {
+  const std::vector<Tri>& tris = part.tris;
+  std::vector<double> distance(part.points.size(), 1e300);
   std::vector<int> leaving(distance.size(), -1);
   for (int h = 0; h < (int)part.opposite.size(); ++h) leaving[origin(tris, h)] = h;
   for (int v : rim) distance[v] = 0;
   double farthest = 0;
   shortest_paths(rim, distance, [&](int v, auto reach) {
     farthest = distance[v];
-    for_each_neighbor(tris, part.opposite, leaving[v], [&](int w) {
-      reach(w, distance[v] + norm(part.mesh.points[w] - part.mesh.points[v]));
-    });
+    for_each_neighbor(tris, part.opposite, leaving[v],
+                      [&](int w) { reach(w, distance[v] + norm(part.points[w] - part.points[v])); });
   });
   for (double& d : distance) {
     d -= farthest / 2;
@@ -83,7 +82,7 @@ struct Candidate {
 };
 
 /// The lines in all directions, the best first; only the one across the part if none is any good.
-std::vector<Candidate> candidates_of(const Part& part, const CutMaps& cut) {
+std::vector<Candidate> candidates_of(const ConnectedPart& part, const CutMaps& cut) {
   std::vector<Candidate> candidates(directions);
   auto try_direction = [&](int i) {
     Candidate& c = candidates[i];
@@ -93,7 +92,7 @@ std::vector<Candidate> candidates_of(const Part& part, const CutMaps& cut) {
     c.is = assess(part, c.field);
   };
   constexpr std::size_t worth_threads = 4000;  // triangles
-  if (part.mesh.tris.size() > worth_threads)
+  if (part.tris.size() > worth_threads)
     parallel_for(directions, try_direction);
   else
     for (int i = 0; i < directions; ++i) try_direction(i);
@@ -109,9 +108,9 @@ std::vector<Candidate> candidates_of(const Part& part, const CutMaps& cut) {
 }
 
 /// The best line of a part itself.
-CutMaps best_cut_of(const Part& part, double share) {
+CutMaps best_cut_of(const ConnectedPart& part, double share) {
   CutMaps cut;
-  cut.disk = fill_holes(part.mesh);
+  cut.disk = fill_holes(part);
   cut.levels = laplace_levels(cut.disk);
   add_progress(0.4 * share);
   // on triangles much longer than wide the sides can lock in a shape that only the mesh explains: then
@@ -122,10 +121,10 @@ CutMaps best_cut_of(const Part& part, double share) {
   const Branches branches = find_branches(cut.disk, cut.levels);
   for (Candidate& c : candidates) {
     if (!cut.field.empty() && !c.is.valid) break;
-    reach_holes(cut.disk, {part.mesh, part.opposite}, c.field);
+    reach_holes(cut.disk, {part, part.opposite}, c.field);
     if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
     const Assessment before = assess(part, c.field);
-    balance_sides(cut.disk, {part.mesh, part.opposite}, branches, c.field, rounds);
+    balance_sides(cut.disk, {part, part.opposite}, branches, c.field, rounds);
     drop_fragments(part, c.field);
     const Assessment after = assess(part, c.field);
     if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
@@ -139,8 +138,8 @@ CutMaps best_cut_of(const Part& part, double share) {
 
 }  // namespace
 
-Assessment assess(const Part& part, const std::vector<double>& field) {
-  const std::vector<Vec3>& p = part.mesh.points;
+Assessment assess(const ConnectedPart& part, const std::vector<double>& field) {
+  const std::vector<Vec3>& p = part.points;
   Assessment a;
   int chi[2] = {0, 0};
   double area[2] = {0, 0};
@@ -148,8 +147,8 @@ Assessment assess(const Part& part, const std::vector<double>& field) {
   int pieces = (int)field.size();
   for (double f : field) ++chi[f > 0];
   if (chi[0] == 0 || chi[1] == 0) return a;
-  for (std::size_t t = 0; t < part.mesh.tris.size(); ++t) {
-    const Tri& c = part.mesh.tris[t];
+  for (std::size_t t = 0; t < part.tris.size(); ++t) {
+    const Tri& c = part.tris[t];
     const double third = norm(area_vector(p[c[0]], p[c[1]], p[c[2]])) / 6;
     Vec3 crossing[2];
     int crossings = 0, positive = 0;
@@ -173,21 +172,21 @@ Assessment assess(const Part& part, const std::vector<double>& field) {
   return a;
 }
 
-CutMaps best_cut(const Part& part, double share, std::vector<double>& field) {
+CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& field) {
   constexpr int enough = 12000, at_most = 6;  // triangles; of them for one
   constexpr double most_turn = 25 * std::numbers::pi / 180;
   constexpr double worth = 2.5;  // what has thin branches is not made coarse: they need all edges
-  const double n = (double)part.mesh.tris.size();
+  const double n = (double)part.tris.size();
   Coarse coarse;
   if (n > worth * enough)
-    coarse = coarsen({part.mesh, part.opposite}, std::max(enough, (int)(n / at_most)), most_turn);
+    coarse = coarsen({part, part.opposite}, std::max(enough, (int)(n / at_most)), most_turn);
   if (coarse.tris.empty() || n < worth * (double)coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, share);
     field = cut.field;
     return cut;
   }
   // the sides that coarse vertices give to those that have become them have as many pieces
-  Part model{coarse, {}, opposite_halfedges(coarse.tris, (int)coarse.points.size())};
+  ConnectedPart model{{coarse, {}, {}}, opposite_halfedges(coarse.tris, (int)coarse.points.size()), {}};
   CutMaps cut = best_cut_of(model, share);
   field.clear();
   for (int v : coarse.of) field.push_back(cut.field[v]);

@@ -7,13 +7,6 @@
 
 namespace meshpipe {
 
-/// A part of genus 0.
-struct Part {
-  Mesh mesh;
-  std::vector<int> vertex;  ///< its vertices in the whole
-  std::vector<int> opposite;
-};
-
 /// What the zero level of a field does to a part.
 struct Assessment {
   bool valid = false;        ///< both sides are there, each in one piece
@@ -21,7 +14,7 @@ struct Assessment {
   double length = 0;         ///< of the cut
   double smaller_share = 0;  ///< of the area
 };
-Assessment assess(const Part& part, const std::vector<double>& field);
+Assessment assess(const ConnectedPart& part, const std::vector<double>& field);
 
 /// How a cut was found, for pictures: on the part, or on a coarse model of a large one (lib/core/coarsen.h).
 struct CutMaps {
@@ -35,6 +28,6 @@ struct CutMaps {
 /// directions, then balanced so that it follows the part's branches along opposite sides.
 /// `field` receives a value per vertex of the part, never zero, whose zero level is the line; `share` is that
 /// of the work (lib/core/progress.h).
-CutMaps best_cut(const Part& part, double share, std::vector<double>& field);
+CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& field);
 
 }  // namespace meshpipe

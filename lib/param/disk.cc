@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lib/core/error.h"
+#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/param/intrinsic.h"
 
@@ -75,11 +76,9 @@ Disk disk_of(const SubMesh& part) {
   int n_border = 0;
   std::size_t longest = 0;
   for (const auto& loop : d.loops) {
-    double length = 0;
-    for (int h : loop) length += edge_length(part, h);
-    d.length.push_back(length);
+    d.length.push_back(loop_length(part, loop));
     n_border += (int)loop.size();
-    if (length > d.length[longest]) longest = d.length.size() - 1;
+    if (d.length.back() > d.length[longest]) longest = d.length.size() - 1;
   }
   int n_loops = (int)d.loops.size(), n_tris = (int)part.tris.size();
   int euler = n - (3 * n_tris + n_border) / 2 + n_tris;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lib/core/cut.h"
+#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -17,13 +18,9 @@ std::vector<Ear> ears_of(const Surface& surface, int n_parts) {
   std::vector<Ear> ears;
   for (const SubMesh& part : split_by_label(surface, surface.face.get<int>("part"), n_parts)) {
     std::vector<int> opposite = opposite_halfedges(part.tris, (int)part.points.size());
-    std::vector<int> longest;
-    double most = -1;
-    for (const auto& loop : boundary_loops(opposite)) {
-      double length = 0;
-      for (int h : loop) length += edge_length(part, h);
-      if (length > most) most = length, longest = loop;
-    }
+    const std::vector<std::vector<int>> loops = boundary_loops(opposite);
+    if (loops.empty()) continue;
+    const std::vector<int>& longest = loops[longest_loop(part, loops)];
     for (std::size_t i = 0; i < longest.size() && part.tris.size() > 1; ++i) {
       int h = longest[i], g = longest[(i + 1) % longest.size()];
       if (g != next(h)) continue;

@@ -5,6 +5,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/shortest_paths.h"
+#include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 
 namespace meshpipe {
@@ -29,12 +30,8 @@ Work make_work(const Connectivity& view) {
   Work w{mesh, opposite, std::vector<int>(n, -1), std::vector<char>(n, 0), {}, 0};
   w.cap.assign(opposite.size(), -1);
   for (int h = 0; h < (int)opposite.size(); ++h) w.leaving[origin(mesh.tris, h)] = h;
-  for (int h = 0; h < (int)opposite.size(); ++h) {
-    if (opposite[h] >= 0 || w.cap[h] >= 0) continue;
-    for (int g = h; w.cap[g] < 0;) {
-      w.cap[g] = w.n_caps;
-      g = next_on_border(opposite, g);
-    }
+  for (const std::vector<int>& loop : boundary_loops(opposite)) {
+    for (int h : loop) w.cap[h] = w.n_caps;
     ++w.n_caps;
   }
   return w;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
-#include <tuple>
 
 #include "lib/core/coarsen.h"
 #include "lib/core/connectivity.h"
@@ -147,26 +146,12 @@ bool absorb_fragments(const Component& c, std::vector<int>& label, const Regions
 /// Where a region touches itself at a vertex, gives its smaller fan there to the neighbor. Returns true if
 /// there was one.
 bool open_pinches(const Component& c, std::vector<int>& label, const Regions& regions) {
-  struct Fan {
-    int vertex, size, half_edge;
-  };
   bool changed = false;
   for (int l = 0; l < (int)regions.region.size(); ++l) {
     if (!regions.region[l].pinched) continue;
     auto inside = [&](int g) { return c.opposite[g] >= 0 && label[c.opposite[g] / 3] == l; };
-    std::vector<Fan> fans;
-    for (int h : regions.border[l]) {
-      if (label[h / 3] != l || inside(h)) continue;  // no border any more since another region's fan changed
-      int size = 1;  // of the fan of triangles around the origin of border half-edge h
-      for (int g = prev(h); inside(g); g = prev(c.opposite[g])) ++size;
-      fans.push_back({origin(c.mesh.tris, h), size, h});
-    }
-    std::sort(fans.begin(), fans.end(), [](const Fan& p, const Fan& q) {
-      return std::tie(p.vertex, p.size, p.half_edge) < std::tie(q.vertex, q.size, q.half_edge);
-    });
-    for (std::size_t i = 0; i + 1 < fans.size(); ++i) {
-      const Fan& f = fans[i];
-      if (f.vertex != fans[i + 1].vertex || label[f.half_edge / 3] != l) continue;
+    for (const Fan& f : pinched_fans({c.mesh, c.opposite}, label, l, regions.border[l])) {
+      if (label[f.half_edge / 3] != l) continue;
       // to what lies across the fan's first edge, or its last one where the first is on the border
       int last = prev(f.half_edge);
       while (inside(last)) last = prev(c.opposite[last]);
@@ -192,10 +177,11 @@ void bisect(const Component& c, std::vector<int>& label, int mine, int new_label
 /// Turns any labeling into one whose parts all map to the plane: fragments are absorbed, pinches opened,
 /// parts of the wrong topology bisected. `fragment`: the share of the area that a part has to have at first.
 /// Returns the parts, or 0 regions if it does not get there.
-Regions make_admissible(const Component& c, std::vector<int>& label, int seed, double fragment = 0.01) {
+Regions make_admissible(const Component& c, std::vector<int>& label, int seed,
+                        double fragment = limit::fragment) {
   const int n_faces = (int)c.mesh.tris.size();
   double min_area = fragment * c.whole.area;
-  int min_faces = std::min(20, n_faces / 10);
+  int min_faces = std::min(limit::fragment_triangles, n_faces / 10);
   auto regions_of_pieces = [&] {
     const int n = separate_pieces({c.mesh, c.opposite}, label);
     return find_regions({c.mesh, c.opposite}, label, n);
@@ -213,12 +199,10 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed, d
 }
 
 /// Predicts how many charts a part will come to: one whose map would be too uneven is halved later, if it is
-/// a tree or tube and no sponge, and one whose map overlaps until it does not. The limit is below the
-/// planner's, since the estimate is for a border along the triangles' edges.
+/// a tree or tube and no sponge, and one whose map overlaps until it does not.
 int predicted_charts(const Region& r, const DistortionEstimate& e) {
-  constexpr double too_uneven = 1e7;
-  constexpr int holes_of_a_cut = 4;
-  return 1 + e.crossings + (e.area_distortion > too_uneven ? 1 + r.loops / holes_of_a_cut : 0);
+  const bool uneven = e.area_distortion > limit::predicted_distortion;
+  return 1 + e.crossings + (uneven ? 1 + r.loops / limit::holes_of_a_cut : 0);
 }
 
 /// Joins neighbors, those with the longest shared border first, while their union maps to the plane and is
@@ -258,10 +242,10 @@ std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, cons
 /// Halves the parts whose maps would overlap. Returns true if there was one.
 bool halve_tangled(const Component& c, const DistortionModel& model, std::vector<int>& label,
                    const Regions& regions, int seed) {
-  constexpr int few = 100;  // triangles
   int n = (int)regions.region.size();
   for (int l = 0; l < (int)regions.region.size(); ++l)
-    if (regions.region[l].faces > few && model.of(label, l, l, regions.border[l]).crossings > 0)
+    if (regions.region[l].faces > limit::tangled_triangles &&
+        model.of(label, l, l, regions.border[l]).crossings > 0)
       bisect(c, label, l, n++, seed);
   return n > (int)regions.region.size();
 }
@@ -385,10 +369,6 @@ std::vector<int> refine_labels(const Component& c, const Coarse& coarse, const s
 }
 
 }  // namespace
-
-bool Labeling::operator<(const Labeling& o) const {
-  return std::tie(charts, cost) < std::tie(o.charts, o.cost);
-}
 
 Component make_component(ConnectedPart part, const Region& whole) {
   Component c;

@@ -2,6 +2,7 @@
 // Labels for the triangles of a connected surface, each of which maps to the plane.
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "lib/core/regions.h"
@@ -31,7 +32,7 @@ struct Labeling {
   int parts = 0;
   int charts = 0;  ///< that the parts will come to, as predicted
   std::int64_t cost = 0;
-  bool operator<(const Labeling& o) const;
+  bool operator<(const Labeling& o) const { return std::pair(charts, cost) < std::pair(o.charts, o.cost); }
 };
 
 /// Tries several numbers of parts, balances and seeds; those of a large component on a coarse model of it.

@@ -10,12 +10,6 @@
 #include "lib/partition/labeling.h"
 
 namespace meshpipe {
-Interfaces measure_interfaces(const Surface& surface) {
-  return measure_interfaces(
-      {surface, opposite_halfedges(surface.tris, (int)surface.points.size()), model_of(surface)},
-      surface.face.get<int>("part"));
-}
-
 std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
                                int max_faces) {
   std::vector<char> broken(n_parts, 0);
@@ -74,11 +68,6 @@ Interfaces measure_interfaces(const Connectivity& view, const std::vector<int>& 
   r.turning_angle = *quantile * 180 / pi;
   r.largest_angle = *std::max_element(quantile, turning.end()) * 180 / pi;
   return r;
-}
-
-std::string part_fault(const Surface& surface) {
-  return part_fault({surface, opposite_halfedges(surface.tris, (int)surface.points.size())},
-                    surface.face.get<int>("part"));
 }
 
 std::string part_fault(const Connectivity& mesh, const std::vector<int>& part) {

@@ -9,11 +9,11 @@
 #include "lib/core/mesh.h"
 #include "lib/partition/labeling.h"
 #include "lib/partition/merge.h"
+#include "lib/partition/thresholds.h"
 
 namespace meshpipe {
 
 /// Checks the rule of formats/mply.md on parts; returns an empty string, or what is wrong and where.
-std::string part_fault(const Surface& surface);
 std::string part_fault(const Connectivity& mesh, const std::vector<int>& part);
 
 /// Marks the parts 0..n_parts-1 (part[t] = -1: none) that are in several pieces, do not map to
@@ -35,7 +35,6 @@ struct Interfaces {
   int junctions = 0;  ///< vertices with three or more interface edges
 };
 Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& part);
-Interfaces measure_interfaces(const Surface& surface);
 
 /// Moves the interface of each pair of parts (face column `part`, 0..n_parts-1) to the zero level of a
 /// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h); where

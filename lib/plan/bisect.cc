@@ -8,34 +8,26 @@
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
+#include "lib/core/normals.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
+#include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
-#include "lib/plan/thresholds.h"
 
 namespace meshpipe {
 namespace {
 
-/// A third of the area of the triangles around each vertex.
-std::vector<double> lumped_area(const Mesh& mesh) {
-  std::vector<double> mass(mesh.points.size(), 0);
-  for (std::size_t t = 0; t < mesh.tris.size(); ++t)
-    for (int v : mesh.tris[t]) mass[v] += norm(area_vector(mesh, (int)t)) / 6;
-  return mass;
-}
-
 /// L + s M with free borders, s M far below the first eigenvalue of L that is not zero, (pi / length)^2, and
 /// enough to make the matrix definite. Positive weights: its fields have no extremes but where they are
-/// driven. `even`: of the graph, with the same weight for all triangles, whatever their shapes.
-Factorization<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass, bool even) {
+/// driven.
+Factorization<double> free_laplacian(const Mesh& mesh, const std::vector<double>& mass) {
   int n = (int)mesh.points.size();
   std::vector<double> diagonal(n);
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
   for (int v = 0; v < n; ++v) diagonal[v] = 0.01 * mass[v] / area;
   Laplacian matrix(std::move(diagonal));
   for (const Tri& t : mesh.tris) {
-    std::array<double, 3> w{0.5, 0.5, 0.5};
-    if (!even) w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
+    const auto w = cotangent_weights(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], 0.01);
     for (int i = 0; i < 3; ++i) matrix.add_edge(t[i], t[(i + 1) % 3], w[i]);
   }
   return matrix.factorize();
@@ -82,10 +74,7 @@ double level_length(const Mesh& mesh, const std::vector<double>& field, double l
 
 /// True if the part falls into two connected halves without pinched vertices at this level.
 bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
-  Surface trial;
-  static_cast<Mesh&>(trial) = mesh;
-  trial.vertex.rows = mesh.points.size();
-  trial.face.rows = mesh.tris.size();
+  Surface trial = surface_of(mesh);
   for (double& f : field) f -= level;
   std::vector<int> side, component;
   cut_by_scalar_field(trial, field, {}, side);
@@ -99,15 +88,14 @@ bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
 
 }  // namespace
 
-bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
-                 bool even) {
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart) {
   const auto& label = surface.face.get<int>("part");
   std::vector<int> only(label.size());
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
-  std::vector<double> mass = even ? std::vector<double>(mesh.points.size(), 1) : lumped_area(mesh);
+  const std::vector<double> mass = vertex_areas(mesh);
   if (!(std::accumulate(mass.begin(), mass.end(), 0.0) > 0)) return false;
-  Factorization<double> laplacian = free_laplacian(mesh, mass, even);
+  Factorization<double> laplacian = free_laplacian(mesh, mass);
   std::vector<std::vector<double>> fields;
   // the part's own numbers follow its triangles, which cuts of its neighbors split
   auto own = [&](int v) {
@@ -146,9 +134,7 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
     for (int v : order) {
       below += mass[v];
       for (; next_share < shares && below >= next_share * area / shares; ++next_share) {
-        const int share = std::min(next_share, shares - next_share);
-        if (even && share < shares / 3) continue;
-        double smaller = area * share / shares;
+        const double smaller = area * std::min(next_share, shares - next_share) / shares;
         lines.push_back({level_length(mesh, field, field[v]) / std::sqrt(smaller), f, field[v]});
       }
     }

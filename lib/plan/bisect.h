@@ -11,11 +11,9 @@ namespace meshpipe {
 /// Cuts `part` (face column `part`) in two along the shortest line over the root of the smaller side's area
 /// that leaves two connected halves without pinched vertices. Lines are levels of the potential between each
 /// pair of vertices in `apart` (numbers in the surface), or of the Fiedler vector if there are none: both
-/// have connected sides except for rounding. `even` counts vertices instead of areas, all edges alike, with a
-/// third on each side: for parts off which a shape-aware line only ever cuts a few triangles. The triangles
-/// above the level become part new_part. Returns false, and changes nothing, if no line will do.
-bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart,
-                 bool even = false);
+/// have connected sides except for rounding. The triangles above the level become part new_part. Returns
+/// false, and changes nothing, if no line will do.
+bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
 
 /// Cuts `part` by multiscale_cut although its aspect ratio is admissible: along its limbs, so that none
 /// shrinks to nothing in a chart. Returns the new number of parts; n_parts, with nothing changed, if

@@ -6,9 +6,9 @@
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/topology.h"
+#include "lib/partition/partition.h"
 #include "lib/plan/bisect.h"
 #include "lib/plan/plan.h"
-#include "lib/plan/thresholds.h"
 
 namespace meshpipe {
 namespace {
@@ -148,10 +148,8 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   std::vector<std::array<int, 2>> choice[2] = {report.apart, {}};
   for (auto& pair : choice[0]) pair = {mesh.vertex[pair[0]], mesh.vertex[pair[1]]};
   if (round >= limit::limb_rounds) std::swap(choice[0], choice[1]);
-  const bool peeled = missed && round >= limit::even_rounds;  // little by little
-  const bool cut = (peeled && bisect_part(surface, p, n_parts, {}, true)) ||
-                   bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]);
-  return n_parts + cut;
+  return n_parts +
+         (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]));
 }
 
 }  // namespace

@@ -2,13 +2,11 @@
 // Cuts a surface until every part has genus 0 and a border.
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 #include "lib/core/error.h"
 #include "lib/core/progress.h"
 #include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
-#include "lib/plan/thresholds.h"
 
 namespace meshpipe {
 namespace {
@@ -39,28 +37,14 @@ Labeling label_component(Component& c, const PartitionOptions& options) {
 /// Labels the fans in which a region touches itself at a vertex, except the largest ones, as regions of their
 /// own, n, n + 1, ... Returns the new number of regions.
 int split_pinches(const Connectivity& mesh, std::vector<int>& label, int n) {
-  struct Fan {
-    int region, vertex, size, half_edge;
-    auto key() const { return std::tie(region, vertex, size, half_edge); }
-  };
-  std::vector<Fan> fans;
   const Regions regions = find_regions(mesh, label, n);
-  auto inside = [&](int h) { return mesh.opposite[h] >= 0 && label[mesh.opposite[h] / 3] == label[h / 3]; };
-  for (int l = 0; l < n; ++l) {
+  for (int l = 0, n_regions = n; l < n_regions; ++l) {
     if (!regions.region[l].pinched) continue;
-    for (int h : regions.border[l]) {
-      int size = 1;
-      for (int g = prev(h); inside(g); g = prev(mesh.opposite[g])) ++size;
-      fans.push_back({l, mesh.from(h), size, h});
+    for (const Fan& f : pinched_fans(mesh, label, l, regions.border[l])) {
+      for (int k = 0, h = f.half_edge; k < f.size; ++k, h = mesh.opposite[prev(h)])
+        if (label[h / 3] == l) label[h / 3] = n;
+      ++n;
     }
-  }
-  std::sort(fans.begin(), fans.end(), [](const Fan& a, const Fan& b) { return a.key() < b.key(); });
-  for (std::size_t i = 0; i + 1 < fans.size(); ++i) {
-    const auto& [region, vertex, size, half_edge] = fans[i];
-    if (region != fans[i + 1].region || vertex != fans[i + 1].vertex) continue;
-    for (int k = 0, h = half_edge; k < size; ++k, h = mesh.opposite[prev(h)])
-      if (label[h / 3] == region) label[h / 3] = n;
-    ++n;
   }
   return n;
 }

@@ -9,7 +9,6 @@
 #include "lib/core/progress.h"
 #include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
-#include "lib/plan/thresholds.h"
 
 namespace meshpipe {
 namespace {
@@ -57,18 +56,18 @@ void measure_halves(Halves& halves) {
 /// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight. A line
 /// that is snapped to vertices may touch itself there: then it is snapped less, until the halves have no more
 /// loops than expected. On a few coarse triangles it may be pulled off the part: at last it stays as it is.
-Halves split(const Work& work, const Part& part, const std::vector<double>& field,
+Halves split(const Work& work, const ConnectedPart& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
   struct Pull {
     double snap;
     int sweeps;
   };
-  const LevelLine level = zero_level(part.mesh, field);
+  const LevelLine level = zero_level(part, field);
   const std::vector<Hold> hold(field.size(), Hold::moves);
   Halves best;
   for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
-    pull_straight({part.mesh, part.opposite}, line, hold, snap, sweeps);
+    pull_straight({part, part.opposite}, line, hold, snap, sweeps);
     Halves trial{work.surface, work.opposite, {}, {}};
     cut_along_line({trial.surface, trial.opposite}, in_whole(line, part.vertex, work.surface.points.size()),
                    active, trial.side);
@@ -81,9 +80,9 @@ Halves split(const Work& work, const Part& part, const std::vector<double>& fiel
 }
 
 /// The single-level cut, as it comes; says how much of the part its map cannot tell apart.
-CutMaps single_cut(const Part& part, MultiscaleCut& says, std::vector<double>& field) {
+CutMaps single_cut(const ConnectedPart& part, MultiscaleCut& says, std::vector<double>& field) {
   CutMaps cut;
-  cut.disk = fill_holes(part.mesh);
+  cut.disk = fill_holes(part);
   MaxCut one = max_cut(cut.disk);
   says.too_small = one.too_small;
   says.reversed = one.reversed;
@@ -111,16 +110,11 @@ void expect_single_cut(const MultiscaleOptions& options, const MultiscaleCut& cu
 }
 
 /// The triangles of one part with its connectivity; marks them in `active`.
-Part take_part(const Work& work, int p, std::vector<char>& active) {
+ConnectedPart take_part(const Work& work, int p, std::vector<char>& active) {
   const std::vector<int>& label = work.surface.face.get<int>("part");
-  std::vector<int> mine(label.size());
   active.resize(label.size());
-  for (std::size_t t = 0; t < label.size(); ++t) {
-    active[t] = label[t] == p;
-    mine[t] = active[t] ? 0 : -1;
-  }
-  ConnectedPart part = select_part({work.surface, work.opposite}, mine, 0);
-  return {part, std::move(part.vertex), std::move(part.opposite)};
+  for (std::size_t t = 0; t < label.size(); ++t) active[t] = label[t] == p;
+  return select_part({work.surface, work.opposite}, label, p);
 }
 
 /// Cuts one part in two; adds the tasks of halves that are still too long. Nothing if it cannot be cut.
@@ -129,7 +123,7 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   const MultiscaleOptions& options = work.options;
   const bool single = options.method == CutMethod::maxcut;
   std::vector<char> active;
-  const Part part = take_part(work, task.part, active);
+  const ConnectedPart part = take_part(work, task.part, active);
   MultiscaleCut cut;
   cut.part = task.part;
   cut.halves[0] = task.part;
@@ -139,12 +133,12 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   CutMaps maps = single ? single_cut(part, cut, field) : best_cut(part, once * task.share, field);
   cut.levels = (int)maps.levels.size();
   const Assessment expected = assess(part, field);
-  cut.length = expected.length / diagonal(part.mesh);
+  cut.length = expected.length / diagonal(part);
   if (options.keep_maps) cut.maps = std::move(maps);
   Halves made;
   if (expected.valid) made = split(work, part, field, active, expected.loops);
   if (work.cuts && (single || made.loops > 0)) work.cuts->push_back(cut);
-  if (single) expect_single_cut(options, cut, made, part.mesh.tris.size());
+  if (single) expect_single_cut(options, cut, made, part.tris.size());
   if (made.loops == 0) return;
   const int other = work.parts();
   work.surface = std::move(made.surface);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cutting planner: decides what is cut so that every part maps to the plane, and what is cut again once a
-// map has failed. All of its limits are in lib/plan/thresholds.h.
+// map has failed. All of its limits are in lib/partition/thresholds.h.
 #pragma once
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace meshpipe {
 struct PartitionOptions {
   bool homology = false;  ///< try cuts along handles (lib/partition/handles.h) even if METIS does well
   int seed = 1;
-  int max_faces = 0;  ///< most triangles of a part; 0: as lib/plan/thresholds.h says
+  int max_faces = 0;  ///< most triangles of a part; 0: as lib/partition/thresholds.h says
 };
 
 /// Sets face columns `part` (0..n-1) and `origin` (where missing) so that every part is edge-connected,
@@ -62,8 +62,8 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<int>* opposite = nullptr);
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane, charts in parallel. A part
-/// whose map fails, or is worse than lib/plan/thresholds.h allows, is cut, and its pieces are mapped in its
-/// place: along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face
+/// whose map fails, or is worse than lib/partition/thresholds.h allows, is cut, and its pieces are mapped in
+/// its place: along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face
 /// column `part`; with options.strict there are none. Before circle maps, triangles with two edges on the
 /// longest loop are split (lib/param/ears.h). Returns the charts, with one row of `reports` per part. Throws
 /// GoalMissed if a part has no one-to-one map.

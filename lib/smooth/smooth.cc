@@ -134,17 +134,9 @@ void smooth_steps(Motion& m, int count) {
   }
 }
 
-/// A third of the area of each vertex's triangles.
-std::vector<double> areas_of(const Motion& m) {
-  std::vector<double> area(m.n(), 0);
-  for (int t = 0; t < m.c.n_tris(); ++t)
-    for (int v : m.s.tris[t]) area[v] += triangle_area(m.s, t) / 3;
-  return area;
-}
-
 /// Averages a value over a neighborhood: diffuses it, its integral kept (along borders: its sum).
 void spread(const Motion& m, int count, std::vector<double>& value) {
-  const std::vector<double> area = areas_of(m);
+  const std::vector<double> area = vertex_areas(m.s);
   std::vector<double> to = value, share(m.n(), 0);
   for (int v = 0; v < m.n(); ++v) share[v] = 1.0 / std::max(1, m.near.start[v + 1] - m.near.start[v]);
   for (int i = 0; i < count; ++i) {
@@ -209,7 +201,7 @@ void keep_volumes(Motion& m, const std::vector<double>& volume, const std::vecto
   for (int t = 0; t < m.c.n_tris(); ++t)
     for (int v : m.s.tris[t]) component[v] = m.component[t];
   for (int i = 0; i < 10; ++i) {
-    const std::vector<double> now = volumes_of(m), area = areas_of(m);
+    const std::vector<double> now = volumes_of(m), area = vertex_areas(m.s);
     std::vector<double> free(m.n_components, 0), offset(m.n_components, 0);
     for (int v = 0; v < m.n(); ++v)
       if (!m.held[v]) free[component[v]] += area[v];

@@ -9,8 +9,8 @@
 #include "lib/core/cut.h"
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
-#include "lib/partition/partition.h"
 #include "lib/shape/shape.h"
+#include "tests/unit/parts.h"
 #include "tests/unit/squares.h"
 
 using namespace meshpipe;

@@ -10,9 +10,9 @@
 #include "lib/core/random.h"
 #include "lib/core/topology.h"
 #include "lib/multiscale/multiscale.h"
-#include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
 #include "lib/shape/shape.h"
+#include "tests/unit/parts.h"
 
 using namespace meshpipe;
 

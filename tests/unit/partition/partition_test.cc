@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/partition/partition.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
 #include "lib/plan/plan.h"
+#include "tests/unit/parts.h"
 
 using namespace meshpipe;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lib/core/topology.h"
-#include "lib/partition/partition.h"
+#include "tests/unit/parts.h"
 
 using namespace meshpipe;
 

@@ -7,10 +7,10 @@
 
 #include "lib/core/error.h"
 #include "lib/feature/feature.h"
-#include "lib/partition/partition.h"
 #include "lib/plan/bisect.h"
 #include "lib/shape/shape.h"
 #include "tests/unit/grid.h"
+#include "tests/unit/parts.h"
 
 using namespace meshpipe;
 using std::numbers::pi;
@@ -127,22 +127,6 @@ TEST(Plan, AcrossTheLongDirectionOrBetweenTwoPlaces) {
       EXPECT_NEAR(t.area, 5, 0.5);
       EXPECT_NEAR(t.longest_loop, 12, 1);
     }
-  }
-}
-
-// Columns a tenth as wide each as the one before: half of the area is the first, half of the graph is not.
-TEST(Plan, EvenHalvesTheGraph) {
-  auto strip = grid(
-      20, 4, false,
-      [](double s, double t) {
-        return Vec3{-std::pow(10, -20 * s), t, 0};
-      },
-      all);
-  Surface s = one_part(strip);
-  ASSERT_TRUE(bisect_part(s, 0, 1, {}, true));
-  for (const Topology& t : topology_of_parts(s, s.face.get<int>("part"), 2)) {
-    EXPECT_EQ(t.components, 1);
-    EXPECT_GT(t.faces, 160 / 4);
   }
 }
 

@@ -17,6 +17,20 @@ constexpr int cut_depth = 12;
 /// Fraction of an edge within which a cut is moved to the edge's end: no slivers.
 constexpr double snap = 0.1;
 
+// Of labelings, before the best is chosen.
+
+/// Share of a component's area below which a part goes to a neighbor, and its triangles; both fall with each
+/// round, so that a part no neighbor can take becomes one of its own.
+constexpr double fragment = 0.01;
+constexpr int fragment_triangles = 20;
+/// Predicted area distortion above which a part counts as two. Below `area_scale`, since the estimate is for
+/// a border along the triangles' edges.
+constexpr double predicted_distortion = 1e7;
+/// Holes of such a part, for each of which it counts as one more: a cut along a limb removes no more.
+constexpr int holes_of_a_cut = 4;
+/// Triangles above which a part whose map is predicted to overlap is halved at once.
+constexpr int tangled_triangles = 100;
+
 // Of a map, when its part is cut again.
 
 /// Area scale (p99 / p1) above which a part is cut along its limbs: a limb that shrinks so much does so by a
@@ -50,7 +64,6 @@ constexpr int limb_parts = 4;
 
 constexpr int limb_rounds = 2;        ///< cuts along limbs; then halves come before pairs of places
 constexpr int stretched_rounds = 12;  ///< cuts for the mean of sigma1/sigma2; 8 rounds are the most
-constexpr int even_rounds = 12;       ///< then parts without a map are halved by their triangles; never
 constexpr int most_rounds = 24;       ///< cuts of any kind; 9 rounds are the most
 
 }  // namespace meshpipe::limit
