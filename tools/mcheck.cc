@@ -55,6 +55,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   Surface reference;
   const Findings f = compare(io, stream, o.reference, contract, o.samples, reference, verdict.first_size());
   verdict.outcome.mean_size = f.mean_size;
+  verdict.outcome.triangles = (double)stream.surface.tris.size();
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
   if (!o.refine.empty() && !failures.empty())
     verdict.outcome.refined =

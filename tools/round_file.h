@@ -18,7 +18,10 @@ class RoundFile {
   /// Returns whether the chain is to be repeated: then this round writes nothing else.
   bool repeats() const { return !file_.empty() && is_repeated(before_, outcome); }
   /// Mean size of the first round's result: a size to judge later rounds by, which may be finer; 0: none.
-  double first_size() const { return first_size_in(before_); }
+  double first_size() const {
+    const std::vector<double> sizes = numbers_in(before_, "size");
+    return sizes.empty() ? 0 : sizes[0];
+  }
   void write() const;
 
   Outcome outcome;

@@ -85,15 +85,14 @@ std::vector<int> crossing_triangles(const Surface& result, const std::vector<cha
   return crossing;
 }
 
-/// Connects the vertices of the result into which others have been merged, where they are joined by an edge:
+/// Connects the vertices of the result into which others have been merged, along the seams of closed strips:
 /// each set is one feature. Flags them in `merged`.
 UnionFind feature_sets(const MergedSurface& z, const std::vector<int>& image, std::vector<char>& merged) {
   UnionFind sets(z.points.size());
   merged.assign(z.points.size(), 0);
   for (const Merge& m : z.merges) merged[image[m.gone]] = 1;
-  for (const Tri& t : z.mesh.tris)
-    for (int i = 0; i < 3 && t[0] >= 0; ++i)
-      if (const int a = t[i], b = t[(i + 1) % 3]; merged[a] && merged[b]) sets.join(a, b);
+  for (int h = 0; h < (int)z.mesh.opp.size(); ++h)
+    if (!z.mesh.dead(h / 3) && z.lines.seam[h] > 0) sets.join(z.mesh.from(h), z.mesh.to(h));
   return sets;
 }
 
@@ -105,6 +104,15 @@ void ban(const MergedSurface& z, const std::vector<int>& image, const std::vecto
   for (int v : at) hit[v] = hit_set[sets.find(v)] = 1;
   for (std::size_t v = 0; v < banned.size(); ++v)
     banned[v] |= hit[image[v]] | (whole & merged[image[v]] & hit_set[sets.find(image[v])]);
+}
+
+/// Flags the vertices that were merged last, and so the farthest, into each of `at`.
+void ban_last(const MergedSurface& z, const std::vector<int>& image, std::vector<int> at,
+              std::vector<char>& banned) {
+  for (std::size_t i = z.merges.size(); i-- > 0;) {
+    const int gone = z.merges[i].gone;
+    if (std::erase(at, image[gone]) > 0 && gone < (int)banned.size()) banned[gone] = 1;
+  }
 }
 
 /// Vertices of features that were removed only in part, so that two lines meet there in a sharper needle than
@@ -191,7 +199,10 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
     for (int t : crossing)
       for (int v : result.tris[t]) at.push_back(vertex[v]);
     ban(z, image, at, attempt > 0, banned);
-    ban(z, image, needles, true, banned);
+    if (attempt == 0)
+      ban_last(z, image, needles, banned);
+    else
+      ban(z, image, needles, true, banned);
   }
   report.stopped = true;
   return report;

@@ -24,7 +24,7 @@ bool MergedSurface::is_corner(int v) const {
 }
 
 double MergedSurface::sharpest(int v) const {
-  auto is_line = [&](int h) { return mesh.hard[h] || is_sharp(h); };
+  auto is_line = [&](int h) { return mesh.opp[h] < 0 || is_model(h); };
   int first = -1;
   mesh.star(v, [&](int h) {
     if (first < 0 && is_line(h)) first = h;
@@ -62,7 +62,7 @@ FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std:
     if (!node[v]) sets.join(at[v][0], at[v][1]);
   }
   FeatureLines lines;
-  lines.of.assign(n, -1);
+  lines.of.assign(n, -1), lines.seam = lines.of;
   lines.given = given ? *given : lines.of;
   std::vector<int> number(n, -1);
   const std::vector<int>* patch = surface.face.has("patch") ? &surface.face.get<int>("patch") : nullptr;

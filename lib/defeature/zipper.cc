@@ -58,10 +58,10 @@ std::vector<char> Zipper::add_wrinkles() {
   std::vector<int> component;
   std::vector<char> designed(components(mesh.opp, component), 0);
   for (int h = 0; h < (int)mesh.opp.size(); ++h)
-    if (mesh.hard[h] && mesh.opp[h] >= 0) designed[component[h / 3]] = 1;
+    if (!mesh.dead(h / 3) && mesh.hard[h] && mesh.opp[h] >= 0) designed[component[h / 3]] = 1;
   for (int h = 0; h < (int)mesh.opp.size(); ++h) {
     const int o = mesh.opp[h];
-    if (o < h || mesh.hard[h] || !designed[component[h / 3]]) continue;
+    if (o < h || mesh.dead(h / 3) || mesh.hard[h] || !designed[component[h / 3]]) continue;
     if (std::min(height(h / 3), height(o / 3)) > options_.tolerance) continue;
     if (is_sharp(h)) added_edges[h] = added_edges[o] = 1;
   }
@@ -202,8 +202,10 @@ void Zipper::collapse(int h, int gone) {
     int strong = next(e), weak = prev(e);
     if (strength(weak) > strength(strong)) std::swap(strong, weak);
     const int line = lines.of[strong], given = lines.given[lines.given[strong] >= 0 ? strong : weak];
+    const bool seam = lines.of[weak] >= 0 || lines.seam[strong] > 0;
     for (int side : {strong, weak})
-      if (const int o = mesh.opp[side]; o >= 0) lines.of[o] = line, lines.given[o] = given;
+      if (const int o = mesh.opp[side]; o >= 0)
+        lines.of[o] = line, lines.given[o] = given, lines.seam[o] = seam ? 1 : -1;
   }
   mesh.collapse(h, gone);
 }
@@ -226,7 +228,7 @@ bool Zipper::merge(int h) {
 
 int Zipper::split(int h, double t) {
   const int a = mesh.from(h), b = mesh.to(h), g = mesh.opp[h];
-  for (std::vector<int>* column : {&lines.of, &lines.given}) {  // as EditMesh::split numbers half-edges
+  for (std::vector<int>* column : {&lines.of, &lines.given, &lines.seam}) {  // as EditMesh::split numbers half-edges
     std::vector<int>& c = *column;
     c.insert(c.end(), {c[h], c[next(h)], -1});
     c[next(h)] = -1;
@@ -301,7 +303,19 @@ int Zipper::run(std::vector<Candidate> heap) {
   return count;
 }
 
+/// Folds that merges have made are lines of their own, which are not contracted along.
+void Zipper::add_folds() {
+  const std::vector<char> added_edges = add_wrinkles();
+  for (int h = 0; h < (int)added_edges.size(); ++h) {
+    if (!added_edges[h] || mesh.opp[h] < h) continue;
+    lines.of[h] = lines.of[mesh.opp[h]] = (int)lines.length.size();
+    lines.length.push_back(norm(points[mesh.to(h)] - points[mesh.from(h)]));
+    lines.open.push_back(0), lines.rank.push_back(0);
+  }
+}
+
 int Zipper::close_strips() {
+  add_folds();
   std::fill(region_.begin(), region_.end(), -1);
   std::vector<Candidate> heap;
   for (int t = 0; t < (int)mesh.tris.size(); ++t)

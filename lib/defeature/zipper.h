@@ -19,6 +19,7 @@ constexpr double strip_angle = 25 * std::numbers::pi / 180;
 struct FeatureLines {
   std::vector<int> of;         ///< line of each half-edge, -1: not hard
   std::vector<int> given;      ///< number of the given line on each half-edge, -1: none
+  std::vector<int> seam;       ///< per half-edge: 1 where two lines have become one, else -1
   std::vector<double> length;  ///< per line
   std::vector<char> open;      ///< per line: it ends at nodes
   std::vector<char> rank;  ///< per line: 0 edge of a wrinkle, 1 crease, 2 given or between patches, 3 border
@@ -89,6 +90,7 @@ class Zipper : public MergedSurface {
   };
 
   std::vector<char> add_wrinkles();
+  void add_folds();
   Side side_of(int h) const;
   Vec3 normal_beyond(int h) const;
   bool folded(const Side& side) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 
 #include "lib/core/number.h"
 
@@ -47,9 +48,21 @@ std::vector<Score> scores_in(std::string_view verdict) {
   return rounds;
 }
 
-double first_size_in(std::string_view verdict) {
-  const std::size_t at = verdict.find("\nsize=");
-  return at == verdict.npos ? 0 : std::strtod(std::string(verdict.substr(at + 6, 40)).c_str(), nullptr);
+std::vector<double> numbers_in(std::string_view verdict, const std::string& key) {
+  const std::string start = '\n' + key + '=';
+  std::vector<double> numbers;
+  for (std::size_t at = 0; (at = verdict.find(start, at)) != verdict.npos;) {
+    at += start.size();
+    numbers.push_back(std::strtod(std::string(verdict.substr(at, 40)).c_str(), nullptr));
+  }
+  return numbers;
+}
+
+bool has_outgrown(std::string_view verdict, double triangles) {
+  const std::vector<double> before = numbers_in(verdict, "triangles");
+  if (before.empty()) return false;
+  const double later = std::accumulate(before.begin() + 1, before.end(), triangles);
+  return later > most_growth * std::max(before[0], small_result);
 }
 
 bool another_round(const std::vector<Score>& rounds, int most) {
@@ -70,6 +83,7 @@ bool another_round(const std::vector<Score>& rounds, int most) {
 
 bool is_repeated(std::string_view verdict, const Outcome& outcome) {
   if (!outcome.refined || outcome.failures.empty()) return false;
+  if (!outcome.bounded_distance && has_outgrown(verdict, outcome.triangles)) return false;
   std::vector<Score> rounds = scores_in(verdict);
   rounds.push_back(score_of(outcome.failures[0]).value_or(Score{}));
   return another_round(rounds, outcome.bounded_distance ? most_rounds_for_distance : most_rounds);
@@ -84,6 +98,7 @@ std::string verdict_block(std::string_view verdict, const Outcome& outcome) {
                       "\nprogram=" + outcome.program + "\nmessage=" + outcome.message + '\n';
   for (const Failure& f : outcome.failures) block += "failure=" + failure_line(f) + '\n';
   if (outcome.mean_size > 0) block += "size=" + shown(outcome.mean_size) + '\n';
+  if (outcome.triangles > 0) block += "triangles=" + shown(outcome.triangles) + '\n';
   if (score) block += "score=" + score->requirement + ' ' + shown(score->value) + '\n';
   block += std::string("count=") + (free ? "free" : "kept") + '\n';
   return block + "next=" + (is_repeated(verdict, outcome) ? "refine" : "stop") + '\n';

@@ -23,6 +23,7 @@ struct Outcome {
   std::string program, message;   ///< the program that failed, and its error
   std::vector<Failure> failures;  ///< in the order of the contract
   double mean_size = 0;           ///< of the result, see Findings
+  double triangles = 0;           ///< of the result
   bool refined = false;           ///< were sizes written that may meet the contract?
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
@@ -30,6 +31,9 @@ struct Outcome {
 /// The number of rounds of a chain at most: the whole takes about three times as long as the first, since
 /// later ones have the charts. What is not met by then hardly ever was, except a distance.
 constexpr int most_rounds = 4, most_rounds_for_distance = 6;
+/// No other round starts once those after the first have made this many times its triangles (or times
+/// `small_result`, where that is more): sizes that fall and fall do not help.
+constexpr double most_growth = 3, small_result = 5000;
 /// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
 /// sizes.
 constexpr int rounds_of_count = 2;
@@ -43,8 +47,12 @@ std::optional<Score> score_of(const Failure& failure);
 /// Returns the scores of the rounds in a verdict's text, an empty requirement where a round has none.
 std::vector<Score> scores_in(std::string_view verdict);
 
-/// Returns the mean size of the first round's result in a verdict's text, 0 if it has none.
-double first_size_in(std::string_view verdict);
+/// Returns the numbers of the lines "key=number" in a verdict's text.
+std::vector<double> numbers_in(std::string_view verdict, const std::string& key);
+
+/// Returns whether the rounds in a verdict's text and one of `triangles` after them have made so many triangles
+/// that there is no other.
+bool has_outgrown(std::string_view verdict, double triangles);
 
 /// Returns whether the last of these rounds is worth another. `most`: how many there may be.
 bool another_round(const std::vector<Score>& rounds, int most);

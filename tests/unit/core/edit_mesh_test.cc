@@ -111,6 +111,25 @@ TEST(EditMesh, CollapseTakesAVertexOut) {
   EXPECT_LT(m.out[v], 0);
 }
 
+//    2
+//   /|\.    v, with the three neighbors 0, 1, 2, goes into any of them, or takes in a neighbor
+//  / v \.
+// 0-----1
+TEST(EditMesh, VerticesOfValenceThreeCollapse) {
+  const std::vector<Tri> octahedron_top{{0, 1, 6}, {1, 2, 6}, {2, 0, 6}, {0, 3, 1}, {1, 4, 2},
+                                        {2, 5, 0}, {3, 4, 1}, {4, 5, 2}, {5, 3, 0}, {3, 5, 4}};
+  for (bool out : {false, true}) {
+    EditMesh m(octahedron_top, 7, {});
+    expect_sound(m);
+    ASSERT_EQ(m.valence(6), 3);
+    const int gone = out ? 6 : 0, h = half_edge(m, gone, out ? 0 : 6);
+    ASSERT_TRUE(m.can_collapse(h, gone));
+    m.collapse(h, gone);
+    expect_sound(m);
+    EXPECT_EQ(m.live, 8);
+  }
+}
+
 TEST(EditMesh, CollapseIntoTheBorder) {
   EditMesh m = grid();
   const int h = half_edge(m, 4, 5);

@@ -172,6 +172,22 @@ TEST(Defeature, LinesNeedNoVerticesOppositeEachOther) {
   for (std::size_t t = 0; t < s.tris.size(); ++t) EXPECT_GT(triangle_area(s, (int)t), 0.1);
 }
 
+//  p'--a'--a''--q'   the wall p-a-q has a corner at a; at its top, a'' is off a' by the width, so that the
+//  |  / | / ___/ |   sliver a-a''-a' is a wedge between two creases that meet at a
+//  p----a--------q
+TEST(Defeature, AWedgeBetweenWallsCloses) {
+  Surface s;
+  s.points = {{-1, 0, 0}, {0, 0, 0}, {1, -1, 0}, {-1, 0, 3}, {0, 0, 3}, {0, width, 3}, {1, -1, 3}};
+  enum { p, a, q, p1, a1, a2, q1 };
+  s.tris = {{p, a, p1}, {p1, a, a1}, {a, a2, a1}, {a, q, q1}, {a, q1, a2}, {p1, a1, a2}, {p1, a2, q1}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>(s.tris.size(), 0));
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  EXPECT_TRUE(removed(s, too_narrow).removed.empty());
+  EXPECT_EQ(removed(s, wide_enough).removed.size(), 1u);
+  EXPECT_EQ(s.points.size(), 6u);
+}
+
 TEST(Defeature, GivenLinesAreKeptOrFollow) {
   Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
   std::vector<int> given(3 * s.tris.size(), -1);  // line 7 along the lower edge of the step

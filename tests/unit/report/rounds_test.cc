@@ -89,15 +89,30 @@ TEST(rounds, the_count_is_given_up_after_two_rounds_or_for_a_distance) {
 }
 
 }  // namespace
-TEST(Rounds, TheSizeOfTheFirstOneIsKnownLater) {
-  EXPECT_EQ(first_size_in(""), 0);
+TEST(Rounds, SizesAndTrianglesAreKnownLater) {
   Outcome first, second;
   first.mean_size = 0.25, second.mean_size = 0.125;
+  first.triangles = 1e4;
   std::string verdict = verdict_block("", first);
-  EXPECT_EQ(first_size_in(verdict), 0.25);
   verdict += verdict_block(verdict, second);
-  EXPECT_EQ(first_size_in(verdict), 0.25);
-  EXPECT_EQ(first_size_in(verdict_block("", Outcome{})), 0) << "a program before mcheck has failed";
+  EXPECT_EQ(numbers_in(verdict, "size"), (std::vector<double>{0.25, 0.125}));
+  EXPECT_EQ(numbers_in(verdict, "triangles"), std::vector<double>{1e4});
+  EXPECT_TRUE(numbers_in("", "size").empty());
+}
+
+TEST(Rounds, TrianglesMayNotMultiply) {
+  auto round = [](double triangles) {
+    Outcome o = missed("kappa", 0.01);
+    o.triangles = triangles;
+    return o;
+  };
+  const std::string one = verdict_block("", round(1e4));
+  EXPECT_FALSE(has_outgrown("", 1e9)) << "the first round";
+  EXPECT_FALSE(has_outgrown(one, 3e4));
+  EXPECT_TRUE(has_outgrown(one, 3.1e4));
+  EXPECT_FALSE(is_repeated(one, round(3.1e4)));
+  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(1.6e4)), 1.5e4)) << "both together";
+  EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 3 * small_result)) << "cheap in any case";
 }
 
 }  // namespace meshpipe
