@@ -128,8 +128,8 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
 /// refined_size with limit 1; 0 where no triangle at its vertices is offending.
 std::vector<double> severity_of(const Surface& offending, const Mesh& mesh);
 
-/// Returns the result's sizes, smaller where it is too far from the reference and where triangles offend.
-/// Requires: vertex column `size`.
+/// Returns the result's sizes, smaller where it is too far from the reference and where triangles offend; the
+/// same where the reference has more intersections than triangles. Requires: vertex column `size`.
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 

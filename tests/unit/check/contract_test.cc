@@ -176,10 +176,12 @@ TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
   Surface result = surface_of(good);
   result.vertex.set("size", std::vector<double>(good.points.size(), 0.1));
   const Contract contract = parse_contract("deviation=1");
-  const Findings f = examine(result, surface_of(spiked), nullptr, 2000);
+  Findings f = examine(result, surface_of(spiked), nullptr, 2000);
   const std::vector<double> size = smaller_sizes(contract, f, result, spiked);
   EXPECT_LT(size[tip], 0.05);
   EXPECT_GT(std::count(size.begin(), size.end(), 0.1), 900);
+  f.reference_intersections = (int)spiked.tris.size() + 1;
+  EXPECT_EQ(smaller_sizes(contract, f, result, spiked), result.vertex.get<double>("size")) << "a tangle";
 }
 
 TEST(contract, a_crossing_and_a_lost_name) {
