@@ -5,7 +5,8 @@
 
 namespace meshpipe {
 
-/// Pairs of triangles that intersect for each triangle: a reference with more is a tangle that no size unravels.
+/// Pairs of triangles that intersect for each triangle: a reference with more is a tangle that no size
+/// unravels.
 constexpr double most_crossings = 1;
 
 std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {

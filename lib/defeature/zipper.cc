@@ -228,7 +228,8 @@ bool Zipper::merge(int h) {
 
 int Zipper::split(int h, double t) {
   const int a = mesh.from(h), b = mesh.to(h), g = mesh.opp[h];
-  for (std::vector<int>* column : {&lines.of, &lines.given, &lines.seam}) {  // as EditMesh::split numbers half-edges
+  for (std::vector<int>* column :
+       {&lines.of, &lines.given, &lines.seam}) {  // as EditMesh::split numbers half-edges
     std::vector<int>& c = *column;
     c.insert(c.end(), {c[h], c[next(h)], -1});
     c[next(h)] = -1;

@@ -50,8 +50,8 @@ std::vector<Score> scores_in(std::string_view verdict);
 /// Returns the numbers of the lines "key=number" in a verdict's text.
 std::vector<double> numbers_in(std::string_view verdict, const std::string& key);
 
-/// Returns whether the rounds in a verdict's text and one of `triangles` after them have made so many triangles
-/// that there is no other.
+/// Returns whether this many triangles, added to those of the rounds in a verdict's text, are too many for
+/// another round.
 bool has_outgrown(std::string_view verdict, double triangles);
 
 /// Returns whether the last of these rounds is worth another. `most`: how many there may be.

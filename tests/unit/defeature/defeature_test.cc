@@ -173,9 +173,9 @@ TEST(Defeature, LinesNeedNoVerticesOppositeEachOther) {
 }
 
 //  p'--a'--a''--q'   the wall p-a-q has a corner at a; at its top, a'' is off a' by the width, so that the
-//  |  / | / ___/ |   sliver a-a''-a' is a wedge between two creases that meet at a
+//  |  / | / ___/ |   sliver a-a''-a' lies between two creases that meet at a
 //  p----a--------q
-TEST(Defeature, AWedgeBetweenWallsCloses) {
+TEST(Defeature, ASliverBetweenWallsCloses) {
   Surface s;
   s.points = {{-1, 0, 0}, {0, 0, 0}, {1, -1, 0}, {-1, 0, 3}, {0, 0, 3}, {0, width, 3}, {1, -1, 3}};
   enum { p, a, q, p1, a1, a2, q1 };
