@@ -67,7 +67,7 @@ class Browser:
             raise RuntimeError(result["exceptionDetails"])
         return result["result"].get("value")
 
-    def wait(self, script, seconds=30):
+    def wait(self, script, seconds=120):
         """Waits until an expression is true; returns its value."""
         deadline = time.time() + seconds
         while time.time() < deadline:
