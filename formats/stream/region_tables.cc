@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "formats/stream/second_order.h"
 #include "lib/core/error.h"
 #include "lib/core/junctions.h"
 #include "lib/core/take_rows.h"
@@ -116,6 +117,10 @@ Stream with_sheets_joined(const Stream& stream) {
     s.face.set("boundary_labels.1", std::move(back));
   }
   const std::vector<int> vertex = join_borders(s);
+  std::vector<int> number(stream.surface.points.size(), 0);
+  for (std::size_t t = 0; t < s.tris.size(); ++t)
+    for (int i : {0, 1, 2}) number[stream.surface.tris[t][i]] = s.tris[t][i];
+  renumber_mid_points(joined, number);
   take_rows(s.vertex, vertex);
   if (s.vertex.columns.empty()) s.vertex.rows = s.points.size();
   return joined;

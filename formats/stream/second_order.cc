@@ -26,6 +26,29 @@ void write_mid_points(Stream& stream, const std::vector<MidPoint>& points) {
   stream.set(std::move(table));
 }
 
+void renumber_mid_points(Stream& stream, const std::vector<int>& number) {
+  const Table* table = stream.find("mid_vertex");
+  if (!table) return;
+  const auto &a = table->get<int>("a"), &b = table->get<int>("b");
+  const auto &x = table->get<double>("x"), &y = table->get<double>("y"), &z = table->get<double>("z");
+  std::vector<MidPoint> points;
+  for (std::size_t i = 0; i < table->rows; ++i) {
+    for (int v : {a[i], b[i]})
+      if (v < 0 || v >= (int)number.size())
+        throw BadInput("mid_vertex " + std::to_string(i) + " has vertex " + std::to_string(v) +
+                       ", but there are " + std::to_string(number.size()));
+    const auto [low, high] = std::minmax({number[a[i]], number[b[i]]});
+    points.push_back({low, high, {x[i], y[i], z[i]}});
+  }
+  auto edge = [](const MidPoint& p) { return std::pair(p.a, p.b); };
+  std::stable_sort(points.begin(), points.end(),
+                   [&](const MidPoint& p, const MidPoint& q) { return edge(p) < edge(q); });
+  points.erase(std::unique(points.begin(), points.end(),
+                           [&](const MidPoint& p, const MidPoint& q) { return edge(p) == edge(q); }),
+               points.end());
+  write_mid_points(stream, points);
+}
+
 SecondOrder::SecondOrder(const Stream& stream) : stream_(stream), table_(stream.find("mid_vertex")) {
   if (!table_) return;
   const auto &a = table_->get<int>("a"), &b = table_->get<int>("b");

@@ -9,6 +9,10 @@ namespace meshpipe {
 /// Adds or replaces the table mid_vertex.
 void write_mid_points(Stream& stream, const std::vector<MidPoint>& points);
 
+/// Changes the vertices of table mid_vertex, if there is one, to their new numbers; of equal edges the first
+/// stays. Throws: BadInput for a vertex that is not there.
+void renumber_mid_points(Stream& stream, const std::vector<int>& number);
+
 /// Views a stream as elements of first or second order, for writers.
 class SecondOrder {
  public:
