@@ -55,6 +55,11 @@ class Bvh {
   /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const;
+  /// Calls visit(t) for every triangle that has a point within `reach` of p in the cone around the unit
+  /// vector `axis` where the cosine is at least `cosine` (not negative), and for some others; visit returns
+  /// the reach from there on, which may not grow.
+  template <class Visit>
+  void in_cone(Vec3 p, Vec3 axis, double cosine, double reach, Visit&& visit) const;
   /// The triangles, neighbors in space close together.
   const std::vector<int>& order() const { return order_; }
 
@@ -97,6 +102,42 @@ void Bvh::overlapping(const Box& box, Visit&& visit) const {
         visit(-1 - b.child[k]);
       else
         stack[n++] = b.child[k];
+    }
+  }
+}
+
+template <class Visit>
+void Bvh::in_cone(Vec3 p, Vec3 axis, double cosine, double reach, Visit&& visit) const {
+  constexpr float trust = 1 + 1e-5f, margin = 2e-6f;  // for rounding to single precision
+  const auto q = own_units(p);
+  const float d[3] = {(float)axis.x, (float)axis.y, (float)axis.z}, slope = (float)cosine / trust;
+  auto squared = [&] {
+    const float r = (float)std::min(reach * scale_, 1e17) * trust + margin;
+    return r * r;
+  };
+  float most = squared();
+  int stack[64], n = 0;
+  stack[n++] = 0;
+  while (n) {
+    const Node& b = nodes_[stack[--n]];
+    Four away{}, along = Four{} + margin;  // least squared distance, largest extent along the axis
+    for (int k = 0; k < 3; ++k) {
+      const Four lo = b.lo[k] - q[k], hi = b.hi[k] - q[k];
+      Four out = lo > -hi ? lo : -hi;
+      out = out > 0 ? out : Four{};
+      away += out * out;
+      along += d[k] > 0 ? d[k] * hi : d[k] * lo;
+    }
+    const Mask meets =
+        (away <= most) & (along >= 0) & (along * along >= slope * slope * away) & Mask{1, 2, 4, 8};
+    for (unsigned set = meets[0] | meets[1] | meets[2] | meets[3]; set; set &= set - 1) {
+      const int k = std::countr_zero(set);
+      if (b.child[k] < 0) {
+        reach = visit(-1 - b.child[k]);
+        most = squared();
+      } else {
+        stack[n++] = b.child[k];
+      }
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "lib/core/pieces.h"
+
 namespace meshpipe {
 namespace {
 
@@ -107,23 +109,8 @@ std::vector<Fan> pinched_fans(const Connectivity& c, const std::vector<int>& lab
 }
 
 int separate_pieces(const Connectivity& c, std::vector<int>& label) {
-  std::vector<int> piece(label.size(), -1), stack;
-  int n = 0;
-  for (int seed = 0; seed < (int)label.size(); ++seed) {
-    if (piece[seed] >= 0) continue;
-    piece[seed] = n;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      int t = stack.back();
-      stack.pop_back();
-      for (int h = 3 * t; h < 3 * t + 3; ++h)
-        if (int o = c.opposite[h] / 3; c.opposite[h] >= 0 && piece[o] < 0 && label[o] == label[t]) {
-          piece[o] = n;
-          stack.push_back(o);
-        }
-    }
-    ++n;
-  }
+  std::vector<int> piece;
+  const int n = number_pieces(c.opposite, piece, [&](int t, int u) { return label[t] == label[u]; });
   label.swap(piece);
   return n;
 }

@@ -9,6 +9,7 @@
 #include "lib/core/eigenvectors.h"
 #include "lib/core/error.h"
 #include "lib/core/parallel.h"
+#include "lib/core/pieces.h"
 
 namespace meshpipe {
 
@@ -56,26 +57,7 @@ std::vector<std::vector<int>> opposite_of_parts(const std::vector<SubMesh>& part
 }
 
 int components(const std::vector<int>& opposite, std::vector<int>& component) {
-  int n_tris = (int)opposite.size() / 3, n = 0;
-  component.assign(n_tris, -1);
-  std::vector<int> stack;
-  for (int seed = 0; seed < n_tris; ++seed) {
-    if (component[seed] >= 0) continue;
-    component[seed] = n;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      int t = stack.back();
-      stack.pop_back();
-      for (int h = 3 * t; h < 3 * t + 3; ++h) {
-        int o = opposite[h];
-        if (o < 0 || component[o / 3] >= 0) continue;
-        component[o / 3] = n;
-        stack.push_back(o / 3);
-      }
-    }
-    ++n;
-  }
-  return n;
+  return number_pieces(opposite, component, [](int, int) { return true; });
 }
 
 std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite) {

@@ -2,6 +2,7 @@
 #include "lib/feature/curvature.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -29,12 +30,26 @@ double largest_eigenvalue(const double* t) {
   return std::max(std::abs(mean + 2 * p * std::cos(phi)), std::abs(mean + 2 * p * std::cos(phi + third)));
 }
 
+/// Is the Frobenius norm of every tensor over its area, which bounds the eigenvalues, at most `least`?
+bool all_below(const std::vector<Measure>& now, double least) {
+  bool above = false;
+#pragma omp parallel for schedule(static) reduction(|| : above)
+  for (std::size_t t = 0; t < now.size(); ++t) {
+    const double* m = now[t].m;
+    const double square =
+        m[0] * m[0] + m[3] * m[3] + m[5] * m[5] + 2 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4]);
+    above = above || square > least * least * m[6] * m[6];
+  }
+  return !above;
+}
+
 }  // namespace
 
-std::vector<double> face_curvature(const Connectivity& surface) {
+std::vector<double> face_curvature(const Connectivity& surface, double least) {
   const std::vector<int>& opposite = surface.opposite;
   const int n = surface.n_tris();
   std::vector<Vec3> area(n);
+#pragma omp parallel for schedule(static)
   for (int t = 0; t < n; ++t) area[t] = surface.area_vector(t);
 
   std::vector<Measure> now(n), then(n);
@@ -60,6 +75,8 @@ std::vector<double> face_curvature(const Connectivity& surface) {
     for (int i = 0; i < 3; ++i) share[3 * t + i] = sum > 0 ? 0.5 * length[i] / sum : 0;
   }
   for (int step = 0; step < steps; ++step) {
+    // averages do not exceed the largest value: after 0, 1, 2, 4, ... steps
+    if (least > 0 && std::popcount((unsigned)step) <= 1 && all_below(now, least)) break;
 #pragma omp parallel for schedule(static)
     for (int t = 0; t < n; ++t) {
       const double kept = 1 - (share[3 * t] + share[3 * t + 1] + share[3 * t + 2]);
@@ -75,6 +92,7 @@ std::vector<double> face_curvature(const Connectivity& surface) {
     std::swap(now, then);
   }
   std::vector<double> curvature(n, 0);
+#pragma omp parallel for schedule(static)
   for (int t = 0; t < n; ++t)
     if (now[t].m[6] > 0) curvature[t] = largest_eigenvalue(now[t].m) / now[t].m[6];
   return curvature;

@@ -6,6 +6,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/cut.h"
+#include "lib/core/grow.h"
 #include "lib/core/progress.h"
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
@@ -28,6 +29,12 @@ struct Limits {
   int n_parts;
   double snap;
   int max_faces;
+};
+
+/// A copy of the surface that is cut, which keeps its memory from one trial to the next.
+struct Trial {
+  Surface surface;
+  std::vector<int> opposite;
 };
 
 /// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight, and
@@ -132,23 +139,11 @@ Bands make_bands(const CutSurface& cut, const std::vector<Curve>& curves, const 
         owner[origin(s.tris, h)] = owner[target(s.tris, h)] = role[c] == Role::moves ? c : blocked;
   auto of = [&](int t, int c) { return part[t] == curves[c].a || part[t] == curves[c].b; };
 
-  std::vector<int> rest(s.tris.size());
-  for (int t = 0; t < (int)rest.size(); ++t) rest[t] = t;
-  std::vector<std::pair<int, int>> claims;
-  for (int ring = 0; ring < rings; ++ring) {
-    claims.clear();
-    std::erase_if(rest, [&](int t) {
-      const Tri& v = s.tris[t];
-      const int most = std::max({owner[v[0]], owner[v[1]], owner[v[2]]});
-      if (most < 0) return false;
-      for (int x : v)
-        if (owner[x] == nobody && of(t, most)) claims.push_back({x, most});
-      return true;
-    });
-    if (claims.empty()) break;
-    for (auto [v, c] : claims)
-      if (owner[v] == nobody) owner[v] = c;
-  }
+  std::vector<int> leaving;
+  for (int c = 0; c < (int)curves.size(); ++c)
+    if (role[c] == Role::moves)
+      for (int h : curves[c].half_edges) leaving.insert(leaving.end(), {h, next(h)});
+  grow_owners(cut.connectivity(), std::move(leaving), rings, owner, of);
 
   Bands bands;
   bands.curve.assign(s.tris.size(), -1);
@@ -314,8 +309,8 @@ std::vector<Fault> find_faults(const std::vector<Curve>& curves, const std::vect
 /// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
 /// returns an empty list; otherwise returns the curves at fault.
 std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve>& curves,
-                                  const std::vector<Role>& role, const Attempt& attempt,
-                                  const Limits& limits) {
+                                  const std::vector<Role>& role, const Attempt& attempt, const Limits& limits,
+                                  Trial& trial) {
   Surface& surface = cut.surface;
   Bands bands = make_bands(cut, curves, role);
   if (bands.mesh.tris.empty()) return {};
@@ -327,11 +322,13 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   }
   const Measure before = measure(cut, bands.curve, curves.size());
 
-  Surface s = surface;
+  Surface& s = trial.surface;
+  std::vector<int>& after = trial.opposite;
+  s = surface;
+  after = cut.opposite;
   constexpr auto band_column = "straighten band";
   s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
-  std::vector<int> after = cut.opposite;
   cut_along_line({s, after}, line, active, side);
   const std::vector<int> band = s.face.get<int>(band_column);
   s.face.erase(band_column);
@@ -342,7 +339,7 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   const std::vector<char> broken = broken_parts({s, after}, part, limits.n_parts, limits.max_faces);
   const Measure now = measure({s, after}, band, curves.size());
   const std::vector<Fault> faults = find_faults(curves, role, broken, before, now);
-  if (faults.empty()) surface = std::move(s), cut.opposite = std::move(after);
+  if (faults.empty()) std::swap(surface, s), cut.opposite.swap(after);
   return faults;
 }
 
@@ -396,7 +393,7 @@ Handle handle_of(const Mesh& m, const Curve& c) {
 /// Straightens these curves at once, without those that turn out to be at fault; returns those of the latter
 /// that may do better by other means.
 std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector<Handle>& handles,
-                                        const Attempt& attempt, const Limits& limits) {
+                                        const Attempt& attempt, const Limits& limits, Trial& trial) {
   const Surface& s = cut.surface;
   if (handles.empty()) return {};
   const std::vector<Curve> curves = find_curves(cut);
@@ -415,7 +412,7 @@ std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector
       role[c] = Role::stays;
   std::vector<Handle> failed;
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
-    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits);
+    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits, trial);
     if (faults.empty()) break;
     for (auto [c, again] : faults) {
       role[c] = Role::stays;
@@ -464,7 +461,7 @@ void trim_ears(const CutSurface& cut, const Limits& limits) {
 
 /// Straightens what is still bent, one curve at a time: on fans of large triangles the bands of neighbors may
 /// have left no triangles to move in.
-void straighten_corners(const CutSurface& cut, const Limits& limits) {
+void straighten_corners(const CutSurface& cut, const Limits& limits, Trial& trial) {
   const Surface& surface = cut.surface;
   constexpr double bent = 0.5;
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
@@ -477,14 +474,15 @@ void straighten_corners(const CutSurface& cut, const Limits& limits) {
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
   for (const auto& [turn, one] : corners)
-    if (!straighten_together(cut, {one}, attempts[2], limits).empty())
-      straighten_together(cut, {one}, last_attempt, limits);
+    if (!straighten_together(cut, {one}, attempts[2], limits, trial).empty())
+      straighten_together(cut, {one}, last_attempt, limits, trial);
 }
 
 }  // namespace
 
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces) {
   const Limits limits{n_parts, snap, max_faces};
+  Trial trial;
   const std::vector<PairColor> pairs = color_pairs(cut.surface, find_curves(cut));
   constexpr double straight = 0.05;  // as a closed shortest line is
   const Surface& surface = cut.surface;
@@ -501,11 +499,11 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
           open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
-    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits);
-    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits);
+    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits, trial);
+    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits, trial);
     add_progress(0.2 / n_colors);
   }
-  straighten_corners(cut, limits);
+  straighten_corners(cut, limits, trial);
 }
 
 }  // namespace meshpipe

@@ -126,6 +126,10 @@ std::vector<double> closed_line_lengths(const Connectivity& surface) {
   return around;
 }
 
+double least_tube_curvature(const std::vector<double>& size) {
+  return full_bend / (ring_edges * *std::max_element(size.begin(), size.end()));
+}
+
 std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
                                        const std::vector<double>& size) {
   const Mesh& mesh = surface.mesh;

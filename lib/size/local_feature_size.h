@@ -18,4 +18,7 @@ std::vector<double> closed_line_lengths(const Connectivity& surface);
 std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
                                        const std::vector<double>& size);
 
+/// Returns the curvature that a surface has to exceed somewhere so that it has a tube too narrow for `size`.
+double least_tube_curvature(const std::vector<double>& size);
+
 }  // namespace meshpipe

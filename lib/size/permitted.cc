@@ -229,17 +229,18 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   const Vec3 normal = normalized(normal_[s] + normal_[t]), up = bend > 0 ? -1.0 * normal : normal;
   double gap = lowered * lowered * sag / most_sag;
   int other = -1;
-  const Vec3 r{gap, gap, gap};
-  tree_.overlapping({p - r, p + r}, [&](int u) {
+  tree_.in_cone(p, up, opposed, gap, [&](int u) {
     ++search.work;
-    if (std::abs(dot(normal_[u], normal)) < opposed) return;
+    if (u == s || u == t || std::abs(dot(normal_[u], normal)) < opposed) return gap;
     const auto& [i, j, k] = surface_.mesh.tris[u];
+    auto rises = [&](int v) { return dot(surface_.point(v) - p, up) > 0; };
+    if (!rises(i) && !rises(j) && !rises(k)) return gap;
     const auto w = closest_on_triangle(p, surface_.point(i), surface_.point(j), surface_.point(k));
     const Vec3 d = w[0] * surface_.point(i) + w[1] * surface_.point(j) + w[2] * surface_.point(k) - p;
     const double l = norm(d);
-    if (l > gap || dot(d, up) < opposed * l || l == 0) return;
+    if (l > gap || dot(d, up) < opposed * l || l == 0) return gap;
     if (l < gap || u < other) other = u;
-    gap = l;
+    return gap = l;
   });
   if (other < 0) return none;
   const double size =

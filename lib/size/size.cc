@@ -429,17 +429,31 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
           f.s.points[at]};
 }
 
-/// Is the surface a tube or a closed line somewhere that is too narrow for these sizes?
-bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const std::vector<double>& size) {
-  const auto model = model_of(s);
+/// What was measured of a surface for a uniform size.
+struct Known {
+  std::vector<SizeBound> bounds{};
+  bool unbounded = false;           ///< there are none
+  std::vector<double> curvature{};  ///< per triangle of the surface as it came; empty: not known
+};
+
+/// Is the surface a tube or a closed line somewhere that is too narrow for these sizes? Sets `curvature`.
+bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const std::vector<double>& size,
+                      std::vector<double>& curvature) {
+  const auto& model = model_of(s);
   const Connectivity surface{s, opposite, model};
-  const std::vector<double> feature = local_feature_size(surface, face_curvature(surface), size);
+  // averages may exceed what they are made of by rounding
+  const double least = (1 - 1e-9) * least_tube_curvature(size);
+  curvature = face_curvature(surface, least);
+  const std::vector<double> feature = local_feature_size(surface, curvature, size);
+  // bounds only, which do not hold for larger sizes
+  if (!(*std::max_element(curvature.begin(), curvature.end()) > least)) curvature.clear();
   return !std::equal(feature.begin(), feature.end(), size.begin(), std::greater_equal<>());
 }
 
 /// Makes a field that is not uniform.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
-                               SizeReport& report, std::vector<SizeBound> bounds = {}) {
+                               SizeReport& report, Known known = {}) {
+  std::vector<SizeBound>& bounds = known.bounds;
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinite;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
@@ -466,7 +480,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   };
   if (bounds.empty()) {
     follow_field();
-    bounds = bounds_below(s, f.opposite, f.size, o, report);
+    if (!known.unbounded) bounds = bounds_below(s, f.opposite, f.size, o, report);
   }
   if (!bounds.empty()) {
     f.bounds = std::move(bounds);
@@ -475,6 +489,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     std::iota(f.root.begin(), f.root.end(), 0);
     follow_field();
   }
+  if (known.curvature.size() == s.tris.size()) f.curvature = std::move(known.curvature);  // not split since
   lower_where_narrow(f, report);
   report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
   report.added = static_cast<int>(s.points.size() - n_before);
@@ -561,11 +576,12 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     const std::vector<int> opposite =
         opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
     refuse_costly_tubes(surface, opposite, h, area / (0.25 * std::sqrt(3.0) * h * h));
-    std::vector<SizeBound> bounds = bounds_below(surface, opposite, size, options, report);
-    if (!bounds.empty() || has_narrow_tubes(surface, opposite, size)) {
+    Known known{.bounds = bounds_below(surface, opposite, size, options, report)};
+    known.unbounded = known.bounds.empty();
+    if (!known.unbounded || has_narrow_tubes(surface, opposite, size, known.curvature)) {
       SizeOptions o = options;
       o.max = o.max > 0 ? std::min(o.max, most_growth * h) : most_growth * h;
-      size = make_field(surface, chart, o, may_split, report, std::move(bounds));
+      size = make_field(surface, chart, o, may_split, report, std::move(known));
       report.scale = 1;
     }
   } else {

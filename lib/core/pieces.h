@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Connected sets of triangles.
+#pragma once
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace meshpipe {
+
+/// Numbers the sets of triangles that are connected by edges whose triangles belong together, by their first
+/// triangles: joins(t, u) for neighbors t > u. Returns the number of sets. Disjoint sets in the order of the
+/// triangles, which is kinder to caches than a search; in parallel.
+template <class Joins>
+int number_pieces(const std::vector<int>& opposite, std::vector<int>& piece, const Joins& joins) {
+  constexpr int chunk = 1 << 17;  // triangles
+  const int n = (int)opposite.size() / 3, n_chunks = (n + chunk - 1) / chunk;
+  piece.resize(n);  // first an earlier triangle of the set, or the triangle itself
+  auto find = [&](int t) {
+    while (piece[t] != t) t = piece[t] = piece[piece[t]];
+    return t;
+  };
+  auto join = [&](int t, int u) {
+    t = find(t), u = find(u);
+    piece[std::max(t, u)] = std::min(t, u);
+  };
+  std::vector<std::vector<int>> across(n_chunks);  // half-edges to earlier chunks
+#pragma omp parallel for schedule(static) if (n_chunks > 1)
+  for (int c = 0; c < n_chunks; ++c) {
+    const int first = c * chunk, end = std::min(n, first + chunk);
+    std::iota(piece.begin() + first, piece.begin() + end, first);
+    for (int t = first; t < end; ++t)
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        const int u = opposite[h] / 3;  // 0 on the border
+        if (opposite[h] < 0 || u > t || !joins(t, u)) continue;
+        if (u < first)
+          across[c].push_back(h);
+        else
+          join(t, u);
+      }
+  }
+  for (const std::vector<int>& edges : across)
+    for (int h : edges) join(h / 3, opposite[h] / 3);
+  int count = 0;
+  for (int t = 0; t < n; ++t) piece[t] = piece[t] == t ? count++ : piece[piece[t]];
+  return count;
+}
+
+}  // namespace meshpipe
