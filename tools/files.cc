@@ -101,7 +101,11 @@ FileBytes read_file(const std::string& path) {
   struct stat info {};
   // one byte more than the file has, so that its end is seen without growing
   if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
-  constexpr std::size_t pipe_block = 1 << 18;
+  constexpr std::size_t pipe_block = 1 << 20;
+#ifdef F_SETPIPE_SZ
+  // a pipe that holds more: its two programs wake each other sixteen times less often
+  ::fcntl(fd, F_SETPIPE_SZ, static_cast<int>(pipe_block));
+#endif
   for (;;) {
     if (bytes.space() == 0) bytes.reserve(pipe_block);
     const ssize_t n = ::read(fd, bytes.end(), bytes.space());

@@ -169,6 +169,17 @@ std::size_t place(const Stream& stream, const Element& e, long long row) {
   return stream.ascii ? e.first + row : e.first + row * e.stride;
 }
 
+/// Calls take(r) for all rows, in parallel. Returns the first one for which it is false, or -1.
+template <class Take>
+long long first_refused(long long rows, const Take& take) {
+  constexpr long long few = 50000;  // less than a millisecond
+  long long refused = rows;
+#pragma omp parallel for schedule(static) reduction(min : refused) if (rows > few)
+  for (long long r = 0; r < rows; ++r)
+    if (!take(r)) refused = std::min(refused, r);
+  return refused < rows ? refused : -1;
+}
+
 /// Reads the rows of the elements.
 class Rows {
  public:
@@ -228,21 +239,23 @@ class Rows {
     const char* base = bytes_.data() + at_;
     std::size_t offset = 0;
     if (e.name == "vertex") {
-      for (long long r = 0; r < e.rows; ++r) {
-        Vec3& p = stream_.surface.points[r];
-        std::memcpy(&p, base + r * e.stride, 24);
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) not_finite(e, r);
-      }
+      const long long r = first_refused(e.rows, [&](long long i) {
+        Vec3& p = stream_.surface.points[i];
+        std::memcpy(&p, base + i * e.stride, 24);
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      });
+      if (r >= 0) not_finite(e, r);
       offset = 24;
     } else if (e.has_list) {
-      for (long long r = 0; r < e.rows; ++r) {
-        const char* row = base + r * e.stride;
-        if (*row != 3) {
-          at_ += r * e.stride;
-          fail("face " + std::to_string(r) + " has " + std::to_string((unsigned char)*row) +
-               " corners, not 3");
-        }
-        std::memcpy(stream_.surface.tris[r].data(), row + 1, 12);
+      const long long r = first_refused(e.rows, [&](long long i) {
+        const char* row = base + i * e.stride;
+        std::memcpy(stream_.surface.tris[i].data(), row + 1, 12);
+        return *row == 3;
+      });
+      if (r >= 0) {
+        at_ += r * e.stride;
+        fail("face " + std::to_string(r) + " has " + std::to_string((unsigned char)bytes_[at_]) +
+             " corners, not 3");
       }
       offset = 13;
     }
@@ -250,11 +263,12 @@ class Rows {
       std::visit(
           [&](auto& v) {
             using T = typename std::decay_t<decltype(v)>::value_type;
-            for (long long r = 0; r < e.rows; ++r) {
-              std::memcpy(&v[r], base + r * e.stride + offset, sizeof(T));
-              if constexpr (std::is_same_v<T, double>)
-                if (!std::isfinite(v[r])) not_finite(e, r);
-            }
+            const long long r = first_refused(e.rows, [&](long long i) {
+              std::memcpy(&v[i], base + i * e.stride + offset, sizeof(T));
+              if constexpr (std::is_same_v<T, double>) return std::isfinite(v[i]);
+              return true;
+            });
+            if (r >= 0) not_finite(e, r);
             offset += sizeof(T);
           },
           c.data);
