@@ -123,5 +123,31 @@ TEST(bvh, boxes_miss_no_triangle) {
   }
 }
 
+TEST(bvh, cones_miss_no_triangle) {
+  const Mesh m = torus(0.4, 1000);
+  const Bvh bvh(m);
+  Random random(3);
+  const double cosine = 0.5, reach = 0.3;
+  int inside = 0;
+  for (int k = 0; k < 50; ++k) {
+    const Vec3 p = random.in_ball(), axis = normalized(random.in_ball());
+    std::vector<char> seen(m.tris.size(), 0);
+    bvh.in_cone(p, axis, cosine, reach, [&](int t) {
+      ++seen[t];
+      return reach;
+    });
+    for (int t = 0; t < (int)m.tris.size(); ++t) {
+      EXPECT_LE(seen[t], 1);
+      for (int v : m.tris[t]) {
+        const Vec3 d = m.points[v] - p;
+        if (norm(d) > reach || dot(d, axis) < cosine * norm(d)) continue;
+        EXPECT_EQ(seen[t], 1);
+        ++inside;
+      }
+    }
+  }
+  EXPECT_GT(inside, 100);
+}
+
 }  // namespace
 }  // namespace meshpipe
