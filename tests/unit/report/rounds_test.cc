@@ -108,11 +108,11 @@ TEST(Rounds, TrianglesMayNotMultiply) {
   };
   const std::string one = verdict_block("", round(1e4));
   EXPECT_FALSE(has_outgrown("", 1e9)) << "the first round";
-  EXPECT_FALSE(has_outgrown(one, 3e4));
-  EXPECT_TRUE(has_outgrown(one, 3.1e4));
-  EXPECT_FALSE(is_repeated(one, round(3.1e4)));
-  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(1.6e4)), 1.5e4)) << "both together";
-  EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 3 * small_result)) << "cheap in any case";
+  EXPECT_FALSE(has_outgrown(one, 2e4));
+  EXPECT_TRUE(has_outgrown(one, 2.1e4));
+  EXPECT_FALSE(is_repeated(one, round(2.1e4)));
+  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(1.1e4)), 1e4)) << "both together";
+  EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 2 * small_result)) << "cheap in any case";
 }
 
 }  // namespace meshpipe
