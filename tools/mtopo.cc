@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   std::string required, tsv_file;
   return run_tool(
       argc, argv, "mtopo",
-      "Tell the topology and the aspect ratios of every component, and of every part.\n\n"
+      "Report the topology and the aspect ratios of every component, and of every part.\n\n"
       "examples:\n  mclean tree.stl | mtopo -o topo.ply\n"
       "  mclean -q --fill-holes 200 tree.stl | mtopo --require closed --tsv topo.tsv > closed.ply",
       [&](CLI::App& app) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""the maps of mparam: distortion by map, share of a whole run, growth with the size of a chart
+"""Maps of mparam: distortion by map, share of a whole run, growth with the size of a chart.
 
 usage: scripts/bench maps [--bin DIR] [--json FILE] [--only TABLE] [--times N] [--largest N] [--figures DIR]
                           [FILE[:TRIANGLES] ...]

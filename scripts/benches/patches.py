@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cross-patch remeshing (the paper's section 5.3, Figs. 16 to 18): patches before and after they are merged, and the
-histogram of kappa near 0 of the input, of the mesh that keeps all patches, and of the one that merges them.
+"""Cross-patch remeshing (the paper's section 5.3, Figs. 16 to 18): patches before and after they are merged.
+
+With the histogram of kappa near 0 of the input, of the mesh that keeps all patches, and of the one that merges them.
 
 usage: scripts/bench patches [options] [FILE[:TRIANGLES] ...]
 
