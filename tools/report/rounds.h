@@ -33,7 +33,7 @@ struct Outcome {
 constexpr int most_rounds = 4, most_rounds_for_distance = 6;
 /// No other round starts once those after the first have made this many times its triangles (or times
 /// `small_result`, where that is more): sizes that fall and fall do not help.
-constexpr double most_growth = 2, small_result = 5000;
+constexpr double most_growth = 2, small_result = 15000;
 /// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
 /// sizes.
 constexpr int rounds_of_count = 2;

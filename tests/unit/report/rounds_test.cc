@@ -106,12 +106,12 @@ TEST(Rounds, TrianglesMayNotMultiply) {
     o.triangles = triangles;
     return o;
   };
-  const std::string one = verdict_block("", round(1e4));
+  const std::string one = verdict_block("", round(2e4));
   EXPECT_FALSE(has_outgrown("", 1e9)) << "the first round";
-  EXPECT_FALSE(has_outgrown(one, 2e4));
-  EXPECT_TRUE(has_outgrown(one, 2.1e4));
-  EXPECT_FALSE(is_repeated(one, round(2.1e4)));
-  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(1.1e4)), 1e4)) << "both together";
+  EXPECT_FALSE(has_outgrown(one, 4e4));
+  EXPECT_TRUE(has_outgrown(one, 4.1e4));
+  EXPECT_FALSE(is_repeated(one, round(4.1e4)));
+  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(2.1e4)), 2e4)) << "both together";
   EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 2 * small_result)) << "cheap in any case";
 }
 
