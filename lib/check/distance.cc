@@ -7,6 +7,9 @@
 #include <span>
 #include <tuple>
 
+#include "lib/check/overlay.h"
+#include "lib/core/surface_walk.h"
+
 namespace meshpipe {
 namespace {
 
@@ -24,19 +27,27 @@ struct Near {
 class Seeker {
  public:
   explicit Seeker(const Bvh& tree) : tree_(tree) {}
-  Near operator()(Vec3 p) {
-    const Bvh::Hit hit = known_ ? tree_.nearest(p, distance_ + norm(p - last_)) : tree_.nearest(p);
-    known_ = true;
-    last_ = p;
-    distance_ = hit.distance;
-    return {hit.distance, hit.place.face};
+  /// Walks over the surface from where the last was nearest, for a better bound.
+  Seeker(const Bvh& tree, const Connectivity& surface) : tree_(tree), surface_(&surface) {}
+  /// What is not above `enough` may be more than the distance of the nearest point.
+  Near operator()(Vec3 p, double enough = -1) {
+    double bound = last_.face < 0 ? 1e300 : last_.distance + norm(p - at_);
+    at_ = p;
+    if (surface_ && last_.face >= 0) {
+      last_.distance =
+          walk_to(p, surface_->mesh.points, surface_->mesh.tris, surface_->opposite, last_.face, enough);
+      if (last_.distance <= enough) return last_;
+      bound = std::min(bound, last_.distance);
+    }
+    const Bvh::Hit hit = tree_.nearest(p, bound);
+    return last_ = {hit.distance, hit.place.face};
   }
 
  private:
   const Bvh& tree_;
-  bool known_ = false;
-  Vec3 last_;
-  double distance_ = 0;
+  const Connectivity* surface_ = nullptr;
+  Near last_;
+  Vec3 at_;
 };
 
 /// Vertices in the order of the triangles that use them first.
@@ -63,8 +74,8 @@ struct Allowed {
 /// One direction: the distances of one surface's points from the other.
 class OneSided {
  public:
-  OneSided(const Mesh& from, const Bvh& from_tree, const Mesh& to, const Bvh& to_tree, double diagonal,
-           const Allowed& allowed)
+  OneSided(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
+           double diagonal, const Allowed& allowed)
       : from_(from),
         from_tree_(from_tree),
         to_(to),
@@ -117,11 +128,10 @@ class OneSided {
   void set_upper(Piece& piece) const;
   double from_triangle(Vec3 p, int face) const;
   double farthest_corner(const Piece& piece, int face) const;
-  double overlay_upper(const Piece& piece, double enough) const;
 
   const Mesh& from_;
   const Bvh& from_tree_;
-  const Mesh& to_;
+  const Connectivity& to_;
   const Bvh& to_tree_;
   const double diagonal_;
   const Allowed allowed_;
@@ -144,7 +154,7 @@ void OneSided::sample(int samples) {
   std::vector<Part> part(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (int k = 0; k < chunks; ++k) {
-    Seeker seek(to_tree_);
+    Seeker seek(to_tree_, to_);
     for (int j = k * chunk; j < std::min(samples, (k + 1) * chunk); ++j) {
       const double at = (j + 0.5) / samples * total;
       const int i = std::min(n - 1, (int)(std::lower_bound(area.begin(), area.end(), at) - area.begin()));
@@ -199,8 +209,8 @@ std::vector<int> OneSided::doubtful_triangles() {
 }
 
 double OneSided::from_triangle(Vec3 p, int face) const {
-  const Tri& v = to_.tris[face];
-  const Vec3 &a = to_.points[v[0]], &b = to_.points[v[1]], &c = to_.points[v[2]];
+  const Tri& v = to_.mesh.tris[face];
+  const Vec3 a = to_.point(v[0]), b = to_.point(v[1]), c = to_.point(v[2]);
   const auto w = closest_on_triangle(p, a, b, c);
   return norm(w[0] * a + w[1] * b + w[2] * c - p);
 }
@@ -214,69 +224,6 @@ double OneSided::farthest_corner(const Piece& piece, int face) const {
   return farthest;
 }
 
-/// A point in a triangle's own frame: x and y in its plane, z above it.
-using Polygon = std::array<Vec3, 8>;
-
-/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative; nothing if that
-/// has no area.
-template <class Height>
-int clip(Polygon*& polygon, Polygon*& spare, int n, const Height& height) {
-  double heights[std::tuple_size_v<Polygon>];
-  bool all = true, none = true;
-  for (int i = 0; i < n; ++i) {
-    heights[i] = height((*polygon)[i]);
-    all &= heights[i] >= 0;
-    none &= heights[i] <= 0;
-  }
-  if (all || none) return all ? n : 0;
-  int kept = 0;
-  for (int i = 0; i < n; ++i) {
-    const int j = i + 1 < n ? i + 1 : 0;
-    const double a = heights[i], b = heights[j];
-    if (a >= 0) (*spare)[kept++] = (*polygon)[i];
-    if ((a < 0) != (b < 0)) (*spare)[kept++] = lerp((*polygon)[i], (*polygon)[j], a / (a - b));
-  }
-  std::swap(polygon, spare);
-  return kept;
-}
-
-/// Projects the part of the other surface with the same orientation onto a triangle: if it covers the
-/// triangle once, no point of the triangle is farther than the highest corner of the overlay.
-double OneSided::overlay_upper(const Piece& piece, double enough) const {
-  const auto& c = piece.corner;
-  const Vec3 n = area_vector(c[0], c[1], c[2]), x = normalized(c[1] - c[0]), z = normalized(n),
-             y = cross(z, x);
-  const double area = norm(n), length = norm(c[1] - c[0]), apex_x = dot(c[2] - c[0], x),
-               apex_y = dot(c[2] - c[0], y);
-  if (!(area > 0)) return infinity;
-  double covered = 0, highest = 0;
-  Polygon polygons[2];
-  const Vec3 margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
-  to_tree_.overlapping(
-      {lower(lower(c[0], c[1]), c[2]) - margin, meshpipe::upper(meshpipe::upper(c[0], c[1]), c[2]) + margin},
-      [&](int t) {
-        Polygon *p = &polygons[0], *spare = &polygons[1];
-        for (int k = 0; k < 3; ++k) {
-          const Vec3 d = to_.points[to_.tris[t][k]] - c[0];
-          (*p)[k] = {dot(d, x), dot(d, y), dot(d, z)};
-        }
-        const Vec3 u = (*p)[1] - (*p)[0], v = (*p)[2] - (*p)[0];
-        if (!(u.x * v.y > u.y * v.x)) return;
-        int m = clip(p, spare, 3, [](const Vec3& q) { return q.y; });
-        m = clip(p, spare, m,
-                 [&](const Vec3& q) { return (apex_x - length) * q.y - apex_y * (q.x - length); });
-        m = clip(p, spare, m, [&](const Vec3& q) { return apex_y * q.x - apex_x * q.y; });
-        for (int k = 0; k < m; ++k) {
-          const Vec3 &o = (*p)[0], &a = (*p)[k], &b = (*p)[k + 1 < m ? k + 1 : 0];
-          covered += (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-          highest = std::max(highest, std::abs(a.z));
-        }
-      });
-  // what rounding may leave uncovered is no wider than this
-  constexpr double gap = 1e-8;
-  return std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
-}
-
 /// No point of a triangle is farther from a corner than its longest side over sqrt(3). And distance from a
 /// convex set is convex: a triangle is within the largest distance of its corners from any one triangle of
 /// the other surface. The dearer bounds are looked at only if the cheaper ones are not `enough`.
@@ -288,21 +235,29 @@ void OneSided::set_upper(Piece& p) const {
     distance = std::max(distance, p.near[i].distance);
   }
   p.upper = distance + side / std::sqrt(3.0);
-  for (int i = 0; i < 3 && p.upper > enough; ++i)
-    if (i == 0 || (p.near[i].face != p.near[0].face && p.near[i].face != p.near[i - 1].face))
-      p.upper = std::min(p.upper, farthest_corner(p, p.near[i].face));
-  if (p.upper > enough) p.upper = std::min(p.upper, overlay_upper(p, enough));
+  auto look = [&](auto bound) {
+    if (p.upper > enough) p.upper = std::min(p.upper, bound());
+  };
+  look([&] { return farthest_corner(p, p.near[0].face); });
+  look([&] { return sheet_height(to_, p.near[0].face, p.corner, enough); });
+  for (int i = 1; i < 3; ++i)
+    if (p.near[i].face != p.near[0].face && p.near[i].face != p.near[i - 1].face)
+      look([&] { return farthest_corner(p, p.near[i].face); });
+  look([&] { return overlay_height(to_.mesh, to_tree_, p.corner, enough); });
 }
 
 std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> triangles) {
   const std::vector<int> vertices = vertices_of(from_, triangles);
   std::vector<Near> near(from_.points.size());
   const int n = (int)vertices.size(), faces = (int)triangles.size();
+  // what is neither the farthest nor the farthest over what is allowed need not be known exactly
+  const double small =
+      allowed_.at.empty() ? largest : std::min(largest, std::min(deviation.worst, 0.5) * allowed_.least);
 #pragma omp parallel for schedule(dynamic) if (n > chunk)
   for (int first = 0; first < n; first += chunk) {
-    Seeker seek(to_tree_);
+    Seeker seek(to_tree_, to_);
     for (int i = first; i < std::min(n, first + chunk); ++i)
-      near[vertices[i]] = seek(from_.points[vertices[i]]);
+      near[vertices[i]] = seek(from_.points[vertices[i]], small);
   }
   for (int t : triangles)
     for (int v : from_.tris[t]) found(near[v], from_.points[v], t);
@@ -361,15 +316,15 @@ void OneSided::bound(int budget) {
 
 }  // namespace
 
-Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+Distance distance_between(const Connectivity& reference, const Bvh& reference_tree, const Connectivity& mesh,
                           const Bvh& mesh_tree, int samples, std::span<const double> allowed, double most) {
-  const double d = diagonal(reference), unit = d > 0 ? d : 1;
+  const double d = diagonal(reference.mesh), unit = d > 0 ? d : 1;
   // small meshes need no more than this for the mean to be right within a percent
-  const long long enough = ((long long)reference.tris.size() + (long long)mesh.tris.size()) / 4 + 500;
+  const long long enough = ((long long)reference.n_tris() + mesh.n_tris()) / 4 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
-  OneSided there(mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least, most * unit}),
-      back(reference, reference_tree, mesh, mesh_tree, d, {allowed, false, least, most * unit});
+  OneSided there(mesh.mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least, most * unit}),
+      back(reference.mesh, reference_tree, mesh, mesh_tree, d, {allowed, false, least, most * unit});
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
   const int budget = (most < infinity ? 64 : 8) * samples;
@@ -393,13 +348,14 @@ Distance distance_between(const Mesh& reference, const Bvh& reference_tree, cons
   return r;
 }
 
-std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree) {
+std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Connectivity& surface,
+                                     const Bvh& tree) {
   const std::vector<int> vertices = vertices_of(mesh, mesh_tree.order());
   std::vector<double> distances(mesh.points.size(), 0);
   const int n = (int)vertices.size();
 #pragma omp parallel for schedule(dynamic) if (n > chunk)
   for (int first = 0; first < n; first += chunk) {
-    Seeker seek(tree);
+    Seeker seek(tree, surface);
     for (int i = first; i < std::min(n, first + chunk); ++i)
       distances[vertices[i]] = seek(mesh.points[vertices[i]]).distance;
   }

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "lib/core/bvh.h"
-#include "lib/core/mesh.h"
+#include "lib/core/connectivity.h"
 
 namespace meshpipe {
 
@@ -34,13 +34,14 @@ struct Distance {
 /// the diagonal, where these suffice, and to the distance `allowed` at each triangle of the mesh (none: any).
 /// `most`, over the diagonal: a distance below it is bounded by it, with up to 64 `samples`.
 /// Deterministic at any thread count. Requires: both have triangles.
-Distance distance_between(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
+Distance distance_between(const Connectivity& reference, const Bvh& reference_tree, const Connectivity& mesh,
                           const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {},
                           double most = std::numeric_limits<double>::infinity());
 
 /// Returns the distance of each vertex of the mesh from a surface (0 for unused vertices). `mesh_tree` is the
 /// mesh's, `tree` the surface's.
-std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Bvh& tree);
+std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Connectivity& surface,
+                                     const Bvh& tree);
 
 /// Returns for each triangle of the mesh how far the surfaces are apart there, a length: the largest distance
 /// of its seven sample points (corners, edge midpoints, center) from the reference, and of those of the

@@ -216,7 +216,8 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   const std::vector<double> size =
       result.vertex.has("size") ? result.vertex.get<double>("size") : std::vector<double>();
   f.quality = quality_of(mesh, size);
-  f.reference_quality = quality_of({reference, f.reference.opposite}, {});
+  const Connectivity before{reference, f.reference.opposite};
+  f.reference_quality = quality_of(before, {});
 
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
@@ -228,12 +229,12 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.folds = find_folds(mesh, reference, reference_tree);
   const std::vector<double> edges = mean_edges(result);
   f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
-  f.off = vertex_distances(result, mesh_tree, reference_tree);
+  f.off = vertex_distances(result, mesh_tree, before, reference_tree);
   std::vector<double> smooth_off = f.off;
   if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
   for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
   f.distance = distance_between(
-      reference, reference_tree, result, mesh_tree, samples,
+      before, reference_tree, mesh, mesh_tree, samples,
       allowed_distances(result, size.empty() ? edges : size, smooth_off, std::max(least_size, f.mean_size)),
       most);
   add_progress(0.4);

@@ -2,6 +2,7 @@
 #include "lib/check/patches.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "lib/core/number.h"
@@ -25,7 +26,8 @@ std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& op
   std::vector<Patch> patches;
   if (!surface.face.has("patch")) return patches;
   const std::vector<int>& label = surface.face.get<int>("patch");
-  std::vector<int> labels = label;
+  std::vector<int> labels;
+  std::unique_copy(label.begin(), label.end(), std::back_inserter(labels));  // few are left to sort
   std::sort(labels.begin(), labels.end());
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   std::map<std::string, int> number;  // in the order of the names

@@ -44,6 +44,8 @@ class Bvh {
   /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
   /// that is already known.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
+  /// The same among the triangles that have no mark in `left_out`; face -1 if none is within `bound`.
+  Hit nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const;
   struct RayHit {
     double distance = 0;  ///< in lengths of the direction
     int face = -1;        ///< -1: none
@@ -74,6 +76,7 @@ class Bvh {
   };
   struct Item;
   Box build(Item* items, int first, int count, int node);
+  Hit search(Vec3 p, double bound, double enough, const char* left_out) const;
   void set_child(int node, int k, int child, const Box& box);
   std::array<float, 3> own_units(Vec3 p) const;
   static constexpr float slack = 1e-6f;

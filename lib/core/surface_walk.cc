@@ -9,6 +9,22 @@
 
 namespace meshpipe {
 
+double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
+               const std::vector<int>& opposite, int& t, double enough) {
+  double least = 1e300;
+  for (int at = t;;) {
+    const auto [a, b, c] = tris[at];
+    const Vec3 x = points[a], y = points[b], z = points[c];
+    const auto w = closest_on_triangle(p, x, y, z);
+    const double d = norm(w[0] * x + w[1] * y + w[2] * z - p);
+    if (!(d < least)) return least;
+    least = d, t = at;
+    const int i = w[0] <= 0 ? 1 : w[1] <= 0 ? 2 : 0;  // the edge opposite to a corner without weight
+    if (d <= enough || w[(i + 2) % 3] > 0 || opposite[3 * at + i] < 0) return least;
+    at = opposite[3 * at + i] / 3;
+  }
+}
+
 SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model)
     : mesh_(mesh),
       opposite_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),

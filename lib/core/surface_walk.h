@@ -8,6 +8,12 @@
 
 namespace meshpipe {
 
+/// Walks over a surface from triangle t, which becomes the last, across edges, as long as that comes closer
+/// to p or until it is within `enough`. Returns the distance of p from it, an upper bound of that from the
+/// surface.
+double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
+               const std::vector<int>& opposite, int& t, double enough = 0);
+
 /// A surface to walk on. Borders and feature edges (marked in `model`, as face column `model`) bound walks.
 class SurfaceWalk {
  public:

@@ -175,7 +175,6 @@ void refine_at(State& s, const Fault& fault) {
 Intersections remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   std::optional<std::pair<State, Fault>> best;
-  samples.forget();
   Known known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}};
   Repairs memory;
   for (int round = 0, since_best = 0;; ++round) {

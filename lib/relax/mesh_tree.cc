@@ -4,58 +4,84 @@
 #include "lib/core/intersect.h"
 
 namespace meshpipe {
-namespace {
 
-/// The triangles that have changed after `time` and are not gone.
-std::vector<int> changed_triangles(const State& s, int time) {
-  std::vector<int> changed;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
-    if (!s.mesh.dead(t) && changed_since(s, t, time)) changed.push_back(t);
-  return changed;
+void MeshTree::Part::build(const State& s, std::vector<int> triangles) {
+  tree.reset();
+  number = std::move(triangles);
+  mesh.tris.clear();
+  if (number.empty()) return;
+  mesh.points = s.points;
+  for (int t : number) mesh.tris.push_back(s.mesh.tris[t]);
+  tree.emplace(mesh);
 }
-
-}  // namespace
 
 void MeshTree::renew(const State& s) {
   if (time_ == s.clocks.now) return;
-  tree_.reset();
-  mesh_ = without_gaps(s, number_);
-  tree_.emplace(mesh_);
   time_ = s.clocks.now;
+  std::vector<int> all, changed;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    all.push_back(t);
+    if (built_at_ < 0 || changed_since(s, t, built_at_)) changed.push_back(t);
+  }
+  if ((double)changed.size() > rules::stale_share * (double)all.size()) {
+    built_.build(s, std::move(all));
+    built_at_ = time_;
+    changed.clear();
+  }
+  gone_.assign(built_.number.size(), 0);
+  if (built_at_ < time_)
+    for (std::size_t i = 0; i < gone_.size(); ++i) gone_[i] = changed_since(s, built_.number[i], built_at_);
+  since_.build(s, std::move(changed));
+  none_.assign(since_.number.size(), 0);
+}
+
+Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
+  Bvh::Hit hit = built_.tree->nearest_but(gone_, p, bound, enough);
+  if (hit.place.face >= 0) {
+    hit.place.face = built_.number[hit.place.face];
+    if (hit.distance <= enough) return hit;
+    bound = hit.distance;
+  }
+  if (since_.tree) {
+    Bvh::Hit other = since_.tree->nearest_but(none_, p, bound, enough);
+    if (other.place.face >= 0 && (hit.place.face < 0 || other.distance < hit.distance)) {
+      other.place.face = since_.number[other.place.face];
+      return other;
+    }
+  }
+  return hit.place.face >= 0 || bound >= 1e300 ? hit : nearest(p, 1e300, enough);
+}
+
+std::vector<std::pair<int, int>> MeshTree::unchanged_crossings() const {
+  std::vector<std::pair<int, int>> pairs = self_intersections(built_.mesh, *built_.tree);
+  std::erase_if(pairs, [&](const auto& p) { return gone_[p.first] || gone_[p.second]; });
+  for (auto& [a, b] : pairs) a = built_.number[a], b = built_.number[b];
+  return pairs;
 }
 
 void renew(Crossings& crossings, const State& s, MeshTree& search) {
-  const int before = crossings.time;
-  crossings.time = s.clocks.now;
+  search.renew(s);
   auto& pairs = crossings.pairs;
-  if (before < 0 || search.time() < 0) {
-    search.renew(s);
-    pairs = self_intersections(search.mesh(), search.tree());
-    for (auto& [a, b] : pairs) a = search.number(a), b = search.number(b);
-    return;
+  std::vector<int> changed;
+  if (crossings.time < 0) {
+    pairs = search.unchanged_crossings();
+    changed = search.changed();
+  } else {
+    auto other = [&](int t) { return changed_since(s, t, crossings.time); };
+    std::erase_if(pairs, [&](const auto& p) { return other(p.first) || other(p.second); });
+    for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+      if (!s.mesh.dead(t) && other(t)) changed.push_back(t);
   }
-  std::erase_if(pairs, [&](const auto& p) {
-    return changed_since(s, p.first, before) || changed_since(s, p.second, before);
-  });
-  // the tree finds what is as it was then, another one the rest
-  std::vector<int> other = changed_triangles(s, search.time());
-  if ((int)other.size() > rules::stale_share * s.mesh.live) search.renew(s), other.clear();
+  crossings.time = s.clocks.now;
   const Mesh now{s.points, s.mesh.tris};
-  Mesh part{other.empty() ? std::vector<Vec3>{} : s.points, {}};
-  for (int t : other) part.tris.push_back(s.mesh.tris[t]);
-  std::optional<Bvh> rest;
-  if (!other.empty()) rest.emplace(part);
-  for (int t : changed_triangles(s, before)) {
+  for (int t : changed) {
     const Box box = box_of(now, t);
-    auto look = [&](int u) {
-      if (u != t && overlap(box, box_of(now, u)) && has_area(now, t) && has_area(now, u) &&
-          triangles_intersect(now, std::min(t, u), std::max(t, u)))
+    search.overlapping(box, [&](int u) {
+      if (u != t && overlap(box, box_of(now, u)) &&
+          triangles_intersect(now, std::min(t, u), std::max(t, u)) && has_area(now, t) && has_area(now, u))
         pairs.push_back({std::min(t, u), std::max(t, u)});
-    };
-    search.tree().overlapping(box, [&](int i) {
-      if (const int u = search.number(i); !changed_since(s, u, search.time())) look(u);
     });
-    if (rest) rest->overlapping(box, [&](int i) { look(other[i]); });
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

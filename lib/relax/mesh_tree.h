@@ -18,25 +18,40 @@ inline bool changed_since(const State& s, int t, int time) {
   return changed[a] > time || changed[b] > time || changed[c] > time;
 }
 
-/// A search tree of the mesh as it was when it was last asked for.
+/// A search tree of the mesh, which follows its changes: those since it was built are in a second tree.
 class MeshTree {
  public:
   MeshTree() = default;
-  MeshTree(const MeshTree&) = delete;  // the tree has a reference to the mesh
-  /// Brings it up to date.
+  MeshTree(const MeshTree&) = delete;  // the trees have references to the meshes
+  /// Brings it up to date; the searches below are for what the mesh was then.
   void renew(const State& s);
-  const Bvh& tree() const { return *tree_; }
-  const Mesh& mesh() const { return mesh_; }
-  /// The triangle of the state that is triangle i here.
-  int number(int i) const { return number_[i]; }
-  int time() const { return time_; }  ///< -1: there is none
-  void forget() { time_ = -1; }
+  /// As Bvh::nearest; the face is a triangle of the state.
+  Bvh::Hit nearest(Vec3 p, double bound, double enough) const;
+  /// Calls visit(t) as Bvh::overlapping, t a triangle of the state.
+  template <class Visit>
+  void overlapping(const Box& box, Visit&& visit) const {
+    built_.tree->overlapping(box, [&](int i) {
+      if (!gone_[i]) visit(built_.number[i]);
+    });
+    if (since_.tree) since_.tree->overlapping(box, [&](int i) { visit(since_.number[i]); });
+  }
+  /// The pairs that intersect, as self_intersections, of triangles that have not changed since the first tree
+  /// was built; and those that have.
+  std::vector<std::pair<int, int>> unchanged_crossings() const;
+  const std::vector<int>& changed() const { return since_.number; }
+  /// Forgets the mesh: call it before it is used with another.
+  void forget() { built_at_ = time_ = -1; }
 
  private:
-  Mesh mesh_;
-  std::vector<int> number_;
-  std::optional<Bvh> tree_;
-  int time_ = -1;
+  struct Part {
+    Mesh mesh;
+    std::vector<int> number;  ///< its triangles in the state
+    std::optional<Bvh> tree;
+    void build(const State& s, std::vector<int> triangles);
+  };
+  Part built_, since_;
+  std::vector<char> gone_, none_;  ///< per triangle of the parts, whether it is not searched
+  int built_at_ = -1, time_ = -1;
 };
 
 /// The pairs of triangles that intersect, at some time.

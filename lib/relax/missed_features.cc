@@ -6,21 +6,9 @@
 namespace meshpipe {
 namespace {
 
-/// The distance of p from the triangle that a walk from t, which becomes that, ends at: the nearest, as far
-/// as a walk can tell, or the first that is within `enough`.
+/// A walk over the mesh towards p from triangle t, see walk_to.
 double walk_near(const State& s, Vec3 p, int& t, double enough) {
-  double least = 1e300;
-  for (int at = t;;) {
-    const auto [a, b, c] = s.mesh.tris[at];
-    const Vec3 x = s.points[a], y = s.points[b], z = s.points[c];
-    const auto w = closest_on_triangle(p, x, y, z);
-    const double d = norm(w[0] * x + w[1] * y + w[2] * z - p);
-    if (!(d < least)) return least;
-    least = d, t = at;
-    const int i = w[0] <= 0 ? 1 : w[1] <= 0 ? 2 : 0;  // the edge opposite to a corner without weight
-    if (d <= enough || w[(i + 2) % 3] > 0 || s.mesh.opp[3 * at + i] < 0) return least;
-    at = s.mesh.opp[3 * at + i] / 3;
-  }
+  return walk_to(p, s.points, s.mesh.tris, s.mesh.opp, t, enough);
 }
 
 /// The point of triangle t nearest to p.
@@ -78,8 +66,8 @@ void measure(const State& s, Samples& samples, std::vector<double>& distance, do
 #pragma omp parallel for schedule(dynamic, chunk) if (far.size() > chunk)
   for (int i : far) {
     Sample& x = list[i];
-    const Bvh::Hit hit = samples.search.tree().nearest(s.reference->walk.point(x.place), distance[i], enough);
-    x.near = samples.search.number(hit.place.face);
+    const Bvh::Hit hit = samples.search.nearest(s.reference->walk.point(x.place), distance[i], enough);
+    x.near = hit.place.face;
     x.time = now;
     distance[i] = x.distance = hit.distance;
   }

@@ -108,6 +108,7 @@ int optimize_to_count(State& s, int sweeps, double target, Samples& samples) {
     for (double& f : s.refinement) f *= std::sqrt(target / goal);
   }
   s = std::move(*best);
+  samples.forget();
   return tries;
 }
 

@@ -134,14 +134,6 @@ double mean_size(const State& s) {
   return size_for_count(area, s.mesh.live);
 }
 
-Mesh without_gaps(const State& s, std::vector<int>& number) {
-  Mesh now{s.points, {}};
-  number.clear();
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
-    if (!s.mesh.dead(t)) now.tris.push_back(s.mesh.tris[t]), number.push_back(t);
-  return now;
-}
-
 void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal) {
   s.place[v] = place;
   s.points[v] = p;

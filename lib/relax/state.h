@@ -153,9 +153,6 @@ std::vector<int> finish(State& s, LiftedMesh& mesh);
 /// The edge length that the triangles would have if all were equilateral and equal.
 double mean_size(const State& s);
 
-/// The mesh without gaps, for searches; number[i] is the triangle of s that is its triangle i.
-Mesh without_gaps(const State& s, std::vector<int>& number);
-
 /// Puts v at a place of the reference, whose point is p.
 void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal);
 

@@ -5,14 +5,18 @@
 #include <omp.h>
 
 #include "lib/check/check.h"
+#include "lib/check/overlay.h"
 #include "lib/core/random.h"
+#include "lib/core/topology.h"
 #include "lib/shape/shape.h"
 
 namespace meshpipe {
 namespace {
 
-Distance apart(const Mesh& a, const Mesh& b, int samples) {
-  return distance_between(a, Bvh(a), b, Bvh(b), samples);
+Distance apart(const Mesh& a, const Mesh& b, int samples, double most = 1e300) {
+  const std::vector<int> opposite[2] = {opposite_halfedges(a.tris, (int)a.points.size()),
+                                        opposite_halfedges(b.tris, (int)b.points.size())};
+  return distance_between({a, opposite[0]}, Bvh(a), {b, opposite[1]}, Bvh(b), samples, {}, most);
 }
 
 TEST(distance, distance_of_concentric_spheres) {
@@ -81,9 +85,28 @@ TEST(distance, a_distance_below_what_is_asked_is_bounded_by_it) {
   const Mesh a = sphere(500);
   Mesh b = sphere(3000);
   const double found = apart(a, b, 2000).hausdorff;
-  const Distance d = distance_between(a, Bvh(a), b, Bvh(b), 2000, {}, 1.002 * found);
+  const Distance d = apart(a, b, 2000, 1.002 * found);
   EXPECT_LE(d.hausdorff + d.bound, 1.002 * found * (1 + 1e-12));
   EXPECT_GE(d.hausdorff, found * (1 - 1e-12));
+}
+
+TEST(distance, a_sheet_over_a_triangle_is_as_high_as_its_highest_part) {
+  // a roof of two triangles, its ridge from 0 to 2 half as high as wide, over a triangle in the plane
+  Mesh roof{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  roof.points[0].z = roof.points[2].z = 0.5;
+  const std::vector<int> opposite = opposite_halfedges(roof.tris, 4);
+  const Connectivity surface{roof, opposite};
+  const std::array<Vec3, 3> inside{Vec3{-0.3, -0.2, 0}, {0.3, -0.2, 0}, {0, 0.4, 0}};
+  EXPECT_NEAR(sheet_height(surface, 0, inside, 1), 0.5, 1e-3);
+  EXPECT_NEAR(overlay_height(roof, Bvh(roof), inside, 1), 0.5, 1e-3);
+  EXPECT_GT(sheet_height(surface, 0, inside, 0.4), 1e300) << "higher than asked for";
+  const std::array<Vec3, 3> under_one{Vec3{0.3, -0.4, 0}, {0.5, -0.4, 0}, {0.4, -0.3, 0}};
+  EXPECT_NEAR(sheet_height(surface, 0, under_one, 0.48), 0.325, 1e-3) << "of the plane above it";
+  EXPECT_GT(sheet_height(surface, 1, under_one, 1), 1e300) << "the wrong one to start from";
+  const std::array<Vec3, 3> reversed{inside[0], inside[2], inside[1]};
+  EXPECT_GT(sheet_height(surface, 0, reversed, 1), 1e300);
+  const std::array<Vec3, 3> beyond{Vec3{-0.3, -0.2, 0}, {1.3, -0.2, 0}, {0, 0.4, 0}};
+  EXPECT_GT(sheet_height(surface, 0, beyond, 1), 1e300) << "past the border";
 }
 
 TEST(distance, mean_of_a_slope) {
