@@ -119,13 +119,22 @@ void flip_to_shape(State& s) {
   const std::vector<int>& changed = s.clocks.changed;
   const int since = s.clocks.flipped;
   s.clocks.flipped = ++s.clocks.now;
+  std::vector<double> shape(m.tris.size(), -1);  // of triangles, once they are asked for
+  auto shape_of = [&](int t) {
+    if (shape[t] < 0) shape[t] = s.shape(m.tris[t][0], m.tris[t][1], m.tris[t][2]);
+    return shape[t];
+  };
   for (int h = 0; h < (int)m.opp.size(); ++h) {
     if (m.dead(h / 3) || h > m.opp[h] || m.hard[h]) continue;
     if (std::max({changed[m.from(h)], changed[m.to(h)], changed[m.apex(h)], changed[m.apex(m.opp[h])]}) <
         since)
       continue;
-    const double most = rules::shape_gain * worse_now(s, h);  // no triangle has less than 1
-    if (most > 1 && worse_flipped(s, h) < most && may_flip(s, h)) flip_edge(s, h);
+    const int t = h / 3, u = m.opp[h] / 3;
+    const double most =
+        rules::shape_gain * std::max(shape_of(t), shape_of(u));  // no triangle has less than 1
+    if (!(most > 1 && worse_flipped(s, h) < most && may_flip(s, h))) continue;
+    flip_edge(s, h);
+    shape[t] = shape[u] = -1;
   }
 }
 

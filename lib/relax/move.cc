@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <numeric>
 
 #include "lib/relax/junctions.h"
@@ -20,7 +21,10 @@ struct Star {
   void look(Vec3 p);
   double energy(Vec3 p, double size);
   double energy_on_line(Vec3 p, double size);
-  /// The least cosine of the normal deviations at p, whose reference normal is `normal_p`.
+  /// Are all normal deviations at p, whose reference normal is `normal_p`, certainly within the limit?
+  /// Without roots and branches: it is asked of every move.
+  bool upright(Vec3 p, Vec3 normal_p) const;
+  /// The least cosine of the normal deviations.
   double worst_cosine(Vec3 p, Vec3 normal_p) const;
 };
 
@@ -49,7 +53,7 @@ double Star::energy(Vec3 p, double size) {
         ux * ux + uy * uy + uz * uz + vx * vx + vy * vy + vz * vz + wx * wx + wy * wy + wz * wz;
     const double n2 = area[0][i] * area[0][i] + area[1][i] * area[1][i] + area[2][i] * area[2][i];
     const double e = (squares * squares / 12 + squeezed) / n2 + stretched * n2;
-    each[i] = n2 > 0 ? e : 1e30;
+    each[i] = std::min(e, 1e30);
   }
   double sum = 0;
   for (int i = 0; i < n; ++i) sum += each[i];
@@ -66,6 +70,21 @@ double Star::energy_on_line(Vec3 p, double size) {
     sum += q > 0 ? rules::strip_weight / (q * q) : 1e30;
   }
   return sum;
+}
+
+bool Star::upright(Vec3 p, Vec3 normal_p) const {
+  constexpr double least = rules::least_cosine * rules::least_cosine * (1 + 1e-9);
+  double lack[most];
+  for (int i = 0; i < n; ++i) {
+    const double ux = y[0][i] - p.x, uy = y[1][i] - p.y, uz = y[2][i] - p.z;
+    const double vx = z[0][i] - p.x, vy = z[1][i] - p.y, vz = z[2][i] - p.z;
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    const double rx = normal_p.x + normal[0][i], ry = normal_p.y + normal[1][i],
+                 rz = normal_p.z + normal[2][i];
+    const double d = nx * rx + ny * ry + nz * rz;
+    lack[i] = least * (nx * nx + ny * ny + nz * nz) * (rx * rx + ry * ry + rz * rz) - d * std::abs(d);
+  }
+  return std::all_of(lack, lack + n, [](double l) { return l <= 0; });
 }
 
 double Star::worst_cosine(Vec3 p, Vec3 normal_p) const {
@@ -91,6 +110,7 @@ bool gather(const State& s, int v, Star& star) {
 
 /// Does a move of v from x to p, where the reference normal is `normal`, fold its star?
 bool folds_star(const State& s, const Star& star, int v, Vec3 x, Vec3 p, Vec3 normal) {
+  if (star.upright(p, normal)) return false;
   const double after = star.worst_cosine(p, normal);
   return after < rules::least_cosine && folds(star.worst_cosine(x, s.normal[v]), after);
 }

@@ -152,6 +152,11 @@ void settle(State& s, int times) {
   }
 }
 
+void rest(State& s) {
+  s.clocks.flipped = ++s.clocks.now;
+  s.clocks.tried.assign(s.clocks.tried.size(), s.clocks.now);
+}
+
 void adopt(State& s, const State& patch, std::vector<int> triangles) {
   std::vector<int> vertices = vertices_of(s.mesh, triangles);
   for (const Edit& e : patch.edits) {

@@ -47,6 +47,8 @@ std::vector<int> triangles_around(const State& s, int t, int rings);
 State extract(const State& s, const std::vector<int>& triangles);
 /// Flips for shape and smooths, a few times.
 void settle(State& s, int times);
+/// Takes everything for settled: only what is changed from now on, and what is around it, is tried again.
+void rest(State& s);
 /// Repeats in s what was done to the patch extracted from these triangles, and moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
 /// Evaluates the trials and keeps the best `most` of them, the best first.

@@ -50,16 +50,21 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide) {
   return edits;
 }
 
-/// Tries each edit on a copy of `from`. All settle a little, then the best of them quite.
-std::vector<Trial> try_all(const State& from, const std::vector<Edit>& edits) {
+/// Tries each edit on a copy of `from`, where only what it disturbs moves. All are smoothed once, the better
+/// third settles a little, and the best of them quite.
+std::vector<Trial> try_all(State from, const std::vector<Edit>& edits) {
   std::vector<Trial> trials;
+  rest(from);
   State copy = from;
   for (const Edit& e : edits) {
     if (!try_edit(copy, e)) continue;
-    settle(copy, 1);
+    flip_to_shape(copy);
+    smooth(copy, 1);
     trials.push_back({0, std::move(copy)});
     copy = from;
   }
+  keep_best(trials, std::max(rules::promising, (int)(rules::promising_at_once * (double)trials.size())));
+  for (Trial& t : trials) smooth(t.state, rules::sweeps_to_settle - 1);
   keep_best(trials, rules::promising);
   for (Trial& t : trials) settle(t.state, 1);
   keep_best(trials, rules::promising);

@@ -69,6 +69,7 @@ constexpr double needle = 0.05;                    // of the quality: one needle
 constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-break
 constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change
 constexpr int promising = 8, promising_pairs = 5;  // trials that go on, of about 100
+constexpr double promising_at_once = 0.3;          // of the trials go on after a sweep
 constexpr double least_piece = 0.02;               // of a segment: shorter pieces are needles themselves
 constexpr int rings = 2, thorough_rings = 3;       // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
@@ -91,7 +92,7 @@ constexpr double less_excess = 0.99;  // of the sum of distances over the bearab
 constexpr double stale_share = 0.25;  // of the triangles: more changes are worth a new search tree
 constexpr double growth = 1.5,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
-constexpr int fault_rounds = 16, useless_rounds = 4;
+constexpr int fault_rounds = 24, useless_rounds = 6;
 
 // missed features (missed_features.cc)
 constexpr double bent = 0.985;          // cosine: 10 degrees, from where edges have samples
