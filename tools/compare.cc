@@ -17,10 +17,9 @@ namespace {
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
 
 /// Cleans the reference; where its sheets meet, takes those of both surfaces apart. Returns whether they do.
-bool clean_both(Surface& reference, Surface& result, int& opened) {
+bool clean_both(Surface& reference, Surface& result) {
   CleanReport report;
   clean(reference, {.sheets = CleanOptions::automatic}, report);
-  opened = report.opened_edges;
   if (is_soup(result)) weld(result);
   if (!report.sheets.kept) return false;
   take_apart(reference);
@@ -38,7 +37,6 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   const bool own = file.empty();
   Stream other;
   Lines lines;
-  int opened = 0;
   bool meet = has_sheets(stream);
   if (own) {
     reference = read_reference(stream);
@@ -46,16 +44,16 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   } else {
     other = io.read(file);
     reference = std::move(other.surface);
-    meet = clean_both(reference, result, opened);
+    meet = clean_both(reference, result);
   }
   expect_measurable(reference);
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
   Findings f = examine(result, reference, own ? &lines : nullptr, samples,
                        required_distance(contract) - removed, meet, least_size);
-  f.opened = opened + opened_unasked(stream);
   f.distance.bound += removed;
-  if (meet) f.sheets = compare_sheets(reference, result, read_sheets(stream), own);
+  if (meet)
+    f.sheets = compare_sheets(reference, result, read_sheets(stream), own, f.reference_intersections == 0);
   const std::vector<Patch> patches = patches_of(result, f.mesh.opposite, namer(stream));
   // a file that holds one patch comes from a format without patches, as a rule
   if (own || (!meet && patches.size() > 1))

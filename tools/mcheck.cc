@@ -75,7 +75,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   else if (failures.empty() || o.accept)
     io.write(stream);
   if (failures.empty()) return verdict.write();
-  throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface, f.opened));
+  throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface));
 }
 
 }  // namespace

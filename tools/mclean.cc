@@ -123,8 +123,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_flag("--drop-nonorientable", o.drop_nonorientable,
                "drop components that are not orientable, instead of failing with 4");
   app.add_option("--sheets", o.how,
-                 "edges of more than two triangles: keep, pair (by solids), split, or auto (default): keep "
-                 "where sheets divide space, else pair")
+                 "edges of more than two triangles: keep, pair (by solids), split, or auto (default): pair "
+                 "where sheets are closed solids that touch, else keep")
       ->check(CLI::IsMember({"auto", "pair", "split", "keep"}));
   app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
       ->type_name("NAME")

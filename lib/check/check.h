@@ -27,7 +27,7 @@ struct Findings {
   std::optional<double> features;  ///< the same of borders and model edges, if both know their model edges
   std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
-  int reference_intersections = -1;                    ///< counted only when the mesh has some
+  int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
@@ -41,7 +41,6 @@ struct Findings {
   std::vector<int> unmarked_borders;    ///< half-edges, where the reference's patches end at model edges
   std::vector<int> reversed;            ///< a triangle of each component
   std::optional<SheetFindings> sheets;  ///< where they meet; see compare_sheets
-  int opened = 0;  ///< edges of more than two triangles of the input that cleaning has made borders, unasked
 };
 
 /// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component

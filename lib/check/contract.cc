@@ -254,9 +254,7 @@ Contract parse_contract(const std::string& list) {
 
 std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh) {
   std::vector<Failure> failures;
-  bool topology = false;
   for (const Requirement& r : contract) {
-    topology |= r.name == "topology";
     const bool flag = among(flags, r.name);
     Facts facts{mesh, r.name, flag ? no_figure : r.limit, {}};
     if (flag)
@@ -265,12 +263,6 @@ std::vector<Failure> judge(const Contract& contract, const Findings& findings, c
       judge_limit(r, findings, mesh, facts);
     std::move(facts.failures.begin(), facts.failures.end(), std::back_inserter(failures));
   }
-  // last: no other sizes repair it, so no round is scored by it
-  if (topology && findings.opened > 0)
-    failures.push_back({"topology",
-                        std::to_string(findings.opened) + (findings.opened == 1 ? " edge" : " edges") +
-                            " of more than two triangles of the input became borders",
-                        (double)findings.opened});
   return failures;
 }
 

@@ -163,19 +163,18 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
 
 namespace {
 
-/// Finds intersections, of meshes whose sheets are joined where they meet.
-void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& reference,
-                        const Bvh& reference_tree) {
-  f.intersections = self_intersections(mesh, mesh_tree);
-  if (f.intersections.empty()) return;
-  const auto before = self_intersections(reference, reference_tree);
+/// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
+/// case.
+void find_intersections(Findings& f, Mesh mesh, const Bvh& mesh_tree, Mesh reference,
+                        const Bvh& reference_tree, bool sheets_meet) {
+  auto find = [&](Mesh& m, const Bvh& tree) {
+    return sheets_meet ? sheet_intersections(m, tree) : self_intersections(m, tree);
+  };
+  f.intersections = find(mesh, mesh_tree);
+  if (f.intersections.empty() && !sheets_meet) return;
+  const auto before = find(reference, reference_tree);
   f.reference_intersections = (int)before.size();
   f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, before));
-}
-
-Mesh joined(Mesh mesh) {
-  join_borders(mesh);
-  return mesh;
 }
 
 /// Measures the distances of borders, and of borders and model edges where both surfaces know theirs.
@@ -221,10 +220,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
 
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
-  if (sheets_meet)
-    find_intersections(f, joined(result), mesh_tree, joined(reference), reference_tree);
-  else
-    find_intersections(f, result, mesh_tree, reference, reference_tree);
+  find_intersections(f, result, mesh_tree, reference, reference_tree, sheets_meet);
   add_progress(0.3);
   f.folds = find_folds(mesh, reference, reference_tree);
   const std::vector<double> edges = mean_edges(result);

@@ -24,7 +24,18 @@ struct Junctions {
   std::vector<std::array<int, 2>> edges;  ///< free edges: patch and triangle
 };
 
-Junctions junctions_of(const Mesh& joined, const std::vector<int>& patch, bool named) {
+/// Flags half-edges inside of sheets.
+std::vector<char> inside_sheets(const Mesh& apart) {
+  std::vector<char> inside(3 * apart.tris.size(), 0);
+  for_each_edge(apart.tris, (int)apart.points.size(), [&](std::span<const EdgeUse> uses) {
+    for (EdgeUse e : uses) inside[half_edge(e)] = uses.size() > 1;
+  });
+  return inside;
+}
+
+/// The junctions of borders; where the inside of sheets touches them, that is an intersection.
+Junctions junctions_of(const Mesh& joined, const std::vector<char>& inside, const std::vector<int>& patch,
+                       bool named) {
   Junctions j;
   struct Edge {
     int a, b;
@@ -34,7 +45,8 @@ Junctions junctions_of(const Mesh& joined, const std::vector<int>& patch, bool n
   for_each_edge(joined.tris, (int)joined.points.size(), [&](std::span<const EdgeUse> uses) {
     const int h = half_edge(uses[0]);
     if (uses.size() == 1) j.edges.push_back({patch[h / 3], h / 3});
-    if (uses.size() < 3) return;
+    const auto is_inside = [&](EdgeUse e) { return inside[half_edge(e)]; };
+    if (uses.size() < 3 || std::any_of(uses.begin(), uses.end(), is_inside)) return;
     Key key;
     if (!named) key.push_back((int)uses.size());
     for (EdgeUse e : uses)
@@ -121,43 +133,30 @@ void compare_labels(const Solids& solids, const std::vector<int>& patch,
   }
 }
 
-}  // namespace
-
-SheetFindings compare_sheets(const Surface& reference, const Surface& result,
-                             const std::vector<SheetPatch>& sheets, bool named) {
-  SheetFindings f;
-  Mesh joined[2] = {reference, result};
-  Junctions junctions[2];
+/// Compares the regions that the sheets of both surfaces, {reference, result}, enclose.
+void compare_regions(const Mesh (&joined)[2], const Surface* const (&surface)[2],
+                     const std::vector<SheetPatch>& sheets, bool named, SheetFindings& f) {
   Solids solids[2];
-  const Surface* surface[2] = {&reference, &result};
   for (int i : {0, 1}) {
-    join_borders(joined[i]);
-    const std::vector<int> none(joined[i].tris.size(), 0);
-    junctions[i] = junctions_of(joined[i], named ? surface[i]->face.get<int>("patch") : none, named);
     solids[i] = find_solids(joined[i]);
     f.regions[i] = solids[i].count();
   }
-  compare_lines(junctions[0], junctions[1], named, f);
-  if (!f.unmatched.empty())
-    f.faults.push_back(std::to_string(f.unmatched.size()) +
-                       " edges of sheets have no other at their place, the first in triangle " +
-                       std::to_string(f.unmatched[0]));
   if (f.regions[0] != f.regions[1])
     f.faults.push_back(std::to_string(f.regions[1]) + " regions, the reference has " +
                        std::to_string(f.regions[0]));
   if (named) {
-    compare_labels(solids[1], result.face.get<int>("patch"), sheets, f);
-    const std::vector<RegionMeasure> was = measure_regions(reference, sheets),
-                                     is = measure_regions(result, sheets);
+    compare_labels(solids[1], surface[1]->face.get<int>("patch"), sheets, f);
+    const std::vector<RegionMeasure> was = measure_regions(*surface[0], sheets),
+                                     is = measure_regions(*surface[1], sheets);
     for (std::size_t i = 0; i < is.size(); ++i)
       if (const RegionMeasure& r = is[i]; r.label > 0)
         f.volumes.push_back({r.label, was[i].volume, r.volume, offset_of(r)});
   } else if (f.regions[0] == f.regions[1]) {
     std::vector<RegionMeasure> regions(f.regions[1] + 1);
     for (int i = 1; i <= f.regions[1]; ++i) regions[i].volume = solids[1].volume[i];
-    for (int t = 0; t < (int)result.tris.size(); ++t)
+    for (int t = 0; t < (int)joined[1].tris.size(); ++t)
       for (int side : solids[1].sides[t]) {
-        regions[side].area += 0.5 * norm(area_vector(result, t));
+        regions[side].area += 0.5 * norm(area_vector(joined[1], t));
         ++regions[side].triangles;
       }
     std::sort(regions.begin() + 1, regions.end(),
@@ -172,6 +171,28 @@ SheetFindings compare_sheets(const Surface& reference, const Surface& result,
         v.reference != 0 ? std::abs(v.result - v.reference) / std::abs(v.reference) : v.result != 0;
     if (f.worst < 0 || error > f.volume_error) f.volume_error = error, f.worst = i;
   }
+}
+
+}  // namespace
+
+SheetFindings compare_sheets(const Surface& reference, const Surface& result,
+                             const std::vector<SheetPatch>& sheets, bool named, bool solid) {
+  SheetFindings f;
+  Mesh joined[2] = {reference, result};
+  Junctions junctions[2];
+  const Surface* surface[2] = {&reference, &result};
+  for (int i : {0, 1}) {
+    const std::vector<char> inside = inside_sheets(joined[i]);
+    join_borders(joined[i]);
+    const std::vector<int> none(joined[i].tris.size(), 0);
+    junctions[i] = junctions_of(joined[i], inside, named ? surface[i]->face.get<int>("patch") : none, named);
+  }
+  compare_lines(junctions[0], junctions[1], named, f);
+  if (!f.unmatched.empty())
+    f.faults.push_back(std::to_string(f.unmatched.size()) +
+                       " edges of sheets have no other at their place, the first in triangle " +
+                       std::to_string(f.unmatched[0]));
+  if (solid) compare_regions(joined, surface, sheets, named, f);
   return f;
 }
 

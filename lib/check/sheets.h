@@ -28,9 +28,10 @@ struct SheetFindings {
   std::vector<int> unmatched;  ///< triangles with a free edge, where the reference has none in this patch
 };
 
-/// Compares where sheets meet (by patch, or by their number if patches are not `named` alike) and what they
-/// enclose. Both surfaces have sheets apart, with the same coordinates where they meet.
+/// Compares where sheets meet (by patch, or by their number if patches are not `named` alike) and, if
+/// `solid`, what they enclose; where sheets intersect that is not known. Both surfaces have sheets apart,
+/// with the same coordinates where they meet.
 SheetFindings compare_sheets(const Surface& reference, const Surface& result,
-                             const std::vector<SheetPatch>& sheets, bool named);
+                             const std::vector<SheetPatch>& sheets, bool named, bool solid);
 
 }  // namespace meshpipe

@@ -7,6 +7,7 @@
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/intersect.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
@@ -245,20 +246,23 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
     if (cap[t] >= 0) patch[t] = report.holes.patches[cap[t]];
 }
 
-/// Repairs a copy of the surface where sheets are kept. Returns whether they divide space into regions.
-bool keep_sheets(const Surface& surface, const std::vector<int>& same, const CleanOptions& options, Repair& r,
-                 CleanReport& report) {
+/// Repairs a copy of the surface where sheets are kept, into `r`. Returns whether they are better kept than
+/// paired: if pairs leave borders, or if sheets divide space into regions, which is only known where they do
+/// not intersect.
+bool keep_sheets(const Surface& surface, const std::vector<int>& same, const CleanOptions& options,
+                 bool pairs_leave_borders, Repair& r, CleanReport& report) {
   r = start(surface, same, report);
   try {
     repair(r, surface.points, options, report);
   } catch (const NotAdmissible&) {  // a sheet that is not orientable
     return false;
   }
+  if (pairs_leave_borders) return true;
   Repair whole = r;
   unite(whole);
   Mesh mesh{{}, std::move(whole.tris)};
   for (int v : whole.vertex) mesh.points.push_back(surface.points[v]);
-  return divides_space(find_solids(mesh));
+  return divides_space(find_solids(mesh)) && self_intersections(mesh).empty();
 }
 
 void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
@@ -275,7 +279,7 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
     CleanOptions keep = options;
     keep.sheets = CleanOptions::keep;
     CleanReport kept = welded;
-    if (Repair whole; keep_sheets(surface, same, keep, whole, kept)) {
+    if (Repair whole; keep_sheets(surface, same, keep, report.opened_edges > 0, whole, kept)) {
       r = std::move(whole);
       report = std::move(kept);
       options = keep;

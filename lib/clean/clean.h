@@ -20,8 +20,8 @@ struct CleanOptions {
   int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
   bool cap_patches = false;         ///< give each filled hole a patch of its own
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
-  /// split elsewhere, all split, or left to share their vertices; or kept if they, or solids within solids,
-  /// divide space into regions (lib/solids/solids.h), and else paired.
+  /// split elsewhere, all split, or left to share their vertices; or paired unless they, or solids within
+  /// solids, divide space into regions (lib/solids/solids.h) or pairs leave borders, and else kept.
   enum Sheets { pair, split, keep, automatic } sheets = pair;
   /// Self-intersections: left as they are, resolved into the boundary of the outside, or into all pieces.
   enum Resolve { none, outer, all } resolve = none;

@@ -14,7 +14,6 @@ struct FailureFacts {
   double strip_width = 0;   ///< strips narrower than this ask for too many triangles; 0: none do
   int nonorientable = 0;    ///< triangles of components that are not orientable,
   bool orientable = false;  ///< and whether there are others
-  int opened = 0;           ///< edges of the input with more than two triangles that have become borders
   std::string requirement;  ///< of the contract, the first that is missed,
   double value = 0;         ///< and what was reached of it
   Vec3 place{};             ///< where it failed, if `reach` is above 0,

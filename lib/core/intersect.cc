@@ -104,9 +104,37 @@ bool disjoint_triangles_meet(const Corners& s, const Corners& t) {
          segment_meets(t.b, t.c, t1, t2, s) || segment_meets(t.c, t.a, t2, t0, s);
 }
 
-/// The end points of the segment that two triangles share, or any points near it.
-std::pair<Vec3, Vec3> contact(const Mesh& mesh, int s, int t) {
+/// The polygon that two triangles in one plane share, by cutting one at the edges of the other (Sutherland
+/// and Hodgman, 1974).
+std::vector<Vec3> overlap_of(const Corners& s, const Corners& t) {
+  std::vector<Vec3> polygon{s.a, s.b, s.c};
+  const Vec3 n = area_vector(t.a, t.b, t.c), corner[4] = {t.a, t.b, t.c, t.a};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 inward = cross(n, corner[i + 1] - corner[i]);
+    std::vector<Vec3> kept;
+    for (std::size_t j = 0; j < polygon.size(); ++j) {
+      const Vec3 p = polygon[j], q = polygon[(j + 1) % polygon.size()];
+      const double d = dot(p - corner[i], inward), e = dot(q - corner[i], inward);
+      if (d >= 0) kept.push_back(p);
+      if ((d > 0 && e < 0) || (d < 0 && e > 0)) kept.push_back(lerp(p, q, d / (d - e)));
+    }
+    polygon = std::move(kept);
+  }
+  return polygon;
+}
+
+bool coplanar(const Corners& s, const Corners& t) {
+  return orient3d(s.a, s.b, s.c, t.a) == 0 && orient3d(s.a, s.b, s.c, t.b) == 0 &&
+         orient3d(s.a, s.b, s.c, t.c) == 0;
+}
+
+/// The polygon or the ends of the segment that two triangles share, or a point near it.
+std::vector<Vec3> contact(const Mesh& mesh, int s, int t) {
   std::vector<Vec3> found;
+  if (coplanar(corners(mesh, s), corners(mesh, t))) {
+    found = overlap_of(corners(mesh, s), corners(mesh, t));
+    if (!found.empty()) return found;
+  }
   for (auto [f, g] : {std::pair{corners(mesh, s), corners(mesh, t)}, {corners(mesh, t), corners(mesh, s)}}) {
     const Vec3 n = normalized(area_vector(g.a, g.b, g.c)), p[4] = {f.a, f.b, f.c, f.a};
     for (int i = 0; i < 3; ++i) {
@@ -125,7 +153,7 @@ std::pair<Vec3, Vec3> contact(const Mesh& mesh, int s, int t) {
   for (Vec3 x : found)
     for (Vec3 y : found)
       if (norm(y - x) > norm(ends.second - ends.first)) ends = {x, y};
-  return ends;
+  return {ends.first, ends.second};
 }
 
 }  // namespace
@@ -194,14 +222,15 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
 }
 
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
-  Mesh segments;
+  Mesh places;
   for (auto [s, t] : pairs) {
-    const auto [a, b] = contact(mesh, s, t);
-    const int n = (int)segments.points.size();
-    segments.points.insert(segments.points.end(), {a, b});
-    segments.tris.push_back({n, n + 1, n + 1});
+    const std::vector<Vec3> ring = contact(mesh, s, t);
+    const int first = (int)places.points.size(), n = (int)ring.size();
+    places.points.insert(places.points.end(), ring.begin(), ring.end());
+    if (n < 3) places.tris.push_back({first, first + n - 1, first + n - 1});
+    for (int i = 2; i < n; ++i) places.tris.push_back({first, first + i - 1, first + i});
   }
-  return segments;
+  return places;
 }
 
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
@@ -216,10 +245,11 @@ std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
       for (int i = 0; i < 3; ++i)
         longest =
             std::max(longest, norm(mesh.points[mesh.tris[u][(i + 1) % 3]] - mesh.points[mesh.tris[u][i]]));
-    const auto [a, b] = contact(mesh, s, t);
+    std::vector<Vec3> places = contact(mesh, s, t);
+    places.push_back(lerp(places[0], places[places.size() / 2], 0.5));
     const double near = 2 * longest;
     const auto is_known = [&](Vec3 p) { return tree.nearest(p, 1e300, near).distance <= near; };
-    if (!is_known(lerp(a, b, 0.5)) && !is_known(a) && !is_known(b)) found.push_back({s, t});
+    if (std::none_of(places.begin(), places.end(), is_known)) found.push_back({s, t});
   }
   return found;
 }

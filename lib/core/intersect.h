@@ -23,7 +23,7 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
 
 /// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
-/// plane, the middle of what their boxes share.
+/// plane, the polygon that they share.
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
 
 /// Those of the intersecting pairs that meet farther than two of their edges from `known`, the contacts of

@@ -6,6 +6,7 @@
 
 #include "lib/core/chart_rows.h"
 #include "lib/core/edges.h"
+#include "lib/core/intersect.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
@@ -207,6 +208,37 @@ std::vector<int> join_borders(Mesh& mesh) {
   for (Tri& t : mesh.tris)
     for (int& v : t) v = number[v];
   return vertex;
+}
+
+std::vector<std::pair<int, int>> sheet_intersections(Mesh& mesh, const Bvh& tree) {
+  const std::vector<Tri> apart = mesh.tris;
+  const std::size_t vertices = mesh.points.size();
+  join_borders(mesh);
+  std::vector<std::pair<int, int>> pairs = self_intersections(mesh, tree);
+  if (mesh.points.size() == vertices) return pairs;
+  auto neighbors = [&](int h, int g) {
+    return std::minmax(origin(apart, h), target(apart, h)) == std::minmax(origin(apart, g), target(apart, g));
+  };
+  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() < 3) return;
+    for (EdgeUse e : uses) {
+      const int h = half_edge(e);
+      int other = -1;
+      bool inside = false;
+      for (EdgeUse f : uses) {
+        const int g = half_edge(f);
+        if (g == h) continue;
+        if (neighbors(h, g))
+          inside = true;
+        else if (other < 0)
+          other = g / 3;
+      }
+      if (inside && other >= 0) pairs.push_back(std::minmax(h / 3, other));
+    }
+  });
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 }  // namespace meshpipe

@@ -37,12 +37,6 @@ std::function<std::string(int)> namer(const Stream& stream) {
   };
 }
 
-int opened_unasked(const Stream& stream) {
-  for (const Provenance& p : stream.history)
-    if (p.program == "mclean" && p.arguments.find("--sheets") != p.arguments.npos) return 0;
-  return cleaning_of(stream).opened;
-}
-
 double moved_in(const Stream& stream) {
   double sum = 0;
   for (const std::string& remark : stream.remarks) sum += moved_by(remark);
@@ -107,9 +101,8 @@ std::string summary_of(const std::vector<Failure>& failures) {
          (failures.size() > 1 ? " (and " + std::to_string(failures.size() - 1) + " more)" : "");
 }
 
-FailureFacts facts_about(const Failure& f, const Mesh& mesh, int opened) {
+FailureFacts facts_about(const Failure& f, const Mesh& mesh) {
   FailureFacts facts;
-  facts.opened = opened;
   facts.requirement = f.requirement;
   facts.value = f.value;
   facts.place = f.place;

@@ -15,9 +15,6 @@ namespace meshpipe {
 /// Returns what names a patch: its name, or its label. Keeps a reference to the stream.
 std::function<std::string(int)> namer(const Stream& stream);
 
-/// Returns the number of edges that mclean has opened without being asked to, by its option --sheets.
-int opened_unasked(const Stream& stream);
-
 /// Returns how far mfeature has moved points of the input, at most, in removing features.
 double moved_in(const Stream& stream);
 
@@ -35,8 +32,8 @@ nlohmann::ordered_json failures_json(const std::vector<Failure>& failures);
 /// Returns the first failure and the number of the others. Requires: there is one.
 std::string summary_of(const std::vector<Failure>& failures);
 
-/// Returns what a way out is chosen by. `opened`: Findings::opened.
-FailureFacts facts_about(const Failure& failure, const Mesh& mesh, int opened);
+/// Returns what a way out is chosen by.
+FailureFacts facts_about(const Failure& failure, const Mesh& mesh);
 
 /// Returns a figure as tables show it, "-" if there is none. `decimals`: as Figure::decimals.
 std::string text_of(double x, int decimals);

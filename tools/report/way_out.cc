@@ -77,8 +77,7 @@ const Row table[] = {
                      "the sides of narrower strips become one"};
      }},
     {[](const Case& c) {
-       return (c.facts.nonorientable > 0 || (c.missed("topology") && c.facts.opened > 0)) && c.found.closed &&
-              !c.used("mclean", "--resolve");
+       return c.facts.nonorientable > 0 && c.found.closed && !c.used("mclean", "--resolve");
      },
      [](const Case&) {
        return WayOut{"mclean --resolve outer", "the input is closed, and only what bounds the outside stays"};
@@ -91,10 +90,6 @@ const Row table[] = {
     {[](const Case& c) { return c.facts.nonorientable > 0; },
      [](const Case&) {
        return WayOut{"mwrap", "a wrap is orientable"};
-     }},
-    {[](const Case& c) { return c.missed("topology") && c.facts.opened > 0; },
-     [](const Case&) {
-       return WayOut{"--sheets keep", "sheets stay joined where they meet; split accepts the borders"};
      }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
      [](const Case&) {

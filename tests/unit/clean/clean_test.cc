@@ -664,6 +664,27 @@ static Surface two_boxes(int n, bool same_triangles) {
   return whole;
 }
 
+TEST(Clean, SheetsAreKeptWherePairsLeaveBordersOrRegionsAreKnown) {
+  const CleanOptions automatic{.sheets = CleanOptions::automatic};
+  Surface fins = surface({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}, {0.5, 0, 1}},
+                         {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  EXPECT_TRUE(clean(fins, automatic).sheets.kept);
+  Surface touching = cubes({{0, 0, 0}, {1, 1, 0}});
+  EXPECT_FALSE(clean(touching, automatic).sheets.kept);
+  Surface boxes = two_boxes(2, true), crossed = boxes;
+  EXPECT_TRUE(clean(boxes, automatic).sheets.kept);
+  // where a third one crosses them, what encloses what is not known
+  const Surface third = cubes({{0, 0, 0}});
+  const int first = (int)crossed.points.size();
+  for (Vec3 p : third.points) crossed.points.push_back(0.17 * p + Vec3{0.05, 0.03, 0.07});
+  for (const Tri& t : third.tris) {
+    crossed.tris.push_back({first + t[0], first + t[1], first + t[2]});
+    crossed.face.get<int>("patch").push_back(2);
+  }
+  EXPECT_FALSE(clean(crossed, automatic).sheets.kept);
+  EXPECT_EQ(topology_of(crossed).loops, 0);
+}
+
 TEST(Clean, SolidsThatTouchStayClosedEach) {
   for (bool same : {false, true}) {
     Surface s = two_boxes(3, same);

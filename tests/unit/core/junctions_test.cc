@@ -29,6 +29,19 @@ TEST(Junctions, BordersAtTheSamePlaceAreJoined) {
   EXPECT_EQ(joined.tris[2], (Tri{0, 1, 4}));
 }
 
+TEST(Junctions, SheetsMayMeetInTheirBordersOnly) {
+  Mesh three = three_sheets();
+  EXPECT_TRUE(sheet_intersections(three, Bvh(three)).empty());
+  EXPECT_EQ(three.points.size(), 5u);
+  // a fourth one goes on across the edge
+  Mesh four = three_sheets();
+  const int n = (int)four.points.size();
+  for (Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0.5, 1, 1}, Vec3{0.5, 1, -1}}) four.points.push_back(p);
+  four.tris.push_back({n, n + 1, n + 2});
+  four.tris.push_back({n + 1, n, n + 3});
+  EXPECT_EQ(sheet_intersections(four, Bvh(four)), (std::vector<std::pair<int, int>>{{0, 3}, {0, 4}}));
+}
+
 TEST(Junctions, BordersAreCutAtTheSamePoints) {
   Surface s = three_sheets();
   Table chart{"chart_vertex", 0, {}};

@@ -74,17 +74,6 @@ TEST(WayOut, KnowsWhatCanBeMet) {
   EXPECT_EQ(named(3, {}, {}), "");
 }
 
-TEST(WayOut, TakesSheetsAtAnEdgeByWhatTheyEnclose) {
-  FailureFacts facts;
-  facts.requirement = "topology";
-  facts.opened = 3;
-  EXPECT_EQ(named(missed, facts, {}), "--sheets keep");
-  Diagnosis closed;
-  closed.closed = true;
-  EXPECT_EQ(named(missed, facts, closed), "mclean --resolve outer");
-  EXPECT_EQ(named(missed, facts, closed, {{"mclean", "", "--resolve=all"}}), "--sheets keep");
-}
-
 TEST(WayOut, RemovesStripsThatCostTooMuch) {
   FailureFacts facts;
   facts.strip_width = 0.02;
