@@ -11,6 +11,7 @@
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
+#include "lib/feature/planes.h"
 
 namespace meshpipe {
 namespace {
@@ -230,7 +231,8 @@ double roughness(const Network& net, const Chain& chain) {
 
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
 /// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
-/// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not).
+/// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
+/// if it is made of planes.
 void keep_designed(Network& net, double strong, double weak) {
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
@@ -255,10 +257,12 @@ void keep_designed(Network& net, double strong, double weak) {
       if (net.strong[h]) counted += net.length(h);
     smooth[component[chain[0] / 3]] += counted;
   }
+  const std::vector<char> planes =
+      made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
   for (int h = 0; h < m; ++h) {
     if (!net.on[h]) continue;
     const int c = component[h / 3];
-    const bool designed = smooth[c] >= design_share * sharp[c] ||
+    const bool designed = planes[c] || smooth[c] >= design_share * sharp[c] ||
                           (between[c] < gap * sharp[c] && area[c] > spacing * net.size * sharp[c]);
     if (!designed) net.set(h, 0);
   }

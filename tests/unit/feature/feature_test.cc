@@ -107,6 +107,29 @@ TEST(Feature, ShortCreasesAreDesignIfTheyAreFarApartAndNothingIsBetweenSmoothAnd
   EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
 }
 
+//  a thin gear: all chains are short, flanks bend by every angle, and teeth are as near as triangles are
+//  large
+TEST(Feature, WhatIsMadeOfPlanesIsDesignUnlessTheseAreSteps) {
+  constexpr int teeth = 20, flank = 3, n = teeth * 2 * (flank + 1);
+  Surface s;
+  for (double z : {0.0, 0.03}) {
+    for (int i = 0; i < n; ++i) {
+      const int k = i % (2 * flank + 2), rise = std::min(k, 2 * flank + 1 - k);
+      const double r = 0.9 + 0.2 * rise / flank, share = 0.12 + 0.13 * std::pow((double)rise / flank, 1.5);
+      const double a = 0.314 * (i / (2 * flank + 2) + (k > flank ? 1 - share : share));
+      s.points.push_back({r * std::cos(a), r * std::sin(a), z});
+    }
+    s.points.push_back({0, 0, z});
+  }
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n, up = n + 1;
+    for (Tri t : {Tri{j, i, n}, {i + up, j + up, n + up}, {i, j, j + up}, {i, j + up, i + up}})
+      s.tris.push_back(t);
+  }
+  s.face.rows = s.tris.size();
+  EXPECT_GT(mark_features(s, automatic).crease_edges, 2 * n);
+}
+
 TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyOnRequest) {
   // a ridge whose slopes flatten along j: sharp at j = 0, 30 degrees in the middle, none at the end
   auto fading = [](int i, int j) { return -std::abs(i - 10.0) * std::max(0.0, 1 - j / 20.0); };
