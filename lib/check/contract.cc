@@ -102,7 +102,7 @@ void judge_regions(const Findings& f, Facts& facts) {
   if (worst)
     facts.push_back("region " + std::to_string(worst->label) + " has volume " + shown(worst->result) +
                         ", in the reference " + shown(worst->reference) +
-                        ": its boundary is farther off than a twentieth of an edge, in the mean",
+                        ": its boundary is farther off than a tenth of an edge, in the mean",
                     f.sheets->volume_error);
 }
 

@@ -108,7 +108,7 @@ std::string name_of(int label) { return label > 0 ? "region " + std::to_string(l
 /// The volume between the boundary of a region and a surface that is a share of an edge length away.
 double offset_of(const RegionMeasure& r) {
   constexpr double most_offset =
-      0.05;  // of the edge length: chords sag by that where the radius is 2.5 edges
+      0.1;  // of the edge length: chords sag by that where the radius is 1.25 edges
   return most_offset * size_for_count(r.area, r.triangles) * r.area;
 }
 
