@@ -7,8 +7,10 @@
 #include <numeric>
 
 #include "lib/core/bvh.h"
+#include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/take_rows.h"
+#include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 #include "lib/defeature/zipper.h"
 
@@ -168,6 +170,9 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
   std::vector<char> banned(surface.points.size(), 0);
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     Zipper z(surface, options, given, banned);
+    if (const int v = find_pinched_vertex(surface.tris, z.mesh.opp, (int)banned.size()); v >= 0)
+      throw NotAdmissible("vertex " + std::to_string(v) +
+                          " joins triangles that share no edge; run mclean first");
     std::vector<double> sharpest;
     for (int v = 0; v < (int)banned.size(); ++v)
       sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));

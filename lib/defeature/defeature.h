@@ -37,8 +37,8 @@ struct DefeatureOptions {
 /// stronger one. Every point stays within `tolerance` of its place, the topology stays, and so do strips from
 /// which the surface folds back, such as the rim of a thin plate and the bottom of a slot. Needs face column
 /// `model`, which is kept up to date; other columns follow. `given`: per
-/// half-edge the number of a line that is stronger than creases, or -1; or null. Throws: like
-/// opposite_halfedges.
+/// half-edge the number of a line that is stronger than creases, or -1; or null. Throws: NotAdmissible at a
+/// vertex of several fans, and like opposite_halfedges.
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 

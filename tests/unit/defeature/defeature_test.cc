@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "lib/core/bvh.h"
+#include "lib/core/error.h"
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
 
@@ -119,6 +120,17 @@ TEST(Defeature, FineSurfacesStay) {
   s.face.erase("patch");
   mark_features(s, {FeatureOptions::angles, 40, 20, 0});
   EXPECT_TRUE(removed(s, wide_enough).removed.empty());
+}
+
+TEST(Defeature, VerticesOfTwoFansAreRefused) {
+  Surface s = extruded({{0, 0}, {1, 0}, {1, -width}, {2, -width}}, 2);
+  const int n = (int)s.points.size();
+  s.points.insert(s.points.end(), {{0, -1, 0}, {1, -1, 0}});
+  s.tris.push_back({0, n, n + 1});
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>(s.tris.size(), 0));
+  s.face.set("model", std::vector<std::uint8_t>(s.tris.size(), 0));
+  EXPECT_THROW(remove_small_features(s, {wide_enough}), NotAdmissible);
 }
 
 TEST(Defeature, ToleranceZeroRemovesNothing) {
