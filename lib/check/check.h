@@ -28,6 +28,7 @@ struct Findings {
   std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
   int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
+  int reference_crossings = 0;                         ///< of these, pairs without a corner in the same place
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
@@ -128,7 +129,7 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
 std::vector<double> severity_of(const Surface& offending, const Mesh& mesh);
 
 /// Returns the result's sizes, smaller where it is too far from the reference and where triangles offend; the
-/// same where the reference has more intersections than triangles. Requires: vertex column `size`.
+/// same where the reference has more crossings than triangles. Requires: vertex column `size`.
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 

@@ -174,6 +174,13 @@ void find_intersections(Findings& f, Mesh mesh, const Bvh& mesh_tree, Mesh refer
   if (f.intersections.empty() && !sheets_meet) return;
   const auto before = find(reference, reference_tree);
   f.reference_intersections = (int)before.size();
+  f.reference_crossings = (int)std::count_if(before.begin(), before.end(), [&](const auto& pair) {
+    const Tri &a = reference.tris[pair.first], &b = reference.tris[pair.second];
+    return std::none_of(a.begin(), a.end(), [&](int v) {
+      return std::any_of(b.begin(), b.end(),
+                         [&](int w) { return reference.points[v] == reference.points[w]; });
+    });
+  });
   f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, before));
 }
 

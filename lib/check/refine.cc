@@ -5,8 +5,8 @@
 
 namespace meshpipe {
 
-/// Pairs of triangles that intersect for each triangle: a reference with more is a tangle that no size
-/// unravels.
+/// Pairs of triangles that cross, and do not only touch, for each triangle: a reference with more is a tangle
+/// that no size unravels.
 constexpr double most_crossings = 1;
 
 std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
@@ -28,7 +28,7 @@ std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference) {
   std::vector<double> size = result.vertex.get<double>("size"), errors;
-  if (findings.reference_intersections > most_crossings * reference.tris.size()) return size;
+  if (findings.reference_crossings > most_crossings * reference.tris.size()) return size;
   auto is_distance = [](const Requirement& r) { return r.name == "hausdorff" || r.name == "deviation"; };
   if (std::any_of(contract.begin(), contract.end(), is_distance))
     errors = triangle_errors(reference, Bvh(reference), result, Bvh(result));
