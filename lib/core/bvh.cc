@@ -272,7 +272,7 @@ Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
 }
 
 Bvh::Hit Bvh::nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const {
-  return search(p, bound, enough, left_out.data());
+  return search(p, bound, enough, left_out.empty() ? nullptr : left_out.data());
 }
 
 Bvh::Hit Bvh::search(Vec3 p, double bound, double enough, const char* left_out) const {

@@ -44,7 +44,8 @@ class Bvh {
   /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
   /// that is already known.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
-  /// The same among the triangles that have no mark in `left_out`; face -1 if none is within `bound`.
+  /// The same among the triangles that have no mark in `left_out` (empty: all); face -1 if none is within
+  /// `bound`.
   Hit nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const;
   struct RayHit {
     double distance = 0;  ///< in lengths of the direction

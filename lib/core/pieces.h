@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Connected sets of triangles.
 #pragma once
-#include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "lib/core/union_find.h"
 
 namespace meshpipe {
 
@@ -14,20 +14,11 @@ template <class Joins>
 int number_pieces(const std::vector<int>& opposite, std::vector<int>& piece, const Joins& joins) {
   constexpr int chunk = 1 << 17;  // triangles
   const int n = (int)opposite.size() / 3, n_chunks = (n + chunk - 1) / chunk;
-  piece.resize(n);  // first an earlier triangle of the set, or the triangle itself
-  auto find = [&](int t) {
-    while (piece[t] != t) t = piece[t] = piece[piece[t]];
-    return t;
-  };
-  auto join = [&](int t, int u) {
-    t = find(t), u = find(u);
-    piece[std::max(t, u)] = std::min(t, u);
-  };
+  UnionFind sets(n);
   std::vector<std::vector<int>> across(n_chunks);  // half-edges to earlier chunks
 #pragma omp parallel for schedule(static) if (n_chunks > 1)
   for (int c = 0; c < n_chunks; ++c) {
     const int first = c * chunk, end = std::min(n, first + chunk);
-    std::iota(piece.begin() + first, piece.begin() + end, first);
     for (int t = first; t < end; ++t)
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const int u = opposite[h] / 3;  // 0 on the border
@@ -35,13 +26,17 @@ int number_pieces(const std::vector<int>& opposite, std::vector<int>& piece, con
         if (u < first)
           across[c].push_back(h);
         else
-          join(t, u);
+          sets.join(t, u);
       }
   }
   for (const std::vector<int>& edges : across)
-    for (int h : edges) join(h / 3, opposite[h] / 3);
+    for (int h : edges) sets.join(h / 3, opposite[h] / 3);
   int count = 0;
-  for (int t = 0; t < n; ++t) piece[t] = piece[t] == t ? count++ : piece[piece[t]];
+  piece.resize(n);
+  for (int t = 0; t < n; ++t) {
+    const int first = sets.find(t);
+    piece[t] = first == t ? count++ : piece[first];
+  }
   return count;
 }
 

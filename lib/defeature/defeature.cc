@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
@@ -109,12 +110,13 @@ void ban(const MergedSurface& z, const std::vector<int>& image, const std::vecto
 }
 
 /// Flags the vertices that were merged last, and so the farthest, into each of `at`.
-void ban_last(const MergedSurface& z, const std::vector<int>& image, std::vector<int> at,
+void ban_last(const MergedSurface& z, const std::vector<int>& image, const std::vector<int>& at,
               std::vector<char>& banned) {
-  for (std::size_t i = z.merges.size(); i-- > 0;) {
-    const int gone = z.merges[i].gone;
-    if (std::erase(at, image[gone]) > 0 && gone < (int)banned.size()) banned[gone] = 1;
-  }
+  std::vector<char> wanted(z.points.size(), 0);
+  for (int v : at) wanted[v] = 1;
+  for (std::size_t i = z.merges.size(); i-- > 0;)
+    if (const int gone = z.merges[i].gone; std::exchange(wanted[image[gone]], 0) && gone < (int)banned.size())
+      banned[gone] = 1;
 }
 
 /// Vertices of features that were removed only in part, so that two lines meet there in a sharper needle than
@@ -170,7 +172,8 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
   std::vector<char> banned(surface.points.size(), 0);
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     Zipper z(surface, options, given, banned);
-    if (const int v = find_pinched_vertex(surface.tris, z.mesh.opp, (int)banned.size()); v >= 0)
+    const int v = attempt == 0 ? find_pinched_vertex(surface.tris, z.mesh.opp, (int)banned.size()) : -1;
+    if (v >= 0)
       throw NotAdmissible("vertex " + std::to_string(v) +
                           " joins triangles that share no edge; run mclean first");
     std::vector<double> sharpest;

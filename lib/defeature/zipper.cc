@@ -316,7 +316,7 @@ void Zipper::add_folds() {
 }
 
 int Zipper::close_strips() {
-  add_folds();
+  if (!merges.empty()) add_folds();
   std::fill(region_.begin(), region_.end(), -1);
   std::vector<Candidate> heap;
   for (int t = 0; t < (int)mesh.tris.size(); ++t)

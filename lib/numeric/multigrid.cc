@@ -2,9 +2,7 @@
 #include "lib/numeric/multigrid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace meshpipe {
 namespace {
@@ -98,11 +96,9 @@ Matrix prolongation(const Matrix& a, double threshold) {
 }
 
 /// The part of A x in one row that the entries `from` to `to` are.
-template <int N>
-Eigen::Matrix<double, N, 1> product(const Matrix& a, int from, int to,
-                                    const Eigen::Matrix<double, N, Eigen::Dynamic>& x) {
-  Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero();
-  for (int k = from; k < to; ++k) sum += values(a)[k] * x.col(columns(a)[k]);
+double product(const Matrix& a, int from, int to, const Eigen::VectorXd& x) {
+  double sum = 0;
+  for (int k = from; k < to; ++k) sum += values(a)[k] * x[columns(a)[k]];
   return sum;
 }
 
@@ -135,103 +131,61 @@ Multigrid::Multigrid(Matrix matrix) {
 }
 
 /// An approximate solution by one V-cycle; symmetric in its effect, as conjugate gradients need it.
-template <int N>
-void Multigrid::cycle(std::size_t at, const Vectors<N>& b, Vectors<N>& x) const {
+void Multigrid::cycle(std::size_t at, const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   const Level& level = levels_[at];
   const Matrix &a = level.matrix, &p = level.prolongation;
   const int n = (int)a.rows();
   const std::vector<int>& diagonal = level.diagonal;
-  x.resize(N, n);
   if (at + 1 == levels_.size()) {
-    for (int c = 0; c < N; ++c) {
-      std::vector<double> column(n);
-      Eigen::Map<Eigen::RowVectorXd>(column.data(), n) = b.row(c);
-      coarsest_->solve(column);
-      x.row(c) = Eigen::Map<Eigen::RowVectorXd>(column.data(), n);
-    }
+    std::vector<double> column(b.begin(), b.end());
+    coarsest_->solve(column);
+    x = Eigen::Map<Eigen::VectorXd>(column.data(), n);
     return;
   }
   // A sweep of Gauss and Seidel from zero meets the lower triangle only; what then is left of the right-hand
   // side is the upper triangle's part.
-  for (int i = 0; i < n; ++i)
-    x.col(i) = (b.col(i) - product<N>(a, rows(a)[i], diagonal[i], x)) / values(a)[diagonal[i]];
-  Vectors<N> coarse_b = Vectors<N>::Zero(N, p.cols()), coarse_x;
+  x.resize(n);
+  for (int i = 0; i < n; ++i) x[i] = (b[i] - product(a, rows(a)[i], diagonal[i], x)) / values(a)[diagonal[i]];
+  Eigen::VectorXd coarse_b = Eigen::VectorXd::Zero(p.cols()), coarse_x;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Matrix<double, N, 1> left = -product<N>(a, diagonal[i] + 1, rows(a)[i + 1], x);
-    for (int k = rows(p)[i]; k < rows(p)[i + 1]; ++k) coarse_b.col(columns(p)[k]) += values(p)[k] * left;
+    const double left = -product(a, diagonal[i] + 1, rows(a)[i + 1], x);
+    for (int k = rows(p)[i]; k < rows(p)[i + 1]; ++k) coarse_b[columns(p)[k]] += values(p)[k] * left;
   }
-  cycle<N>(at + 1, coarse_b, coarse_x);
-  for (int i = 0; i < n; ++i) x.col(i) += product<N>(p, rows(p)[i], rows(p)[i + 1], coarse_x);
+  cycle(at + 1, coarse_b, coarse_x);
+  for (int i = 0; i < n; ++i) x[i] += product(p, rows(p)[i], rows(p)[i + 1], coarse_x);
   for (int i = n - 1; i >= 0; --i)
-    x.col(i) = (b.col(i) - product<N>(a, rows(a)[i], diagonal[i], x) -
-                product<N>(a, diagonal[i] + 1, rows(a)[i + 1], x)) /
-               values(a)[diagonal[i]];
+    x[i] = (b[i] - product(a, rows(a)[i], diagonal[i], x) - product(a, diagonal[i] + 1, rows(a)[i + 1], x)) /
+           values(a)[diagonal[i]];
 }
 
-/// Conjugate gradients for N systems side by side: their steps are their own, but the cycles, most of the
-/// work, take the time of one, since they wait for memory and for the unknown before.
-template <int N>
-bool Multigrid::solve_together(const double* right_hand_side, double* solution) const {
-  const Eigen::Index n = matrix().rows();
-  struct System {
-    Eigen::VectorXd x, residual, direction, image;
-    double square = 0, limit = 0, along = 0;
-    bool done = false;
-  };
-  std::array<System, N> systems;
-  Vectors<N> together(N, n), cycled;
-  auto precondition = [&] {
-    for (int c = 0; c < N; ++c) together.row(c) = systems[c].residual.transpose();
-    cycle<N>(0, together, cycled);
-  };
-  for (int c = 0; c < N; ++c) {
-    System& s = systems[c];
-    s.residual = Eigen::Map<const Eigen::VectorXd>(right_hand_side + c * n, n);
-    s.x = Eigen::VectorXd::Zero(n);
-    s.square = s.residual.squaredNorm();
-    s.limit = std::max(small_residual * small_residual * s.square, std::numeric_limits<double>::min());
-    s.done = s.square < s.limit;
+/// A V-cycle as Eigen's solvers take a preconditioner.
+struct Multigrid::Cycle {
+  const Multigrid* of = nullptr;
+  template <class AnyMatrix>
+  Cycle& compute(const AnyMatrix&) {
+    return *this;
   }
-  auto left = [&] { return !std::all_of(systems.begin(), systems.end(), [](auto& s) { return s.done; }); };
-  for (int step = 0; step < most_steps && left(); ++step) {
-    precondition();
-    for (int c = 0; c < N; ++c) {
-      System& s = systems[c];
-      if (s.done) continue;
-      const Eigen::VectorXd z = cycled.row(c).transpose();
-      const double before = s.along;
-      s.along = s.residual.dot(z);
-      if (step == 0)
-        s.direction = z;
-      else
-        s.direction = z + s.along / before * s.direction;
-      s.image.noalias() = matrix() * s.direction;
-      const double length = s.along / s.direction.dot(s.image);
-      s.x += length * s.direction;
-      s.residual -= length * s.image;
-      s.square = s.residual.squaredNorm();
-      s.done = s.square < s.limit;
-    }
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    Eigen::VectorXd x;
+    of->cycle(0, b, x);
+    return x;
   }
-  for (int c = 0; c < N; ++c) {
-    const System& s = systems[c];
-    const Eigen::Map<const Eigen::VectorXd> b(right_hand_side + c * n, n);
-    // what the steps have summed up parts from the residual where the matrix is badly conditioned
-    if (!s.done || !((matrix() * s.x - b).norm() <= true_residual * b.norm())) return false;
-    Eigen::Map<Eigen::VectorXd>(solution + c * n, n) = s.x;
-  }
-  return true;
-}
+  Eigen::ComputationInfo info() const { return Eigen::Success; }
+};
 
 bool Multigrid::solve(std::vector<double>& right_hand_side) const {
-  const std::size_t n = matrix().rows();
+  const Eigen::Index n = matrix().rows();
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper, Cycle> steps;
+  steps.preconditioner().of = this;
+  steps.compute(matrix()).setTolerance(small_residual).setMaxIterations(most_steps);
   std::vector<double> solution(right_hand_side.size());
-  for (std::size_t at = 0; at < solution.size();) {
-    const bool two = at + 2 * n <= solution.size();
-    if (!(two ? solve_together<2>(&right_hand_side[at], &solution[at])
-              : solve_together<1>(&right_hand_side[at], &solution[at])))
+  for (std::size_t at = 0; at < solution.size(); at += n) {
+    const Eigen::Map<const Eigen::VectorXd> b(&right_hand_side[at], n);
+    Eigen::Map<Eigen::VectorXd> x(&solution[at], n);
+    x = steps.solve(b);
+    // what the steps have summed up parts from the residual where the matrix is badly conditioned
+    if (steps.info() != Eigen::Success || !((matrix() * x - b).norm() <= true_residual * b.norm()))
       return false;
-    at += two ? 2 * n : n;
   }
   right_hand_side = std::move(solution);
   return true;

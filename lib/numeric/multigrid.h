@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Conjugate gradients preconditioned by algebraic multigrid, for Laplacians that cost too much to factor.
 #pragma once
-#include <Eigen/SparseCore>
+#include <Eigen/IterativeLinearSolvers>
 #include <optional>
 #include <vector>
 
@@ -35,13 +35,8 @@ class Multigrid {
     std::vector<int> diagonal;  ///< its place in every row
     Matrix prolongation;        ///< from the next coarser level, if there is one
   };
-  /// Vectors of N systems, whose numbers for the same unknown follow each other.
-  template <int N>
-  using Vectors = Eigen::Matrix<double, N, Eigen::Dynamic>;
-  template <int N>
-  void cycle(std::size_t level, const Vectors<N>& b, Vectors<N>& x) const;
-  template <int N>
-  bool solve_together(const double* right_hand_side, double* solution) const;
+  struct Cycle;
+  void cycle(std::size_t level, const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
 
   std::vector<Level> levels_;
   std::optional<Factorization<double>> coarsest_;

@@ -60,15 +60,8 @@ bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::
          !folds(cosine_before, cosine_after);
 }
 
-/// Collapses the edge whichever way works.
-bool collapse_either(State& s, int h, const rules::Collapse& limits) {
-  const int a = s.mesh.from(h), b = s.mesh.to(h);
-  return collapse_edge(s, h, a, limits) || collapse_edge(s, h, b, limits);
-}
-
-}  // namespace
-
-static bool collapse_copies(State& s, int h, int gone, const rules::Collapse& limits) {
+/// Takes `gone` and its copies out, each along its edge of the line where sheets meet.
+bool collapse_copies(State& s, int h, int gone, const rules::Collapse& limits) {
   const EditMesh& m = s.mesh;
   const Vec3 p = s.points[m.from(h) == gone ? m.to(h) : m.from(h)];
   const std::vector<std::pair<int, int>> edges = with_copies(s, h, gone);
@@ -81,6 +74,14 @@ static bool collapse_copies(State& s, int h, int gone, const rules::Collapse& li
   for (const auto& [e, v] : edges) remove_vertex(s, e, v);
   return !edges.empty();
 }
+
+/// Collapses the edge whichever way works.
+bool collapse_either(State& s, int h, const rules::Collapse& limits) {
+  const int a = s.mesh.from(h), b = s.mesh.to(h);
+  return collapse_edge(s, h, a, limits) || collapse_edge(s, h, b, limits);
+}
+
+}  // namespace
 
 bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge) {
   if (is_shared(s, gone)) return !merge && collapse_copies(s, h, gone, limits);

@@ -33,7 +33,6 @@ void MeshTree::renew(const State& s) {
   if (built_at_ < time_)
     for (std::size_t i = 0; i < gone_.size(); ++i) gone_[i] = changed_since(s, built_.number[i], built_at_);
   since_.build(s, std::move(changed));
-  none_.assign(since_.number.size(), 0);
 }
 
 Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
@@ -44,7 +43,7 @@ Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
     bound = hit.distance;
   }
   if (since_.tree) {
-    Bvh::Hit other = since_.tree->nearest_but(none_, p, bound, enough);
+    Bvh::Hit other = since_.tree->nearest_but({}, p, bound, enough);
     if (other.place.face >= 0 && (hit.place.face < 0 || other.distance < hit.distance)) {
       other.place.face = since_.number[other.place.face];
       return other;

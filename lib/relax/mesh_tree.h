@@ -50,7 +50,7 @@ class MeshTree {
     void build(const State& s, std::vector<int> triangles);
   };
   Part built_, since_;
-  std::vector<char> gone_, none_;  ///< per triangle of the parts, whether it is not searched
+  std::vector<char> gone_;  ///< per triangle of the first, whether it is not searched
   int built_at_ = -1, time_ = -1;
 };
 
