@@ -139,7 +139,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     if (!insert)
       for (const CopyPlace& c : places) put(after, c.at, c.place, p, c.normal);
     for_copies(after, v, [&](int c) { after.hold[c] = on_line ? fixed : anchored; });
-    after.coloring.listed = false;
+    after.schedule.listed = false;
     settle(after, 1);
   }
   keep_best(trials, rules::promising_features);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
@@ -179,23 +180,54 @@ bool advance(State& s, int v, int now) {
   return s.hold[v] == slides ? slide_vertex(s, v) : move_vertex(s, v);
 }
 
-/// Lists the vertices that may move by themselves, by color.
-void list_by_color(State& s) {
-  const std::vector<signed char>& color = s.coloring.color;
-  std::vector<int>& start = s.coloring.start;
+/// Lists the vertices that may move by themselves, by the level of the blocks that have their neighbors.
+void list_by_level(State& s) {
+  std::vector<int>& start = s.schedule.start;
   const int n = (int)s.mesh.out.size();
-  auto moves = [&](int v) {
-    return s.mesh.out[v] >= 0 && s.hold[v] < fixed && color[v] >= 0 && !is_shared(s, v);
+  auto moves = [&](int v) { return s.mesh.out[v] >= 0 && s.hold[v] < fixed && !is_shared(s, v); };
+  auto level = [&](int v) {
+    return std::max(0, s.schedule.span[v] - rules::block_bits + rules::level_bits - 1) / rules::level_bits;
   };
-  start.assign(65, 0);
+  start.assign(2 + 32 / rules::level_bits, 0);
   for (int v = 0; v < n; ++v)
-    if (moves(v)) ++start[color[v] + 1];
+    if (moves(v)) ++start[level(v) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<int> next(start.begin(), start.end() - 1);
-  s.coloring.order.resize(start.back());
+  s.schedule.order.resize(start.back());
   for (int v = 0; v < n; ++v)
-    if (moves(v)) s.coloring.order[next[color[v]]++] = v;
-  s.coloring.listed = true;
+    if (moves(v)) s.schedule.order[next[level(v)]++] = v;
+  s.schedule.listed = true;
+}
+
+/// Moves vertices of one level: the blocks of 2^bits in parallel, each in order. Returns how many moved.
+int smooth_level(State& s, std::span<const int> vertices, int bits) {
+  if (vertices.empty()) return 0;
+  // times within a block are in order, and those of other blocks do not matter to it
+  const bool worth_threads = (int)vertices.size() > rules::vertices_worth_threads;
+  const int before = s.clocks.now, all = (int)vertices.size();
+  s.clocks.now += worth_threads ? (int)std::min<std::int64_t>(all, std::int64_t(1) << bits) : all;
+  auto run = [&](auto first, auto last) {
+    int moves = 0, now = before;
+    for (auto v = first; v != last; ++v) {
+      ++now;
+      if (!advance(s, *v, now)) continue;
+      s.clocks.changed[*v] = now;
+      ++moves;
+    }
+    return moves;
+  };
+  // not even a team of one: patches of a hundred triangles are smoothed hundreds of times
+  if (!worth_threads) return run(vertices.begin(), vertices.end());
+  const int first = vertices.front() >> bits, last = vertices.back() >> bits;
+  int moves = 0;
+#pragma omp parallel for schedule(dynamic) reduction(+ : moves)
+  for (int block = first; block <= last; ++block) {
+    auto start = [&](int b) {
+      return std::lower_bound(vertices.begin(), vertices.end(), std::int64_t(b) << bits);
+    };
+    moves += run(start(block), start(block + 1));
+  }
+  return moves;
 }
 
 /// Moves vertices with copies, one after the other: they are few. Returns how many moved.
@@ -307,24 +339,14 @@ bool improve_vertex(State& s, int v) {
 }
 
 void smooth(State& s, int sweeps) {
-  if (!s.coloring.listed) list_by_color(s);
-  const std::vector<int>&order = s.coloring.order, &start = s.coloring.start;
+  if (!s.schedule.listed) list_by_level(s);
+  const std::vector<int>& start = s.schedule.start;
   for (int i = 0; i < sweeps; ++i) {
     int moves = 0;
-    for (int c = 0; c < 64 && start[c] < start[64]; ++c) {
-      const int now = ++s.clocks.now, first = start[c], last = start[c + 1];
-      auto one = [&](int v) {
-        const bool moved = advance(s, v, now);
-        if (moved) s.clocks.changed[v] = now;
-        return moved;
-      };
-      if (last - first > rules::vertices_worth_threads) {
-#pragma omp parallel for schedule(static) reduction(+ : moves)
-        for (int k = first; k < last; ++k) moves += one(order[k]);
-      } else {  // not even a team of one: patches of a hundred triangles are smoothed hundreds of times
-        for (int k = first; k < last; ++k) moves += one(order[k]);
-      }
-    }
+    for (std::size_t level = 0; level + 1 < start.size(); ++level)
+      moves +=
+          smooth_level(s, std::span(s.schedule.order).subspan(start[level], start[level + 1] - start[level]),
+                       std::min(31, rules::block_bits + rules::level_bits * (int)level));
     s.counts.moves += moves + slide_shared(s);
   }
 }

@@ -66,7 +66,7 @@ bool move_vertex(State& s, int v);
 bool slide_vertex(State& s, int v);
 /// Moves or slides v unless it is held or nothing around it has changed since the last try.
 bool improve_vertex(State& s, int v);
-/// Moves every vertex once a sweep, color by color; the same result with any number of threads.
+/// Moves every vertex once a sweep, block by block; the same result with any number of threads.
 void smooth(State& s, int sweeps);
 
 }  // namespace meshpipe

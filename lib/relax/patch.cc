@@ -181,7 +181,7 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
     put(s, v, patch.place[i], patch.points[i], patch.normal[i]);
     mark_changed(s, v);
   }
-  s.coloring.listed = false;
+  s.schedule.listed = false;
 }
 
 void keep_best(std::vector<Trial>& trials, std::size_t most) {

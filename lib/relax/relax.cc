@@ -6,6 +6,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/progress.h"
+#include "lib/core/spatial_order.h"
 #include "lib/core/triangle_count.h"
 #include "lib/core/weld.h"
 #include "lib/relax/junctions.h"
@@ -112,11 +113,40 @@ int optimize_to_count(State& s, int sweeps, double target, Samples& samples) {
   return tries;
 }
 
+/// The surface with its columns in another order.
+Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
+  Surface s;
+  static_cast<Mesh&>(s) = surface;
+  rearrange(s, order);
+  if (surface.vertex.has("size"))
+    s.vertex.set("size", rearranged(surface.vertex.get<double>("size"), order.vertices));
+  if (surface.face.has("model"))
+    s.face.set("model", rearranged(surface.face.get<std::uint8_t>("model"), order.tris));
+  return s;
+}
+
+/// Rearranges the mesh, on a surface whose rows have changed.
+void rearrange_lifted(LiftedMesh& mesh, const std::vector<int>& row) {
+  const SpatialOrder order = spatial_order(mesh);
+  rearrange(mesh, order);
+  mesh.place = rearranged(mesh.place, order.vertices);
+  for (Place& p : mesh.place) p.face = row[p.face];
+  for (std::vector<int>* column : {&mesh.kind, &mesh.line}) *column = rearranged(*column, order.vertices);
+  mesh.size = rearranged(mesh.size, order.vertices);
+  for (std::vector<int>* column : {&mesh.patch, &mesh.part}) *column = rearranged(*column, order.tris);
+  mesh.model = rearranged(mesh.model, order.tris);
+}
+
 }  // namespace
 
-RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<int>& line_kind,
-                  const std::vector<char>& corner, const RelaxOptions& options) {
+RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
+                  const std::vector<char>& corners, const RelaxOptions& options) {
   if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
+  // both in an order by place: else most of the time would be spent waiting for memory
+  const SpatialOrder order = spatial_order(original);
+  const Surface surface = rearranged_surface(original, order);
+  const std::vector<char> corner = corners.empty() ? corners : rearranged(corners, order.vertices);
+  rearrange_lifted(mesh, new_rows(order.tris));
   const Reference reference(surface);
   State s = start_state(mesh, reference, line_kind, corner, options.sheets_meet);
   s.keep_border = options.keep_border;
@@ -143,6 +173,7 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& surface, const std::vector<in
     report.kappa_min = std::min(report.kappa_min, q);
   }
   report.kappa_mean /= (double)std::max<std::size_t>(1, mesh.tris.size());
+  for (Place& p : mesh.place) p.face = order.tris[p.face];
   return report;
 }
 

@@ -20,7 +20,7 @@ constexpr double same_cosine = 1e-12;  // cosines that differ by less are roundi
 constexpr double size_weight = 0.012;    // area against shape: equal areas without giving up equal angles
 constexpr double strip_weight = 0.5;     // of 1/kappa^2 on lines: it decides where they are nearer than 0.15
 constexpr double shortest_step = 3e-3;   // length: shorter steps do not show, and would keep neighbors awake
-constexpr double overrelaxation = 1.5;   // factor: errors over many edges even out in fewer sweeps
+constexpr double overrelaxation = 1.6;   // factor: errors over many edges even out in fewer sweeps
 constexpr double line_relaxation = 1.3;  // factor: the same along a line, where a parabola is less exact
 constexpr double longest_step = 0.5;     // length: beyond it the star is another
 constexpr int halvings = 3;              // tries: a step that does not help at a quarter will not
@@ -30,7 +30,9 @@ constexpr double probe = 0.1,
                  reach = 0.4;        // of the shorter segment: where a slide looks, and the farthest it goes
 constexpr double least_gain = 1e-4;  // of the energy: what a slide must gain
 constexpr int largest_star = 32;     // triangles: stars are arrays of this length; larger ones stay
-constexpr int vertices_worth_threads = 800;  // of a color: below it starting threads takes longer than moving
+constexpr int block_bits = 9;  // vertices moved at a time, with all around them, are 2^this: they fit a cache
+constexpr int level_bits = 3;  // by which the blocks of those left grow
+constexpr int vertices_worth_threads = 800;  // below it starting threads takes longer than moving
 
 // splits and collapses (split.cc, collapse.cc)
 constexpr double split_above = 1.4,

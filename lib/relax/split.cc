@@ -80,7 +80,7 @@ void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal) {
   s.hold.push_back(hard ? slides : loose);
   if (!s.copy.empty()) s.copy.push_back((int)s.copy.size());
   for (std::vector<int>* times : {&s.clocks.tried, &s.clocks.changed, &s.clocks.edited}) times->push_back(0);
-  s.coloring.color.push_back(-1);
+  s.schedule.span.push_back(0);
   if (Labels& l = s.labels; !l.kind.empty()) {
     const int from = end_on_line(s, a, b);
     l.kind.push_back(hard);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/relax/state.h"
 
+#include <bit>
+
 #include "lib/core/normals.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/junctions.h"
@@ -8,15 +10,11 @@
 namespace meshpipe {
 namespace {
 
-/// The first color that no neighbor of v has, or -1.
-signed char free_color(const State& s, int v) {
-  std::uint64_t taken = 0;
-  s.mesh.neighbors(v, [&](int w) {
-    if (const int c = s.coloring.color[w]; c >= 0) taken |= std::uint64_t(1) << c;
-  });
-  for (int c = 0; c < 63; ++c)
-    if (!(taken >> c & 1)) return (signed char)c;
-  return -1;
+/// See Schedule.
+char span_of(const EditMesh& mesh, int v) {
+  unsigned other = 0;
+  mesh.neighbors(v, [&](int w) { other |= (unsigned)(v ^ w); });
+  return (char)std::bit_width(other);
 }
 
 }  // namespace
@@ -50,9 +48,9 @@ State::State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, st
       hold(points.size()) {
   const int n = (int)points.size();
   clocks.tried.resize(n), clocks.changed.resize(n), clocks.edited.resize(n);
-  coloring.color.assign(n, -1);
+  schedule.span.resize(n);
   for (int v = 0; v < n; ++v)
-    if (mesh.out[v] >= 0) coloring.color[v] = free_color(*this, v);
+    if (mesh.out[v] >= 0) schedule.span[v] = span_of(mesh, v);
 }
 
 bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r) {
@@ -144,11 +142,8 @@ void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal) {
 void mark_edited(State& s, int v) {
   mark_changed(s, v);
   s.clocks.edited[v] = s.clocks.now;
-  std::vector<signed char>& color = s.coloring.color;
-  bool clash = color[v] < 0;
-  s.mesh.neighbors(v, [&](int w) { clash |= color[w] == color[v]; });
-  if (clash) color[v] = free_color(s, v);
-  s.coloring.listed = false;
+  s.schedule.span[v] = span_of(s.mesh, v);
+  s.schedule.listed = false;
 }
 
 std::vector<int> edges_by_length(const State& s, double limit, bool shorter) {

@@ -72,10 +72,11 @@ struct Clocks {
   int now = 0;
 };
 
-/// Colors of vertices: neighbors have different ones, so that the vertices of a color can move in parallel.
-struct Coloring {
-  std::vector<signed char> color;  ///< -1: more than 63 neighbors, not moved
-  std::vector<int> order, start;   ///< vertices that may move by color, while `listed`
+/// What can move in parallel: vertices of different blocks, 2^b with the same higher bits of their numbers,
+/// that have all neighbors in their own block.
+struct Schedule {
+  std::vector<char> span;         ///< per vertex, the least b for which its neighbors are in its block
+  std::vector<int> order, start;  ///< vertices that may move, by the level of their span, while `listed`
   bool listed = false;
 };
 
@@ -116,7 +117,7 @@ struct State {
   std::vector<int> copy;
   Labels labels;
   Clocks clocks;
-  Coloring coloring;
+  Schedule schedule;
   RelaxCounts counts;
   bool keep_border = false;  ///< no new vertex on the border
   bool recording = false;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Orders in which neighbors in space are near each other in memory, too.
+#pragma once
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Row i of the new order is row vertices[i] or tris[i] of the old one.
+struct SpatialOrder {
+  std::vector<int> vertices, tris;
+};
+
+/// Orders vertices along Hilbert's curve, and triangles by the first of their vertices along it.
+SpatialOrder spatial_order(const Mesh& mesh);
+
+/// Returns the new row of every old one.
+std::vector<int> new_rows(const std::vector<int>& order);
+
+template <class T>
+std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& order) {
+  std::vector<T> moved;
+  moved.reserve(order.size());
+  for (int row : order) moved.push_back(column[row]);
+  return moved;
+}
+
+/// Rearranges points and triangles; corners keep their order in each.
+void rearrange(Mesh& mesh, const SpatialOrder& order);
+
+}  // namespace meshpipe
