@@ -10,6 +10,7 @@
 #include "lib/core/number.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
+#include "lib/core/topology.h"
 #include "lib/size/size.h"
 #include "tools/common.h"
 #include "tools/report/chart_svg.h"
@@ -24,6 +25,14 @@ static std::vector<double> sizes_of(const Chart& chart, const std::vector<double
     h.push_back(size[v]);
   }
   return h;
+}
+
+// The vertices that the mesh has too, although they are on no line.
+static std::vector<char> kept_vertices(const Surface& surface, const std::vector<double>& size) {
+  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  std::vector<char> keep(surface.points.size(), 0);
+  for (const Peak& p : sharp_peaks({surface, opposite, model_of(surface)}, size)) keep[p.vertex] = 1;
+  return keep;
 }
 
 // A picture of each chart in a directory, which is made if it is not there.
@@ -67,9 +76,11 @@ int main(int argc, char** argv) {
     const int n = static_cast<int>(charts.size());
     std::vector<PlaneMesh> meshes(n);
     const PartLines parts(lines, n);
+    const std::vector<char> keep = kept_vertices(stream.surface, size);
     parallel_for(n, [&](int part) {
       index_chart(charts[part]);
-      meshes[part] = mesh_chart(charts[part], sizes_of(charts[part], size), parts, part, meshers.at(mesher));
+      meshes[part] =
+          mesh_chart(charts[part], sizes_of(charts[part], size), parts, part, meshers.at(mesher), keep);
       if (pictures.empty()) charts[part].opposite = {};
       charts[part].grid = {};
       add_progress((double)charts[part].mesh.tris.size() / (double)stream.surface.tris.size());

@@ -30,7 +30,9 @@ constexpr double widest_band = 1.5;  ///< times `sliver`, to either side: what m
 constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
 constexpr double long_chain = 5;     ///< mean edges of the input
 constexpr double short_chain = 3;    ///< target lengths, or mean edges of the input
-constexpr double short_rim = 0.5;    ///< the same of the rim of a hole
+constexpr double elongated =
+    1.5;  ///< mean edge over that of equal triangles: long edges are no measure of width
+constexpr double short_rim = 0.5;      ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
@@ -128,7 +130,7 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
   // the input's own edges show whether it is designed, the target's which creases are worth keeping
   const double mean = n ? sum / n : 0, most = longest_chain * diagonal(s);
   net.telling = std::min(long_chain * mean, most);
-  const double size = options.size > 0 ? options.size : mean;
+  const double size = options.size > 0 ? options.size : std::min(mean, elongated * net.size);
   net.shortest = std::min(short_chain * size, most);
   net.shortest_rim = std::min(short_rim * size, most);
   return net;
@@ -251,7 +253,9 @@ void keep_designed(Network& net, double strong, double weak) {
     if (net.patch[h]) smooth[c] += net.length(h);
   }
   for (const Chain& chain : chains_of(net)) {
-    if (!(length(net, chain) > net.telling && roughness(net, chain) < smooth_turn)) continue;
+    // a rim of many edges is long, however long edges are elsewhere
+    const bool rim = net.to(chain.back()) == net.from(chain[0]) && (double)chain.size() > long_chain;
+    if (!((rim || length(net, chain) > net.telling) && roughness(net, chain) < smooth_turn)) continue;
     double counted = 0;
     for (int h : chain)
       if (net.strong[h]) counted += net.length(h);

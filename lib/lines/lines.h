@@ -38,7 +38,7 @@ constexpr double corner_turn = 0.7;  ///< radians; a regular octagon has 8 corne
 
 /// Marks the vertices that a remeshed surface keeps: ends and junctions of the mesh border and model edges,
 /// and vertices where these turn by more than `corner` radians at every scale from their edges up to the size
-/// (so that the zig-zag of scans has none).
+/// (so that the zig-zag of scans has none); and sharp_peaks.
 std::vector<char> model_corners(const Surface& surface, double corner = corner_turn);
 
 /// Marks the border vertices of the input, leaving out those where a cut divided a border edge: there both

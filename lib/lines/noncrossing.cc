@@ -78,9 +78,17 @@ struct Finding {
 
 class Refinement {
  public:
-  Refinement(const Chains& chains, const std::vector<Chart>& charts, int n_vertices, Division& division)
-      : chains_(chains), n_vertices_(n_vertices), division_(division), drawn_(charts.size()) {
+  Refinement(const Chains& chains, const std::vector<Chart>& charts, const std::vector<char>& inside,
+             Division& division)
+      : chains_(chains),
+        n_vertices_((int)inside.size()),
+        division_(division),
+        drawn_(charts.size()),
+        inside_(charts.size()) {
     locate_chains(charts);
+    for (std::size_t p = 0; p < charts.size(); ++p)
+      for (std::size_t i = 0; i < charts[p].uv.size(); ++i)
+        if (inside[charts[p].mesh.vertex[i]]) inside_[p].push_back(charts[p].uv[i]);
   }
 
   void run();
@@ -107,6 +115,7 @@ class Refinement {
   Division& division_;
   std::vector<Vec2> uv_;
   std::vector<std::vector<Drawn>> drawn_;  ///< per part
+  std::vector<std::vector<Vec2>> inside_;  ///< the same, points that its border has inside
 };
 
 void Refinement::locate_chains(const std::vector<Chart>& charts) {
@@ -240,7 +249,7 @@ std::vector<int> Refinement::loops_of(const Drawing& d) const {
 }
 
 /// Finds what is wrong where no two segments meet: border loops of reversed orientation, with too little
-/// area, or inside another one that did not hold them, and inner lines outside the border.
+/// area, or inside another one that did not hold them, and inner lines and points outside the border.
 void Refinement::examine_nesting(int part, const Drawing& d, const SegmentTree& tree,
                                  Finding& finding) const {
   const int n = static_cast<int>(d.segments.size());
@@ -287,6 +296,10 @@ void Refinement::examine_nesting(int part, const Drawing& d, const SegmentTree& 
     for (int j = 0; j < n; ++j)
       if (loop[j] >= 0 && between(j, x)) ask(j);
   }
+  for (const Vec2& x : inside_[part])
+    if (tree.winding(x, d.weight) != 1)
+      for (int j = 0; j < n; ++j)
+        if (loop[j] >= 0 && between(j, x)) ask(j);
 }
 
 /// Halves segments of a line in measure; one with a single inner vertex is cut there, so that refinement
@@ -414,9 +427,9 @@ std::vector<Cut> divide(const Chains& chains, int line, int n) {
   return cuts;
 }
 
-void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts, int n_vertices,
-                              Division& division) {
-  Refinement(chains, charts, n_vertices, division).run();
+void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts,
+                              const std::vector<char>& inside, Division& division) {
+  Refinement(chains, charts, inside, division).run();
 }
 
 }  // namespace meshpipe

@@ -45,8 +45,9 @@ std::vector<Cut> divide(const Chains& chains, int line, int n);
 /// two meet except at common ends, and loops keep their orientation, most of their area, and the lines inside
 /// them. Neighboring segments of a refined line differ by at most three times in measure. Ends, since a chain
 /// that is cut at all its vertices is drawn as it is.
+/// `inside`: flags of vertices, on no line, that the segments around their part have inside, too.
 /// Throws: GoalMissed naming part and lines if the chart itself is not one-to-one.
-void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts, int n_vertices,
-                              Division& division);
+void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts,
+                              const std::vector<char>& inside, Division& division);
 
 }  // namespace meshpipe

@@ -129,8 +129,36 @@ class Numbers {
   std::vector<int> global_, half_edge_;
 };
 
+/// Returns the triangle that holds p, or -1. Borders may be in the way of a walk.
+int triangle_at(const Cdt& cdt, Vec2 p) {
+  const int found = cdt.walk(p, 0, Cdt::border_segment);
+  if (found >= 0) return found;
+  for (int t = 0; t < (int)cdt.tris.size(); ++t) {
+    auto left = [&](int h) { return orient2d(cdt.points[cdt.origin(h)], cdt.points[cdt.target(h)], p) >= 0; };
+    if (left(3 * t) && left(3 * t + 1) && left(3 * t + 2)) return t;
+  }
+  return -1;
+}
+
+/// Inserts the vertices of the chart that the surface has flagged, each where it is far enough from lines,
+/// for good.
+void insert_kept(SiteMesh& m, const SizeMetric& field, const std::vector<char>& keep) {
+  constexpr Spacing apart{1e-3, 1e-3};  // what is nearer makes needles that do not go away
+  const Chart& chart = field.chart();
+  std::vector<char> seen(chart.uv.size(), 0);
+  for (int h = 0; h < 3 * (int)chart.mesh.tris.size() && !keep.empty(); ++h) {
+    const int v = origin(chart.mesh.tris, h);
+    if (!keep[chart.mesh.vertex[v]] || std::exchange(seen[v], 1)) continue;
+    const int t = triangle_at(m.cdt, chart.uv[v]);
+    if (t < 0) continue;
+    insert_site(m, chart.uv[v],
+                field.at(Place{h / 3, 1.0 * (h % 3 == 0), 1.0 * (h % 3 == 1), 1.0 * (h % 3 == 2)}), t, apart);
+  }
+  m.line_points = (int)m.cdt.points.size();
+}
+
 PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLines& parts, int part,
-               Mesher mesher) {
+               Mesher mesher, const std::vector<char>& keep) {
   const Lines& lines = parts.lines;
   Drawing drawing = draw(parts, part);
   int n = (int)drawing.row.size();
@@ -155,6 +183,7 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
   }
 
   SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n, most_points(chart, size, n), {}};
+  insert_kept(m, field, keep);
   switch (mesher) {
     case Mesher::frontal:
       refine_frontal(m, field);
@@ -221,9 +250,9 @@ static void place_on_surface(const Chart& chart, FailureFacts& facts) {
 }
 
 PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
-                     Mesher mesher) {
+                     Mesher mesher, const std::vector<char>& keep) {
   try {
-    return mesh(chart, size, lines, part, mesher);
+    return mesh(chart, size, lines, part, mesher, keep);
   } catch (const GoalMissed& e) {
     FailureFacts facts = facts_of(e);
     std::string where;

@@ -36,12 +36,13 @@ struct PartLines {
 
 /// Meshes one chart: triangulates the region that the part's lines bound, with every segment as an edge, and
 /// refines it until triangles have the size asked for (`size`, per vertex of the chart's mesh), measured in
-/// space through the map's metric.
+/// space through the map's metric. `keep`: per vertex of the surface, whether the mesh has a vertex there, on
+/// no line; empty: none.
 /// Requires: the chart is indexed (index_chart); sizes are positive.
 /// Throws, naming the part: GoalMissed with a point where segments cross or touch, points coincide, or the
 /// borders bound no region; GoalMissed if many times the expected number of points is needed; NotAdmissible
 /// if a line point lies on an edge that the chart lacks.
 PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
-                     Mesher mesher = Mesher::frontal);
+                     Mesher mesher = Mesher::frontal, const std::vector<char>& keep = {});
 
 }  // namespace meshpipe

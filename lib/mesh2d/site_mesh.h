@@ -11,7 +11,7 @@ namespace meshpipe {
 struct SiteMesh {
   Cdt cdt;
   std::vector<Site> site;
-  int line_points;          ///< vertices below this number do not move
+  int line_points;          ///< vertices below this number, on lines or to be kept, do not move
   std::size_t most_points;  ///< insertion beyond this number of points is refused
   Cavity cavity;            ///< of the last vertex inserted
 };

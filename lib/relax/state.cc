@@ -17,6 +17,21 @@ char span_of(const EditMesh& mesh, int v) {
   return (char)std::bit_width(other);
 }
 
+/// Holds a vertex on no line that is at a corner: a peak. Maps to the plane have moved it by rounding.
+void hold_at_corner(State& s, int v, const std::vector<char>& corner) {
+  constexpr double rounding = 1e-6;  // of the triangle
+  Place p = s.place[v];
+  for (double* b : {&p.b0, &p.b1, &p.b2}) {
+    const int at = s.reference->surface.tris[p.face][b == &p.b0 ? 0 : b == &p.b1 ? 1 : 2];
+    if (!(*b > 1 - rounding) || !corner[at]) continue;
+    p.b0 = p.b1 = p.b2 = 0;
+    *b = 1;
+    put(s, v, p, s.reference->surface.points[at], s.reference->normal(p));
+    s.hold[v] = anchored;
+    return;
+  }
+}
+
 }  // namespace
 
 Reference::Reference(const Surface& reference)
@@ -87,6 +102,8 @@ State start_state(LiftedMesh& lifted, const Reference& reference, const std::vec
     const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
     if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) s.hold[v] = fixed;
   }
+  for (int v = 0; v < n && !corner.empty(); ++v)
+    if (!s.hold[v]) hold_at_corner(s, v, corner);
   if (sheets_meet) share_vertices(s);
   return s;
 }

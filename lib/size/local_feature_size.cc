@@ -11,6 +11,7 @@
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
+#include "lib/size/size.h"
 
 namespace meshpipe {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
+constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
 constexpr double opposite_sides = 0.6 * pi;  ///< least angle between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
@@ -136,6 +138,9 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const std::size_t n = mesh.points.size();
   std::vector<double> feature = closed_line_lengths(surface), bend(n, 0);
   for (double& x : feature) x /= ring_edges;
+  // at a size's distance from a peak
+  for (const Peak& p : sharp_peaks(surface, size))
+    feature[p.vertex] = size[p.vertex] * std::max(p.angle, least_peak) / ring_edges;
   const Neighbors next(mesh);
 
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)

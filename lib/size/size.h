@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "lib/core/connectivity.h"
 #include "lib/core/mesh.h"
 #include "lib/core/triangle_count.h"
 #include "lib/size/layers.h"
@@ -89,5 +90,15 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
 /// Reduces sizes until they grow by at most `slope` per unit of length along every edge. Source: Borouchaki,
 /// Hecht and Frey, "Mesh gradation control", 1998.
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size);
+
+/// A vertex that a mesh would cut off, and the angle of the surface around it, radians.
+struct Peak {
+  int vertex;
+  double angle;
+};
+
+/// Returns the vertices on no border and no model edge around which there is less than half a turn of
+/// surface, next to them and within half the size (per vertex): the points of cones and spikes.
+std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<double>& size);
 
 }  // namespace meshpipe

@@ -495,6 +495,27 @@ TEST(Mesh2d, FillsABallBehindANarrowBorder) {
   }
 }
 
+TEST(Mesh2d, HasTheVerticesThatAreKept) {
+  const Chart chart = square(20);
+  const Lines lines = border_lines(chart, 0.1);
+  std::vector<char> keep(chart.mesh.vertex.size(), 0);
+  std::vector<Vec2> wanted;
+  for (int v = 0; v < (int)chart.uv.size(); v += 37) {
+    keep[chart.mesh.vertex[v]] = 1;
+    const Vec2 p = chart.uv[v];
+    if (std::min({p.x, p.y, 1 - p.x, 1 - p.y}) > 0) wanted.push_back(p);
+  }
+  ASSERT_GT(wanted.size(), 5u);
+  for (Mesher mesher : all_meshers) {
+    const PlaneMesh mesh =
+        mesh_chart(chart, std::vector<double>(chart.uv.size(), 0.1), PartLines(lines, 1), 0, mesher, keep);
+    examine(mesh, lines, flat);
+    for (Vec2 p : wanted)
+      EXPECT_TRUE(std::any_of(mesh.points.begin(), mesh.points.end(),
+                              [&](const ChartPoint& q) { return norm(q.uv - p) == 0; }));
+  }
+}
+
 TEST(Mesh2d, FollowsAGradedSize) {
   Chart chart = square(20);
   std::vector<double> size;

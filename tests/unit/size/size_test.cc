@@ -292,6 +292,61 @@ TEST(Size, IsLoweredOnTubesAndReported) {
     }
 }
 
+/// A closed cone of height 1 with its apex, vertex 0, at the origin; `rings` divide its side.
+Surface cone(double radius, int sides, int rings) {
+  Surface s;
+  s.points = {{0, 0, 0}, {0, 0, 1}};
+  auto at = [&](int ring, int i) { return 2 + (ring - 1) * sides + i % sides; };
+  for (int ring = 1; ring <= rings; ++ring)
+    for (int i = 0; i < sides; ++i) {
+      const double a = 2 * M_PI * i / sides, z = (double)ring / rings;
+      s.points.push_back({radius * z * cos(a), radius * z * sin(a), z});
+    }
+  for (int i = 0; i < sides; ++i) {
+    s.tris.push_back({0, at(1, i + 1), at(1, i)});
+    s.tris.push_back({1, at(rings, i), at(rings, i + 1)});
+    for (int ring = 1; ring < rings; ++ring) {
+      s.tris.push_back({at(ring, i), at(ring, i + 1), at(ring + 1, i + 1)});
+      s.tris.push_back({at(ring, i), at(ring + 1, i + 1), at(ring + 1, i)});
+    }
+  }
+  s.vertex.rows = s.points.size();
+  return s;
+}
+
+std::vector<Peak> peaks_of(const Surface& s, double size) {
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  return sharp_peaks({s, opposite, model_of(s)}, std::vector<double>(s.points.size(), size));
+}
+
+TEST(Peaks, AreTheApexesOfSharpCones) {
+  for (int rings : {1, 30}) {
+    const std::vector<Peak> found = peaks_of(cone(0.3, 12, rings), 0.2);
+    ASSERT_EQ(found.size(), 1u) << rings;
+    EXPECT_EQ(found[0].vertex, 0);
+    EXPECT_NEAR(found[0].angle, 2 * M_PI * 0.3 / sqrt(1.09), 0.1);
+    EXPECT_TRUE(peaks_of(cone(0.8, 12, rings), 0.2).empty());
+  }
+  Surface s = cone(0.3, 12, 1);
+  s.face.set("model", std::vector<std::uint8_t>(s.tris.size(), 7));
+  EXPECT_TRUE(peaks_of(s, 0.2).empty());  // where model edges meet is a corner in any case
+}
+
+TEST(Peaks, AreNoSpikesOfNoise) {
+  Surface s = surface_of(sphere(20000));
+  s.points[100] = 1.2 * s.points[100];
+  EXPECT_EQ(peaks_of(s, 0.02).size(), 1u);
+  EXPECT_TRUE(peaks_of(s, 0.5).empty());
+}
+
+TEST(Size, IsLoweredAtPeaksSoThatFourEdgesFitAroundThem) {
+  Surface s = cone(0.1, 12, 1);
+  SizeOptions o;
+  o.size = 0.2;
+  set_size(s, nullptr, o);
+  EXPECT_NEAR(s.vertex.get<double>("size")[0], 0.2 * 2 * M_PI * 0.1 / sqrt(1.01) / 4, 0.002);
+}
+
 TEST(Expression, ValuesAndFailures) {
   Expression e("0.1 + x^2 * max(y, 2) + (z > 0 ? pi : 0)", {"x", "y", "z"});
   EXPECT_DOUBLE_EQ(e({3, 1, 0}), 18.1);
