@@ -143,7 +143,7 @@ void find_needles(const State& s, Fault& found) {
 /// Asks for smaller triangles around the offending ones, splits their longest edges and smooths.
 void refine_at(State& s, const Fault& fault) {
   const EditMesh& m = s.mesh;
-  std::vector<int> offending = fault.triangles, around;
+  std::vector<int> offending = fault.triangles, around, whole;  // corners of what cannot be split
   for (auto [a, b] : fault.pairs) offending.insert(offending.end(), {a, b});
   sort_unique(offending);
   for (int t : offending)
@@ -163,7 +163,17 @@ void refine_at(State& s, const Fault& fault) {
       const double l = norm(s.points[m.to(h)] - s.points[m.from(h)]);
       if (l > length) length = l, longest = h;
     }
-    if (longest >= 0 && split_edge(s, longest)) around.push_back((int)m.out.size() - 1);
+    if (longest >= 0 && split_edge(s, longest))
+      around.push_back((int)m.out.size() - 1);
+    else
+      whole.insert(whole.end(), m.tris[t].begin(), m.tris[t].end());
+  }
+  for (int v : whole) {
+    std::vector<int> edges;
+    m.star(v, [&](int h) { edges.push_back(h); });
+    for (int h : edges)  // a split leaves the other edges at v where they are
+      if (!m.hard[h] && s.length(h) > rules::split_above && split_edge(s, h))
+        around.push_back((int)m.out.size() - 1);
   }
   flip_to_shape(s);
   for (int repeat = 0; repeat < rules::sweeps_to_settle; ++repeat)

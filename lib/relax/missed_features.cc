@@ -50,9 +50,10 @@ void measure(const State& s, Samples& samples, std::vector<double>& distance, do
       // most are as they were, or still near to the triangle that they were near to, or to that of the sample
       // before
       if (x.near < 0 && !guess.empty()) x.near = guess[x.place.face];
-      if ((x.near < 0 || s.mesh.dead(x.near)) && i > first) x.near = list[i - 1].near;
+      const bool lost = x.near < 0 || s.mesh.dead(x.near);
+      if (lost && i > first) x.near = list[i - 1].near;
       if (x.near < 0 || s.mesh.dead(x.near)) continue;
-      if (!(x.distance <= enough) || changed_since(s, x.near, x.time)) {
+      if (lost || !(x.distance <= enough) || changed_since(s, x.near, x.time)) {
         x.distance = walk_near(s, s.reference->walk.point(x.place), x.near, enough);
         x.time = now;
       }

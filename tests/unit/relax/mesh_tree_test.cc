@@ -5,6 +5,7 @@
 
 #include "lib/core/intersect.h"
 #include "lib/relax/operations.h"
+#include "lib/relax/repair.h"
 #include "tests/unit/relax/drawn.h"
 
 using namespace meshpipe;
@@ -64,6 +65,20 @@ TEST(MeshTree, KnowsWhatHasChanged) {
   EXPECT_TRUE(changed_since(m.s, 0, before));
   EXPECT_FALSE(changed_since(m.s, 0, m.s.clocks.now));
   EXPECT_FALSE(changed_since(m.s, 1, before));
+}
+
+TEST(Samples, DistancesOfTrianglesThatHaveGoneAreForgotten) {
+  Drawn m(two_strips());
+  Samples samples{{{{0, 1, 0, 0}}, {{12, 1, 0, 0}}}, {}};  // at vertices 0 and 12
+  EXPECT_EQ(sample_distances(m.s, samples, 1.5), (std::vector<double>{0, 0}));
+  m.s.mesh.collapse(3 * samples.list[1].near, m.s.mesh.from(3 * samples.list[1].near));
+  for (int v = 8; v < 18; ++v) {
+    m.s.points[v].z = -4;
+    mark_changed(m.s, v);
+  }
+  const std::vector<double> distance = sample_distances(m.s, samples, 1.5);
+  EXPECT_EQ(distance[0], 0);
+  EXPECT_GT(distance[1], 0.9);  // the other strip is one away
 }
 
 }  // namespace
