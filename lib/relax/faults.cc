@@ -61,14 +61,30 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
-/// The largest distance of the middles of triangle t and its edges from the reference. By a search: a walk
-/// may end on the wrong sheet.
-double distance_of(const State& s, int t, const Bvh& tree) {
-  const auto [a, b, c] = s.mesh.tris[t];
-  const Vec3 p = s.points[a], q = s.points[b], r = s.points[c];
+/// A large distance of triangle t from the reference: that of the middles of it and its edges, and where one
+/// is nearly `limit`, the largest that steps from the farthest come to. By a search: a walk may end on the
+/// wrong sheet.
+double distance_of(const State& s, int t, const Bvh& tree, double limit) {
+  const Tri& v = s.mesh.tris[t];
+  std::array<double, 3> farthest{};
   double most = 0;
-  for (const Vec3& middle : {(1.0 / 3) * (p + q + r), lerp(p, q, 0.5), lerp(q, r, 0.5), lerp(r, p, 0.5)})
-    most = std::max(most, tree.nearest(middle).distance);
+  auto look = [&](const std::array<double, 3>& b) {
+    const Vec3 p = b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
+    if (const double d = tree.nearest(p).distance; d > most) most = d, farthest = b;
+  };
+  constexpr double third = 1.0 / 3;
+  look({third, third, third});
+  for (int i = 0; i < 3; ++i) look({i == 0 ? 0 : 0.5, i == 1 ? 0 : 0.5, i == 2 ? 0 : 0.5});
+  if (most < rules::nearly_far * limit || most > limit) return most;
+  for (double step = 0.25; step > rules::small_step; step /= 2) {
+    const std::array<double, 3> from = farthest;
+    for (int i = 0; i < 3; ++i)
+      for (int j : {next(i), prev(i)}) {
+        std::array<double, 3> b = from;
+        b[i] += step, b[j] -= step;
+        if (b[j] >= 0) look(b);
+      }
+  }
   return most;
 }
 
@@ -104,9 +120,9 @@ void find_far(const State& s, Known& known, Fault& found) {
     if (distance[i] > least) look(known.samples.list[i].near, distance[i]);
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t) || known.walked[t] <= least) continue;
+    if (s.mesh.dead(t) || known.walked[t] <= rules::nearly_far * least) continue;
     if (!known.tree) known.tree.emplace(known.reference);
-    if (known.searched[t] < 0) known.searched[t] = distance_of(s, t, *known.tree);
+    if (known.searched[t] < 0) known.searched[t] = distance_of(s, t, *known.tree, least);
     look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());

@@ -87,7 +87,9 @@ constexpr double forced_share = 0.8,
 
 // faults (faults.cc)
 constexpr double parallel = 0.8;  // cosine: no edge between normals this close sags by `too_far`
-constexpr double too_far = 0.43;  // of the size: half of it is for mcheck to warn of
+constexpr double too_far = 0.45;  // of the size; a half is the limit of mcheck
+constexpr double nearly_far = 0.7,
+                 small_step = 0.06;  // of that, from where the farthest place is looked for; of an edge
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
