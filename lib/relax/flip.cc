@@ -74,6 +74,29 @@ bool unravel(State& s, int h, int depth, int gained) {
   return true;
 }
 
+/// Flips the edges that `wanted` holds for, in order. It is asked for all at first, in parallel, and again
+/// where an edge nearby was flipped.
+template <class Wanted>
+void flip_all(State& s, Wanted wanted) {
+  enum Flip : char { no, yes, ask_again };
+  const EditMesh& m = s.mesh;
+  const int n = (int)m.opp.size();
+  std::vector<Flip> flip(n);
+#pragma omp parallel for schedule(static) if (n > rules::half_edges_worth_threads)
+  for (int h = 0; h < n; ++h) flip[h] = wanted(h) ? yes : no;
+  for (int h = 0; h < n; ++h) {
+    if (flip[h] == no || (flip[h] == ask_again && !wanted(h)) || !may_flip(s, h)) continue;
+    const int four[4] = {m.from(h), m.to(h), m.apex(h), m.apex(m.opp[h])};
+    flip_edge(s, h);
+    for (int v : four)
+      m.star(v, [&](int e) {
+        for (int k : {e, next(e), prev(e)})
+          for (int side : {k, m.opp[k]})
+            if (side >= 0) flip[side] = ask_again;
+      });
+  }
+}
+
 }  // namespace
 
 bool may_flip(const State& s, int h) {
@@ -107,11 +130,12 @@ void flip_edge(State& s, int h) {
 int excess(const State& s, int v) { return s.mesh.valence(v) - (s.mesh.on_border(v) ? 4 : 6); }
 
 void flip_to_regular(State& s) {
-  for (int h = 0; h < (int)s.mesh.opp.size(); ++h) {
-    if (s.mesh.dead(h / 3) || h > s.mesh.opp[h] || !valence_is_free(s, h) || flip_gain(s, h) >= 0) continue;
+  flip_all(s, [&](int h) {
+    if (s.mesh.dead(h / 3) || h > s.mesh.opp[h] || !valence_is_free(s, h) || flip_gain(s, h) >= 0)
+      return false;
     const double w = worse_flipped(s, h);
-    if ((w <= rules::sound_for_valence || w <= worse_now(s, h)) && may_flip(s, h)) flip_edge(s, h);
-  }
+    return w <= rules::sound_for_valence || w <= worse_now(s, h);
+  });
 }
 
 void flip_to_shape(State& s) {
@@ -119,23 +143,14 @@ void flip_to_shape(State& s) {
   const std::vector<int>& changed = s.clocks.changed;
   const int since = s.clocks.flipped;
   s.clocks.flipped = ++s.clocks.now;
-  std::vector<double> shape(m.tris.size(), -1);  // of triangles, once they are asked for
-  auto shape_of = [&](int t) {
-    if (shape[t] < 0) shape[t] = s.shape(m.tris[t][0], m.tris[t][1], m.tris[t][2]);
-    return shape[t];
-  };
-  for (int h = 0; h < (int)m.opp.size(); ++h) {
-    if (m.dead(h / 3) || h > m.opp[h] || m.hard[h]) continue;
+  flip_all(s, [&](int h) {
+    if (m.dead(h / 3) || h > m.opp[h] || m.hard[h]) return false;
     if (std::max({changed[m.from(h)], changed[m.to(h)], changed[m.apex(h)], changed[m.apex(m.opp[h])]}) <
         since)
-      continue;
-    const int t = h / 3, u = m.opp[h] / 3;
-    const double most =
-        rules::shape_gain * std::max(shape_of(t), shape_of(u));  // no triangle has less than 1
-    if (!(most > 1 && worse_flipped(s, h) < most && may_flip(s, h))) continue;
-    flip_edge(s, h);
-    shape[t] = shape[u] = -1;
-  }
+      return false;
+    const double most = rules::shape_gain * worse_now(s, h);  // no triangle has less than 1
+    return most > 1 && worse_flipped(s, h) < most;
+  });
 }
 
 void remove_dislocations(State& s, int depth) {

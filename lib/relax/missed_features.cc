@@ -177,8 +177,10 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
   std::erase_if(samples, [](const Sample& s) { return s.place.face < 0; });  // of no triangle
   for (int t = 0; t < (int)surface.tris.size(); ++t) {
     const Tri& v = surface.tris[t];
-    const Vec3 n = normalized(area_vector(p[v[0]], p[v[1]], p[v[2]]));
-    auto bends_at = [&](int w) { return !(dot(n, normalized(reference.normals[w])) > rules::bent); };
+    auto bends_at = [&](int w) {
+      const Vec3 n = normalized(area_vector(p[v[0]], p[v[1]], p[v[2]]));
+      return !(dot(n, normalized(reference.normals[w])) > rules::bent);
+    };
     for (int i = 0; i < 3; ++i) {
       const int a = v[i], b = v[(i + 1) % 3];
       const int pieces =

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lib/core/error.h"
+#include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/triangle_count.h"
@@ -125,12 +126,11 @@ Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
   return s;
 }
 
-/// Rearranges the mesh, on a surface whose rows have changed.
-void rearrange_lifted(LiftedMesh& mesh, const std::vector<int>& row) {
+/// The same of the mesh; its places stay.
+void rearrange_lifted(LiftedMesh& mesh) {
   const SpatialOrder order = spatial_order(mesh);
   rearrange(mesh, order);
   mesh.place = rearranged(mesh.place, order.vertices);
-  for (Place& p : mesh.place) p.face = row[p.face];
   for (std::vector<int>* column : {&mesh.kind, &mesh.line}) *column = rearranged(*column, order.vertices);
   mesh.size = rearranged(mesh.size, order.vertices);
   for (std::vector<int>* column : {&mesh.patch, &mesh.part}) *column = rearranged(*column, order.tris);
@@ -143,19 +143,29 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<i
                   const std::vector<char>& corners, const RelaxOptions& options) {
   if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
   // both in an order by place: else most of the time would be spent waiting for memory
-  const SpatialOrder order = spatial_order(original);
-  const Surface surface = rearranged_surface(original, order);
+  SpatialOrder order;
+  Surface surface;
+  std::optional<Reference> reference;
+  parallel_for(
+      2,
+      [&](int side) {
+        if (side == 1) return rearrange_lifted(mesh);
+        order = spatial_order(original);
+        surface = rearranged_surface(original, order);
+        reference.emplace(surface);
+      },
+      original.tris.size() > rules::half_edges_worth_threads / 3);
+  const std::vector<int> row = new_rows(order.tris);
+  for (Place& p : mesh.place) p.face = row[p.face];
   const std::vector<char> corner = corners.empty() ? corners : rearranged(corners, order.vertices);
-  rearrange_lifted(mesh, new_rows(order.tris));
-  const Reference reference(surface);
-  State s = start_state(mesh, reference, line_kind, corner, options.sheets_meet);
+  State s = start_state(mesh, *reference, line_kind, corner, options.sheets_meet);
   s.keep_border = options.keep_border;
   part_double_edges(s);
   hold_seams(s);
-  const double natural = reference.sizes ? count_for_size(surface, *reference.sizes) : s.mesh.live;
+  const double natural = reference->sizes ? count_for_size(surface, *reference->sizes) : s.mesh.live;
   coarse_rounds(s);
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
-  Samples samples{feature_samples(reference, size_for_count(total_area(surface), target)), {}};
+  Samples samples{feature_samples(*reference, size_for_count(total_area(surface), target)), {}};
   int tries = 1;
   if (options.target_triangles > 0)
     tries = optimize_to_count(s, options.sweeps, target, samples);
@@ -164,8 +174,8 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<i
   const Intersections left = remove_faults(s, samples);
   RelaxReport report{s.counts, left.pairs, left.of_reference};
   report.tries = tries;
-  const std::vector<int> row = finish(s, mesh);
-  for (auto& [a, b] : report.intersections) a = row[a], b = row[b];
+  const std::vector<int> left_at = finish(s, mesh);
+  for (auto& [a, b] : report.intersections) a = left_at[a], b = left_at[b];
   report.kappa_min = 1;
   for (const auto& [a, b, c] : mesh.tris) {
     const double q = kappa(mesh.points[a], mesh.points[b], mesh.points[c]);

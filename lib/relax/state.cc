@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "lib/core/normals.h"
+#include "lib/core/parallel.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/junctions.h"
 
@@ -164,12 +165,19 @@ void mark_edited(State& s, int v) {
 }
 
 std::vector<int> edges_by_length(const State& s, double limit, bool shorter) {
+  constexpr int chunk = 1 << 14;
+  const int n = (int)s.mesh.opp.size();
+  std::vector<std::vector<std::pair<double, int>>> part((n + chunk - 1) / chunk);
+  auto look = [&](int k) {
+    for (int h = k * chunk; h < std::min(n, (k + 1) * chunk); ++h) {
+      if (s.mesh.dead(h / 3) || h >= s.mesh.opp[h] || s.mesh.hard[h]) continue;
+      const double l = s.length(h);
+      if (shorter ? l < limit : l > limit) part[k].push_back({shorter ? l : -l, h});
+    }
+  };
+  parallel_for((int)part.size(), look, n > rules::half_edges_worth_threads);
   std::vector<std::pair<double, int>> found;
-  for (int h = 0; h < (int)s.mesh.opp.size(); ++h) {
-    if (s.mesh.dead(h / 3) || h >= s.mesh.opp[h] || s.mesh.hard[h]) continue;
-    const double l = s.length(h);
-    if (shorter ? l < limit : l > limit) found.push_back({shorter ? l : -l, h});
-  }
+  for (const auto& p : part) found.insert(found.end(), p.begin(), p.end());
   std::sort(found.begin(), found.end());
   std::vector<int> edges(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) edges[i] = found[i].second;
