@@ -85,7 +85,7 @@ struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> {
 };
 
 /// Multiplications an unknown above which multigrid is faster: measured from 10^4 to 10^6 triangles.
-constexpr double cost_of_multigrid = 7000;
+constexpr double cost_of_multigrid = 5000;
 
 }  // namespace
 

@@ -95,8 +95,8 @@ TEST(Multigrid, WhatDoesNotConvergeIsGivenBackAndFactorized) {
 }
 
 TEST(Multigrid, FactorizationTakesItWhereItIsFaster) {
-  const int n = 40000;
-  for (int high : {2, 200}) {
+  const int n = 160000;
+  for (int high : {2, 400}) {
     const auto lower = grid(n / high, high, 2);
     std::vector<double> direct = two_columns(n), x = direct;
     Factorization<double>(n, lower).solve(direct);
@@ -111,7 +111,7 @@ TEST(Multigrid, FactorizationTakesItWhereItIsFaster) {
 
 // The bending of a plate: the square of a Laplacian, no Laplacian itself.
 TEST(Multigrid, FactorizationIsThereWhereItDoesNotConverge) {
-  const int side = 120, n = side * side;
+  const int side = 200, n = side * side;
   const Multigrid::Matrix laplacian = matrix_of(n, grid(side, side, 10)), plate = laplacian * laplacian;
   std::vector<Entry<double>> lower;
   for (int i = 0; i < n; ++i)
