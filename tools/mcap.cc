@@ -15,7 +15,7 @@ using namespace meshpipe;
 namespace {
 
 struct Options : CapOptions {
-  std::string length, name_file;
+  std::string length, name_file, at, except;
   bool list = false;
 };
 
@@ -100,6 +100,9 @@ void name_patches(Stream& stream, const std::vector<End>& ends, const std::vecto
 void run(Io& io, Options& o) {
   if (!o.length.empty()) parse_trim(o, 1);
   if (!o.name_file.empty()) expect_readable(o.name_file);
+  const std::string chosen = o.at + o.except;
+  if (!chosen.empty() && o.length.empty() && !(o.extend > 0))
+    throw BadUsage("--at and --except choose the ends for --trim and --extend");
   Stream& stream = io.read();
   Surface& surface = stream.surface;
   expect_no_sheets(stream, "the lines where they meet are no open ends");
@@ -107,6 +110,9 @@ void run(Io& io, Options& o) {
   if (orient_outward(surface)) io.say("the surface was inside out: all triangles are reversed");
   std::vector<End> ends = find_ends(surface);
   if (!o.name_file.empty()) name_ends(ends, read_end_names(Io::read_bytes(o.name_file), o.name_file));
+  if (!chosen.empty()) o.kept = ends_in(ends, chosen);
+  if (!o.at.empty())
+    for (char& kept : o.kept) kept = !kept;
   if (o.list && io.output == "-") {
     report(io, ends, std::vector<EndReport>(ends.size()));
     return io.write_bytes(table_of(ends));
@@ -157,6 +163,11 @@ int main(int argc, char** argv) {
             ->type_name("FILE");
         app.add_option("--trim", o.length, "cut each end back by a length, or with r by radii of the end")
             ->type_name("L|P%|Kr");
+        auto* at = app.add_option("--at", o.at, "cut back and extend only these ends, by name or number")
+                       ->type_name("END,...");
+        app.add_option("--except", o.except, "cut back and extend all ends but these")
+            ->type_name("END,...")
+            ->excludes(at);
         app.add_flag("--flatten", o.flatten, "move the rims into planes");
         app.add_option("--extend", o.extend, "extend each end straight by K radii, to a circle")
             ->check(positive_number())

@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
         app.add_option("--generations", o.generations, "tree: bifurcations from the inlet to every outlet")
             ->check(CLI::Range(1, 10));
     app.add_option("--outlets", o.outlets, "tree: open ends, the inlet counts (default 13)")
-        ->check(CLI::Range(3, 2000))
+        ->check(CLI::Range(2, 2000))
         ->excludes(generations);
     app.add_option("--ratio", o.ratio,
                    "tree: radius of a child over its parent's (default 0.8); torus: of the tube over the "

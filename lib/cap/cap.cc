@@ -41,16 +41,22 @@ struct Treatment {
     for (End& end : ends) measure(surface, end);
   }
 
+  bool trims(int i) const { return options.trim > 0 && (options.kept.empty() || !options.kept[i]); }
+  bool extends(int i) const { return options.extend > 0 && (options.kept.empty() || !options.kept[i]); }
+
   Planes trim() {
-    if (!(options.trim > 0)) return Planes(n());
     std::vector<double> length;
-    for (const End& end : ends) length.push_back(options.trim * (options.trim_by_radius ? end.radius : 1));
-    const Planes planes = planes_within(surface, ends, length);
-    const std::vector<std::string> why = cut_ends(surface, ends, planes);
+    std::vector<std::string> why(n());
     for (int i = 0; i < n(); ++i) {
-      if (!why[i].empty()) refuse(ends, i, why[i] + "; cut less");
-      reports[i].trimmed = length[i];
+      if (trims(i) && !(ends[i].area > 0)) why[i] = "its rim has no area; close it with mclean --fill-holes";
+      length.push_back(
+          !trims(i) || !why[i].empty() ? 0 : options.trim * (options.trim_by_radius ? ends[i].radius : 1));
     }
+    if (options.trim <= 0) return Planes(n());
+    Planes planes = planes_within(surface, ends, length, why);
+    cut_possible_ends(surface, ends, planes, why);
+    refuse_all(ends, why, "cut less");
+    for (int i = 0; i < n(); ++i) reports[i].trimmed = length[i];
     return planes;
   }
 
@@ -80,51 +86,47 @@ struct Treatment {
       depth[i] = below_rim * ends[i].radius - lowest;
       planes[i] = Plane{plane.point - depth[i] * plane.normal, plane.normal};
     }
-    for (bool again = true; again;) {
-      const std::vector<std::string> why = cut_ends(surface, ends, planes);
-      again = false;
-      for (int i = 0; i < n(); ++i) {
-        if (why[i].empty()) continue;
-        if (!options.cap || options.extend > 0)
-          refuse(ends, i,
-                 "its rim, which is " + shown(ends[i].planarity) +
-                     " out of its plane, cannot be made plane: " + why[i] +
-                     "; try --trim, or close it with mclean --fill-holes");
-        planes[i].reset();
-        again = true;
-      }
-    }
+    std::vector<std::string> why(n());
+    cut_possible_ends(surface, ends, planes, why);
+    for (int i = 0; i < n(); ++i)
+      if (options.cap && !extends(i))
+        why[i].clear();
+      else if (!why[i].empty())
+        why[i] = "its rim, which is " + shown(ends[i].planarity) +
+                 " out of its plane, cannot be made plane: " + why[i];
+    refuse_all(ends, why, "try --trim, or close it with mclean --fill-holes");
     for (int i = 0; i < n(); ++i)
       if (planes[i]) reports[i].trimmed = depth[i];
     split_chords(surface, ends);
-    expect_none(flatten(planes));
+    const std::vector<char> failed = flatten(planes);
+    for (int i = 0; i < n(); ++i)
+      if (failed[i]) refuse_to_flatten(i);
   }
 
-  void expect_none(const std::vector<char>& failed) {
-    for (int i = 0; i < n(); ++i)
-      if (failed[i])
-        refuse(ends, i,
-               "its rim, which is " + shown(ends[i].planarity) +
-                   " out of its plane, cannot be moved into it " +
-                   "without folding or intersecting the wall; try --trim");
+  [[noreturn]] void refuse_to_flatten(int i) const {
+    refuse(ends, i,
+           "its rim, which is " + shown(ends[i].planarity) +
+               " out of its plane, cannot be moved into it without folding or intersecting the wall; try "
+               "--trim");
   }
 
   void make_plane(const Planes& cuts) {
     split_chords(surface, ends);
     Planes planes = cuts;
     const double noise = rounding * diagonal(surface);
-    const bool shapes = options.flatten || options.cap || options.extend > 0;
     std::vector<char> winds(n(), 0);
     for (int i = 0; i < n(); ++i) {
-      if (!shapes && !cuts[i]) continue;
+      if (!options.flatten && !options.cap && !extends(i) && !cuts[i]) continue;
       winds[i] = !is_simple(i);
       winds[i] |= ends[i].planarity > most_moved * ends[i].radius;
       if (!cuts[i] && !winds[i] && (options.flatten || ends[i].planarity <= noise))
         planes[i] = Plane{ends[i].center, ends[i].normal};
     }
     std::vector<char> failed = flatten(planes);
-    if (options.trim > 0) expect_none(failed);
-    for (int i = 0; i < n(); ++i) failed[i] |= winds[i];
+    for (int i = 0; i < n(); ++i) {
+      if (failed[i] && trims(i)) refuse_to_flatten(i);
+      failed[i] |= winds[i];
+    }
     if (options.flatten && std::count(failed.begin(), failed.end(), 1) > 0) cut_level(failed);
   }
 
@@ -134,11 +136,11 @@ struct Treatment {
     const End& end = ends[i];
     if (!(end.area > 0)) refuse(ends, i, "its rim has no area; close it with mclean --fill-holes");
     const std::optional<Vec3> place = crossing_of(surface, end);
-    if (place && (options.trim > 0 || !options.flatten))
+    if (place && (trims(i) || !options.flatten))
       refuse(ends, i,
              std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
                  ", seen along its normal, near " + shown(*place) + "; it is " + shown(end.planarity) +
-                 " out of its plane; try " + (options.trim > 0 ? "to cut more" : "--flatten or --trim"));
+                 " out of its plane; try " + (trims(i) ? "to cut more" : "--flatten or --trim"));
     return !place;
   }
 
@@ -152,21 +154,24 @@ struct Treatment {
 
   void extend() {
     for (int i = 0; i < n(); ++i) {
+      if (!extends(i)) continue;
       reports[i].extended = options.extend * ends[i].radius;
       reports[i].extension = extend_end(surface, ends[i], reports[i].extended, growth);
       owner.resize(surface.tris.size(), i);
     }
     std::vector<char> flagged(surface.tris.size(), 0);
     for (std::size_t t = 0; t < owner.size(); ++t) flagged[t] = owner[t] >= 0;
+    std::vector<std::string> why(n());
     for (const Collision& c : collisions(surface, flagged)) {
       const int i = owner[c.triangle], j = owner[c.other];
-      refuse(ends, i,
-             "its extension meets " +
+      if (why[i].empty())
+        why[i] = "its extension meets " +
                  (j == i  ? std::string("itself or its cap")
                   : j < 0 ? std::string("the surface")
                           : "that of " + title_of(ends, j)) +
-                 " near " + shown(c.place) + "; extend less");
+                 " near " + shown(c.place);
     }
+    refuse_all(ends, why, "extend less");
     measure_all();
   }
 

@@ -39,6 +39,10 @@ struct EndName {
 /// number if that is taken. Throws: NotAdmissible if there are more names than ends, or two for one end.
 void name_ends(std::vector<End>& ends, const std::vector<EndName>& names);
 
+/// Flags the ends in a list of names and numbers from 1, such as "inlet,3". Throws: NotAdmissible with what
+/// is no end.
+std::vector<char> ends_in(const std::vector<End>& ends, const std::string& list);
+
 /// Returns "end 3, outlet_2, at (x, y, z)" for messages; `i` counts from 0.
 std::string title_of(const std::vector<End>& ends, int i);
 
@@ -56,6 +60,7 @@ struct CapOptions {
   bool flatten = false;         ///< moves the rims into planes
   double extend = 0;            ///< straight extension, in radii of the end; 0: none
   bool cap = false;             ///< closes the ends
+  std::vector<char> kept;       ///< per end: is not trimmed and not extended; empty: none
 };
 
 /// What became of an end.
@@ -71,7 +76,8 @@ struct EndReport {
 /// Trims, flattens, extends and caps the ends, as far as asked. Extensions and caps are new patches; their
 /// borders are model edges (face column `model`). Measures of the ends follow. Face column `patch` is added
 /// if missing. Throws: NotAdmissible naming the end and the place where a rim crosses itself, where trimming
-/// would remove a branch, and where an extension or a cap would meet the surface.
+/// would remove a branch, and where an extension or a cap would meet the surface; with all ends that cannot
+/// be trimmed or extended.
 std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, const CapOptions& options);
 
 }  // namespace meshpipe

@@ -181,6 +181,24 @@ void name_ends(std::vector<End>& ends, const std::vector<EndName>& names) {
   for (int i = 0; i < n; ++i) ends[i].name = given[i];
 }
 
+std::vector<char> ends_in(const std::vector<End>& ends, const std::string& list) {
+  std::vector<char> found(ends.size(), 0);
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t to = std::min(list.find(',', from), list.size());
+    const std::string word = list.substr(from, to - from);
+    std::size_t i = 0;
+    while (i < ends.size() && ends[i].name != word) ++i;
+    if (i == ends.size())
+      for (i = 0; i < ends.size() && std::to_string(i + 1) != word;) ++i;
+    if (i == ends.size())
+      throw NotAdmissible("there is no end '" + word + "' among the " + std::to_string(ends.size()) +
+                          "; mcap --list shows their numbers and names");
+    found[i] = 1;
+    from = to + 1;
+  }
+  return found;
+}
+
 std::string remark_of(const CapPatches& patches) {
   return "capped " + std::to_string(patches.first) + ' ' + std::to_string(patches.last);
 }
@@ -197,6 +215,23 @@ std::string title_of(const std::vector<End>& ends, int i) {
 
 void refuse(const std::vector<End>& ends, int i, const std::string& why) {
   throw NotAdmissible(title_of(ends, i) + ": " + why);
+}
+
+void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why,
+                const std::string& advice) {
+  const int n = (int)ends.size();
+  std::string list;
+  int first = -1, count = 0;
+  for (int i = n - 1; i >= 0; --i)
+    if (!why[i].empty()) {
+      list = ends[i].name + (list.empty() ? "" : ",") + list;
+      first = i;
+      ++count;
+    }
+  if (first < 0) return;
+  const std::string others = count > 1 ? "; so with " + std::to_string(count - 1) + " more" : "";
+  refuse(ends, first,
+         why[first] + others + "; " + advice + (count < n ? ", or try --except " + list : std::string()));
 }
 
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end) {

@@ -28,6 +28,8 @@ End end_of(const Mesh& mesh, std::vector<int> rim);
 std::vector<std::vector<int>> rims_of(const Connectivity& c);
 
 [[noreturn]] void refuse(const std::vector<End>& ends, int i, const std::string& why);
+/// Refuses the ends that have a reason, if there are any: tells that of the first, and lists all.
+void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why, const std::string& advice);
 
 /// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end);
@@ -44,14 +46,20 @@ std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& fla
 /// wall: what lies behind such an edge would be flat in a plane rim, and a cap would touch it or have it too.
 void split_chords(Surface& surface, const std::vector<End>& ends);
 
-/// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there.
+/// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there; none
+/// where the length is 0, and where there is none such: `why` then says so.
 std::vector<std::optional<Plane>> planes_within(const Mesh& mesh, const std::vector<End>& ends,
-                                                const std::vector<double>& length);
+                                                const std::vector<double>& length,
+                                                std::vector<std::string>& why);
 /// Cuts ends off: what is connected with their rims and lies above their planes. Ends without a plane stay.
 /// Numbers of vertices change, rims follow. Returns per end why it cannot be cut, as where a branch would go
 /// too; then nothing is changed. All are empty if it could.
 std::vector<std::string> cut_ends(Surface& surface, std::vector<End>& ends,
                                   const std::vector<std::optional<Plane>>& planes);
+
+/// The same for all ends that can be cut. For the others `why` says so, and their planes go.
+void cut_possible_ends(Surface& surface, std::vector<End>& ends, std::vector<std::optional<Plane>>& planes,
+                       std::vector<std::string>& why);
 
 /// Moves rims into planes, and fades the movement out along the wall, such that no triangle folds or
 /// intersects. Ends without a plane stay. Returns, per end, how far a vertex moved; -1 if that was impossible

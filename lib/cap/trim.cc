@@ -219,22 +219,24 @@ std::vector<int> drop_triangles(Surface& s, const std::vector<char>& gone) {
 }  // namespace
 
 std::vector<std::optional<Plane>> planes_within(const Mesh& mesh, const std::vector<End>& ends,
-                                                const std::vector<double>& length) {
+                                                const std::vector<double>& length,
+                                                std::vector<std::string>& why) {
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
   WallFinder walls({mesh, opposite});
   std::vector<std::optional<Plane>> planes(ends.size());
   for (int i = 0; i < (int)ends.size(); ++i) {
     const End& end = ends[i];
-    if (!(end.area > 0)) refuse(ends, i, "its rim has no area; close it with mclean --fill-holes");
+    if (!(length[i] > 0)) continue;
     // paths along edges are longer than the axis, by a factor of two at most
     const Wall wall = walls.around(end, 2 * length[i] + 2 * end.radius);
     const std::vector<AxisPoint> axis = axis_of(mesh, end, wall);
     std::size_t k = 1;
     while (k < axis.size() && axis[k].length < length[i]) ++k;
-    if (k >= axis.size())
-      refuse(ends, i,
-             "cannot be cut back by " + shown(length[i]) + ": the vessel behind it is " +
-                 shown(axis.back().length) + " long");
+    if (k >= axis.size()) {
+      why[i] = "cannot be cut back by " + shown(length[i]) + ": the vessel behind it is " +
+               shown(axis.back().length) + " long";
+      continue;
+    }
     const AxisPoint &a = axis[k - 1], &b = axis[k];
     const double s = (length[i] - a.length) / (b.length - a.length);
     const Vec3 rough = normalized(axis[k - (k > 1)].point - axis[std::min(k + 1, axis.size() - 1)].point);
@@ -319,6 +321,20 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   }
   whole = std::move(surface);
   return why;
+}
+
+void cut_possible_ends(Surface& surface, std::vector<End>& ends, std::vector<std::optional<Plane>>& planes,
+                       std::vector<std::string>& why) {
+  for (bool again = true; again;) {
+    const std::vector<std::string> now = cut_ends(surface, ends, planes);
+    again = false;
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (!now[i].empty()) {
+        why[i] = now[i];
+        planes[i].reset();
+        again = true;
+      }
+  }
 }
 
 }  // namespace meshpipe

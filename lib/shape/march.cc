@@ -242,7 +242,10 @@ void relax_on(Mesh& mesh, const Implicit& f, int rounds) {
         step = step - dot(step, plane[v]) * plane[v];
       }
       p = p + 0.8 * (step - dot(step, up) * up);
-      p = p - f(p) * up;
+      const double before = f(p);
+      const Vec3 q = p - before * up;
+      // thin triangles of a border may show another way than that to the surface
+      if (!border[v] || std::abs(f(q)) <= std::abs(before)) p = q;
     }
   }
 }

@@ -253,6 +253,7 @@ class Grower {
     const auto middle = set.begin() + set.size() / 2;
     for (std::vector<int> half :
          {std::vector<int>(set.begin(), middle), std::vector<int>(middle, set.end())}) {
+      if (half.empty()) continue;
       const double child = radius * ratio_, length = branch_length(child);
       const bool leaf = half.size() == 1;
       const Vec3 to = place(half, reach + length * (leaf ? 1.25 : 1));

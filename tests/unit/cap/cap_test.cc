@@ -257,6 +257,40 @@ TEST(cap, refuses_to_remove_a_branch) {
   EXPECT_EQ(why(s, o), "");
 }
 
+TEST(cap, leaves_out_the_ends_that_it_should) {
+  Surface s = surface_of(branching_tree(0, 5, 0.8, 2500, 1));
+  const std::vector<End> before = find_ends(s);
+  EXPECT_EQ(ends_in(before, "outlet_1,5"), (std::vector<char>{0, 1, 0, 0, 1}));
+  for (const char* list : {"", "6", "0", "inlet,", "outlet_5", "1,,2"})
+    EXPECT_THROW(ends_in(before, list), NotAdmissible) << list;
+  CapOptions o;
+  o.trim = 0.1;
+  o.extend = 1;
+  o.cap = true;
+  o.kept = ends_in(before, "inlet,3");
+  std::vector<End> ends = before;
+  const std::vector<EndReport> r = treat_ends(s, ends, o);
+  expect_sound(s);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(r[i].trimmed > 0, !o.kept[i]);
+    EXPECT_EQ(r[i].extension > 0, !o.kept[i]);
+    EXPECT_TRUE(r[i].flat);
+    EXPECT_EQ(norm(ends[i].center - before[i].center) < 1e-9, o.kept[i] != 0);
+  }
+}
+
+TEST(cap, lists_all_ends_that_cannot_be_cut_back) {
+  const Surface s = surface_of(branching_tree(0, 5, 0.8, 2500, 1));
+  CapOptions o;
+  o.trim = 2.4;  // the branches are shorter than that before they meet the next one, the trunk is not
+  o.cap = true;
+  const std::string text = why(s, o);
+  const std::size_t at = text.find("--except ");
+  ASSERT_NE(at, std::string::npos) << text;
+  o.kept = ends_in(find_ends(s), text.substr(at + 9));
+  EXPECT_EQ(why(s, o), "");
+}
+
 TEST(cap, refuses_a_rim_that_crosses_itself) {
   Surface s = open_tube(3, 32);
   for (Vec3& p : s.points)
@@ -280,6 +314,7 @@ TEST(cap, refuses_an_extension_into_another_vessel) {
   EXPECT_EQ(why(s, o), "");
   o.extend = 4;
   EXPECT_NE(why(s, o).find("its extension meets the surface near"), std::string::npos);
+  EXPECT_NE(why(s, o).find("--except "), std::string::npos) << why(s, o);
 }
 
 TEST(cap, does_nothing_to_a_closed_surface) {

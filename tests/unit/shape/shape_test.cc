@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 #include "lib/core/topology.h"
@@ -93,6 +94,24 @@ TEST(shape, tree_has_its_outlets_cut_flat) {
     for (int h : loop)
       area = area + cross(m.points[origin(m.tris, h)] - middle, m.points[target(m.tris, h)] - middle);
     for (int h : loop) EXPECT_NEAR(dot(m.points[origin(m.tris, h)] - middle, normalized(area)), 0, 1e-9);
+  }
+}
+
+TEST(shape, EndsOfTreesAreRoundAlsoWhereTrianglesAreLarge) {
+  for (int outlets : {2, 123, 147}) {
+    const Mesh m = branching_tree(0, outlets, 0.8, 25000, 1);
+    const auto loops = boundary_loops(opposite_halfedges(m.tris, (int)m.points.size()));
+    EXPECT_EQ((int)loops.size(), outlets);
+    for (const auto& loop : loops) {
+      Vec3 area;
+      double length = 0;
+      for (int h : loop) {
+        const Vec3 p = m.points[origin(m.tris, h)], q = m.points[target(m.tris, h)];
+        area = area + 0.5 * cross(p - m.points[origin(m.tris, loop[0])], q - p);
+        length += norm(q - p);
+      }
+      EXPECT_GT(4 * std::numbers::pi * norm(area), 0.9 * length * length) << outlets;
+    }
   }
 }
 
