@@ -45,14 +45,36 @@ Mesh corner_points(const Connectivity& surface, const std::vector<Sector>& secto
   return points;
 }
 
-/// Pairs each sector of the result with the nearest corner of the reference of its kind; of those that have
-/// the same corner only the nearest stays. Returns the corner's angle per sector, negative: none.
+/// Unit vector along the middle of a sector.
+Vec3 middle(const Connectivity& s, const Sector& sector) {
+  Vec3 sum;
+  for (int g = sector.first, k = 0; k < sector.triangles; ++k, g = s.opposite[prev(g)])
+    sum = sum + normalized(s.point(s.to(g)) - s.point(s.from(g))) +
+          normalized(s.point(s.apex(g)) - s.point(s.from(g)));
+  return normalized(sum);
+}
+
+/// Pairs each sector of the result with the nearest corner of the reference of its kind, and of several at
+/// the same vertex with the one in its direction; of those that have the same corner only the nearest stays.
+/// Returns the corner's angle per sector, negative: none.
 std::vector<double> angles_of_corners(const Connectivity& result, const std::vector<Sector>& sectors,
                                       const Connectivity& reference, bool whole) {
   std::vector<double> angles(sectors.size(), -1), distance(sectors.size());
   std::vector<Sector> corners = needle_sectors(reference);
   std::erase_if(corners, [&](const Sector& s) { return s.whole != whole; });
   if (corners.empty()) return angles;
+  auto vertex = [&](const Sector& s) { return reference.from(s.first); };
+  std::stable_sort(corners.begin(), corners.end(), [&](auto& a, auto& b) { return vertex(a) < vertex(b); });
+  auto best_at = [&](int corner, Vec3 direction) {
+    const int v = vertex(corners[corner]);
+    while (corner > 0 && vertex(corners[corner - 1]) == v) --corner;
+    int best = corner;
+    double most = -2;
+    for (; corner < (int)corners.size() && vertex(corners[corner]) == v; ++corner)
+      if (const double d = dot(middle(reference, corners[corner]), direction); d > most)
+        most = d, best = corner;
+    return best;
+  };
   const Mesh points = corner_points(reference, corners);
   const Bvh tree(points);
   std::vector<int> nearest(sectors.size(), -1);
@@ -61,7 +83,7 @@ std::vector<double> angles_of_corners(const Connectivity& result, const std::vec
     if (sectors[i].whole != whole) continue;
     const auto hit = tree.nearest(result.point(result.from(sectors[i].first)));
     if (hit.distance > touching * longest_edge(result.mesh, sectors[i].first / 3)) continue;
-    nearest[i] = hit.place.face;
+    nearest[i] = best_at(hit.place.face, middle(result, sectors[i]));
     distance[i] = hit.distance;
     least[nearest[i]] = std::min(least[nearest[i]], hit.distance);
   }

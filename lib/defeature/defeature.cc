@@ -122,7 +122,9 @@ void ban_last(const MergedSurface& z, const std::vector<int>& image, const std::
 /// Vertices of features that were removed only in part, so that two lines meet there in a sharper needle than
 /// before.
 std::vector<int> new_needles(const MergedSurface& z, const std::vector<int>& image,
-                             const std::vector<double>& before) {
+                             std::vector<double> before) {
+  // a needle at the end of a line moves along it
+  for (const RowBetween& r : z.added) before.push_back(std::min(before[r.a], before[r.b]));
   std::vector<char> merged;
   UnionFind sets = feature_sets(z, image, merged);
   std::vector<double> least(z.points.size(), needle);

@@ -13,6 +13,7 @@
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/lines/noncrossing.h"
+#include "lib/lines/sharp_corners.h"
 
 namespace meshpipe {
 namespace {
@@ -492,6 +493,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
           division[l].push_back({i, 0, chains.measure[c.first + i]});
     }
   }
+  if (!keep_border && !sheets_meet) divide_at_sharp_corners(mesh, size, chains, division);
   for (std::size_t l = 0; l < chains.leader.size(); ++l) division[l] = division[chains.leader[l]];
   std::vector<char> inside(n_vertices, 0);
   for (const Peak& p : sharp_peaks(mesh, size)) inside[p.vertex] = 1;

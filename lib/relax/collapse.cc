@@ -44,7 +44,9 @@ bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::
   const int kept = m.from(h) == gone ? m.to(h) : m.from(h), g = m.opp[h];
   double shape_before = 0, shape_after = 0, cosine_before = 1, cosine_after = 1;
   bool short_enough = true;
-  for (int v : {gone, kept})
+  for (int v : {gone, kept}) {
+    // what does not change, such as the needle in a sharp corner, permits no others
+    if (v == kept && s.hold[kept] != loose) continue;
     m.star(v, [&](int e) {
       const int b = m.to(e), f = m.apex(e);
       const Vec3 x = s.points[v], y = s.points[b], z = s.points[f];
@@ -56,6 +58,7 @@ bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::
       const double l = norm(y - at.p);
       if (l > limits.length * 0.5 * (s.target(b) + s.target(kept)) && l > norm(y - x)) short_enough = false;
     });
+  }
   return short_enough && (shape_after <= limits.shape || shape_after <= shape_before) &&
          !folds(cosine_before, cosine_after);
 }

@@ -33,6 +33,21 @@ void hold_at_corner(State& s, int v, const std::vector<char>& corner) {
   }
 }
 
+/// Holds the ends of triangles that fill sharp corners, as mlines has placed them: what makes others better
+/// makes these worse.
+void hold_sharp_corners(State& s) {
+  constexpr double widest = 0.125, equal = 0.01;  // radians; of the length: sides that differ by less
+  const EditMesh& m = s.mesh;
+  std::vector<int> ends;
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    if (!m.hard[h] || !m.hard[prev(h)] || s.hold[m.from(h)] != fixed) continue;
+    const Vec3 p = s.points[m.from(h)], a = s.points[m.to(h)] - p, b = s.points[m.apex(h)] - p;
+    if (angle(a, b) < widest && std::abs(norm(a) - norm(b)) < equal * norm(a))
+      ends.insert(ends.end(), {m.to(h), m.apex(h)});
+  }
+  for (int v : ends) s.hold[v] = fixed;
+}
+
 }  // namespace
 
 Reference::Reference(const Surface& reference)
@@ -103,6 +118,7 @@ State start_state(LiftedMesh& lifted, const Reference& reference, const std::vec
     const int at = p.b0 == 1 ? t[0] : p.b1 == 1 ? t[1] : p.b2 == 1 ? t[2] : -1;
     if (ends[v] != 2 || (at >= 0 && !corner.empty() && corner[at])) s.hold[v] = fixed;
   }
+  hold_sharp_corners(s);
   for (int v = 0; v < n && !corner.empty(); ++v)
     if (!s.hold[v]) hold_at_corner(s, v, corner);
   if (sheets_meet) share_vertices(s);

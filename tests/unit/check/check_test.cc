@@ -153,6 +153,18 @@ TEST(check, needles_at_sharp_tips_are_forced) {
   EXPECT_EQ(forced_needles(marked, kappas, {m, c.opposite}), (std::vector<char>{0, 0}));
 }
 
+//  two needles at 0, of 2 degrees and of half a degree: each is excused as its own sector forces
+TEST(check, needles_of_a_fan_are_forced_each_by_its_own_sector) {
+  Mesh m{{{0, 0, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  for (double a : {0.0, 2.0, 2.5})
+    m.points.push_back({std::cos(a / 57.29577951308232), std::sin(a / 57.29577951308232), 0});
+  const Soundness c = soundness_of(m);
+  const std::vector<std::uint8_t> model{7, 7};
+  const Connectivity fan{m, c.opposite, model};
+  EXPECT_EQ(forced_needles(fan, quality_of(fan, {}).kappas, fan), (std::vector<char>{1, 1}));
+  EXPECT_EQ(forced_needles(fan, {0.01F, 0.01F}, fan), (std::vector<char>{0, 1}));
+}
+
 //  0 <: strip of 8 triangles that opens by a degree: only the first is forced to be as it is
 TEST(check, strips_beyond_a_sharp_tip_are_not_forced) {
   Mesh m{{{0, 0, 0}}, {}};

@@ -116,6 +116,34 @@ TEST(Lines, BreakAtCornersAndJunctions) {
         (lines.uses[i - 1].line == lines.uses[i].line && lines.uses[i - 1].part < lines.uses[i].part));
 }
 
+//  0 <|    a triangle of two degrees: from the first points on, both sides are divided alike, and segments
+//  are at
+//          most 8 times as long as the triangle is wide there
+TEST(Lines, OneTriangleFillsASharpCorner) {
+  const double width = 2 * pi / 180;
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, width, 0}};
+  s.tris = {{0, 1, 2}};
+  s.vertex.set("size", std::vector<double>(3, 0.1));
+  s.face.set("part", std::vector<int>{0});
+  const Lines lines = make_lines(s, flat_charts(s, 1));
+  ASSERT_EQ(lines.lines.size(), 3u);
+  std::vector<std::vector<double>> distances;
+  for (const Line& l : lines.lines) {
+    std::vector<double>& d = distances.emplace_back();
+    for (int i = 0; i < l.count; ++i) d.push_back(norm(position(s, lines.points[l.first + i])));
+    std::sort(d.begin(), d.end());
+  }
+  std::sort(distances.begin(), distances.end());
+  ASSERT_GT(distances[0].size(), 8u);
+  ASSERT_GT(distances[1].size(), 8u);
+  EXPECT_NEAR(distances[0][1], 0.1, 1e-12);
+  for (std::size_t i = 1; i < 6; ++i) {
+    EXPECT_NEAR(distances[0][i], distances[1][i], 1e-12);
+    EXPECT_LT(distances[0][i + 1] - distances[0][i], 8.1 * width * distances[0][i]);
+  }
+}
+
 TEST(Lines, PointsThatFallOnVerticesAreVertices) {
   const Surface s = grid(
       8, 4, flat, [](int, int) { return 0; }, 0.25);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Divisions of lines that meet in a sharp corner.
+#pragma once
+#include "lib/core/connectivity.h"
+#include "lib/lines/noncrossing.h"
+
+namespace meshpipe {
+
+/// Divides lines (borders, model edges) anew next to vertices where two of them bound a sector of less than 8
+/// degrees: one triangle as long as the size fills its end; from there on all segments are 8 times as long
+/// as the sector is wide, and on both lines at the same distances, until the segments that were there are
+/// shorter. Sizes cannot ask for that, since they change gradually.
+void divide_at_sharp_corners(const Connectivity& mesh, const std::vector<double>& size, const Chains& chains,
+                             Division& division);
+
+}  // namespace meshpipe
