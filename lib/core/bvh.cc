@@ -110,6 +110,24 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   build(items.data(), 0, n, 0);
 }
 
+void Bvh::refit() {
+  for (int i = (int)nodes_.size() - 1; i >= 0; --i)  // children come after their parent
+    for (int k = 0; k < 4; ++k) {
+      Node& b = nodes_[i];
+      if (b.lo[0][k] > b.hi[0][k]) continue;  // no child
+      if (b.child[k] < 0) {
+        set_child(i, k, b.child[k], box_of(mesh_, -1 - b.child[k]));
+        continue;
+      }
+      const Node& below = nodes_[b.child[k]];
+      for (int axis = 0; axis < 3; ++axis) {
+        const Four &lo = below.lo[axis], &hi = below.hi[axis];
+        b.lo[axis][k] = std::min({lo[0], lo[1], lo[2], lo[3]});
+        b.hi[axis][k] = std::max({hi[0], hi[1], hi[2], hi[3]});
+      }
+    }
+}
+
 std::array<float, 3> Bvh::own_units(Vec3 p) const {
   const Vec3 q = scale_ * (p - center_);
   auto within = [](double x) { return (float)std::clamp(x, -1e16, 1e16); };

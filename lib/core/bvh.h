@@ -37,6 +37,9 @@ class Bvh {
  public:
   /// Keeps a reference to the mesh. Requires: it has a triangle.
   explicit Bvh(const Mesh& mesh);
+  /// Fits the boxes to the mesh after its points or corners have changed, in linear time. Searches stay as
+  /// fast as long as each triangle is near to where it was.
+  void refit();
   struct Hit {
     double distance = 0;
     Place place;

@@ -15,24 +15,38 @@ void MeshTree::Part::build(const State& s, std::vector<int> triangles) {
   tree.emplace(mesh);
 }
 
+void MeshTree::build(const State& s) {
+  std::vector<int> all;
+  triangles_ = (int)s.mesh.tris.size();
+  for (int t = 0; t < triangles_; ++t)
+    if (!s.mesh.dead(t)) all.push_back(t);
+  gone_.assign(all.size(), 0);
+  built_.build(s, std::move(all));
+}
+
+/// Moves the first tree along, as far as its triangles are left.
+void MeshTree::follow(const State& s) {
+  built_.mesh.points = s.points;
+  for (std::size_t i = 0; i < gone_.size(); ++i) {
+    gone_[i] = s.mesh.dead(built_.number[i]);
+    if (!gone_[i]) built_.mesh.tris[i] = s.mesh.tris[built_.number[i]];
+  }
+  built_.tree->refit();
+}
+
 void MeshTree::renew(const State& s) {
   if (time_ == s.clocks.now) return;
   time_ = s.clocks.now;
-  std::vector<int> all, changed;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t)) continue;
-    all.push_back(t);
-    if (built_at_ < 0 || changed_since(s, t, built_at_)) changed.push_back(t);
+  std::vector<int> added;
+  for (int t = triangles_; t >= 0 && t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t)) added.push_back(t);
+  if (triangles_ < 0 || (double)added.size() > rules::stale_share * s.mesh.live) {
+    build(s);
+    added.clear();
+  } else {
+    follow(s);
   }
-  if ((double)changed.size() > rules::stale_share * (double)all.size()) {
-    built_.build(s, std::move(all));
-    built_at_ = time_;
-    changed.clear();
-  }
-  gone_.assign(built_.number.size(), 0);
-  if (built_at_ < time_)
-    for (std::size_t i = 0; i < gone_.size(); ++i) gone_[i] = changed_since(s, built_.number[i], built_at_);
-  since_.build(s, std::move(changed));
+  added_.build(s, std::move(added));
 }
 
 Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
@@ -42,17 +56,17 @@ Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
     if (hit.distance <= enough) return hit;
     bound = hit.distance;
   }
-  if (since_.tree) {
-    Bvh::Hit other = since_.tree->nearest_but({}, p, bound, enough);
+  if (added_.tree) {
+    Bvh::Hit other = added_.tree->nearest_but({}, p, bound, enough);
     if (other.place.face >= 0 && (hit.place.face < 0 || other.distance < hit.distance)) {
-      other.place.face = since_.number[other.place.face];
+      other.place.face = added_.number[other.place.face];
       return other;
     }
   }
   return hit.place.face >= 0 || bound >= 1e300 ? hit : nearest(p, 1e300, enough);
 }
 
-std::vector<std::pair<int, int>> MeshTree::unchanged_crossings() const {
+std::vector<std::pair<int, int>> MeshTree::crossings() const {
   std::vector<std::pair<int, int>> pairs = self_intersections(built_.mesh, *built_.tree);
   std::erase_if(pairs, [&](const auto& p) { return gone_[p.first] || gone_[p.second]; });
   for (auto& [a, b] : pairs) a = built_.number[a], b = built_.number[b];
@@ -64,8 +78,8 @@ void renew(Crossings& crossings, const State& s, MeshTree& search) {
   auto& pairs = crossings.pairs;
   std::vector<int> changed;
   if (crossings.time < 0) {
-    pairs = search.unchanged_crossings();
-    changed = search.changed();
+    pairs = search.crossings();
+    changed = search.added();
   } else {
     auto other = [&](int t) { return changed_since(s, t, crossings.time); };
     std::erase_if(pairs, [&](const auto& p) { return other(p.first) || other(p.second); });

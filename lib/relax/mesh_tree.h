@@ -18,7 +18,7 @@ inline bool changed_since(const State& s, int t, int time) {
   return changed[a] > time || changed[b] > time || changed[c] > time;
 }
 
-/// A search tree of the mesh, which follows its changes: those since it was built are in a second tree.
+/// A search tree of the mesh, which follows its changes: triangles that have been added are in a second tree.
 class MeshTree {
  public:
   MeshTree() = default;
@@ -33,14 +33,13 @@ class MeshTree {
     built_.tree->overlapping(box, [&](int i) {
       if (!gone_[i]) visit(built_.number[i]);
     });
-    if (since_.tree) since_.tree->overlapping(box, [&](int i) { visit(since_.number[i]); });
+    if (added_.tree) added_.tree->overlapping(box, [&](int i) { visit(added_.number[i]); });
   }
-  /// The pairs that intersect, as self_intersections, of triangles that have not changed since the first tree
-  /// was built; and those that have.
-  std::vector<std::pair<int, int>> unchanged_crossings() const;
-  const std::vector<int>& changed() const { return since_.number; }
+  /// The pairs that intersect, as self_intersections, of triangles in the first tree; and those that are not.
+  std::vector<std::pair<int, int>> crossings() const;
+  const std::vector<int>& added() const { return added_.number; }
   /// Forgets the mesh: call it before it is used with another.
-  void forget() { built_at_ = time_ = -1; }
+  void forget() { triangles_ = time_ = -1; }
 
  private:
   struct Part {
@@ -49,9 +48,12 @@ class MeshTree {
     std::optional<Bvh> tree;
     void build(const State& s, std::vector<int> triangles);
   };
-  Part built_, since_;
-  std::vector<char> gone_;  ///< per triangle of the first, whether it is not searched
-  int built_at_ = -1, time_ = -1;
+  void build(const State& s);
+  void follow(const State& s);
+
+  Part built_, added_;
+  std::vector<char> gone_;          ///< per triangle of the first, whether it is not searched
+  int triangles_ = -1, time_ = -1;  ///< of the state, when the first was built; and that of the last renewal
 };
 
 /// The pairs of triangles that intersect, at some time.

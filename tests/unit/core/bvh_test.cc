@@ -102,6 +102,24 @@ TEST(bvh, meshes_of_any_count) {
   }
 }
 
+TEST(bvh, follows_a_mesh_that_moves) {
+  for (int triangles : {1, 5, 400}) {
+    Mesh m = sphere(400);
+    m.tris.resize(std::min<std::size_t>(triangles, m.tris.size()));
+    Bvh bvh(m);
+    Random random(3);
+    for (Vec3& p : m.points) p = {3 * p.x + random.uniform(), p.y - 5, p.z * random.uniform()};
+    std::swap(m.tris.front()[1], m.tris.back()[2]);
+    bvh.refit();
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 p = 6.0 * random.in_ball();
+      double least = 1e300;
+      for (int t = 0; t < (int)m.tris.size(); ++t) least = std::min(least, distance_to(m, t, p));
+      EXPECT_DOUBLE_EQ(bvh.nearest(p).distance, least);
+    }
+  }
+}
+
 TEST(bvh, boxes_miss_no_triangle) {
   const Mesh m = torus(0.4, 1000);
   const Bvh bvh(m);
