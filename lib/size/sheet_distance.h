@@ -14,7 +14,8 @@ double angle_behind(const Connectivity& surface, int half_edge);
 /// Measures by rays how far the sheet is that faces a point, on one side of the surface: for every vertex the
 /// radius of the ball that touches the surface there and the sheet opposite to it. In a tube that is its
 /// radius; between parallel sheets it is half their distance. At creases it is the smallest of their sides.
-/// Next to folds, where two sides meet at less than 75 degrees, it is that of the neighborhood.
+/// Next to folds, where two sides meet at less than 75 degrees, it is that of the neighborhood; and so it is
+/// where branches meet.
 class SheetDistance {
  public:
   enum Side { inside, outside };
@@ -29,13 +30,24 @@ class SheetDistance {
 
  private:
   Vec3 normal_at(int face, double b1, double b2) const;
-  double ball(Vec3 p, Vec3 normal) const;
+  /// A ball at a point, and whether rays to all directions find about the same.
+  struct Ball {
+    double radius;
+    bool sure;
+  };
+  Ball ball(Vec3 p, Vec3 normal) const;
   /// The ball at a point of face t near corner p, for creases, where vertices have no normal.
   double ball_on_face(int t, Vec3 p) const;
   /// The smallest at point p of face t and the other sides of a crease there.
   double ball_on_sides(int t, Vec3 p) const;
   void measure();
   void leave_folds(const Connectivity& surface);
+  void leave_branchings(const Connectivity& surface);
+  /// Of the surface at an edge, on the side that is measured, in degrees.
+  double angle_on_side(const Connectivity& surface, int half_edge) const;
+  /// Replaces what vertices have by the mean of their neighbors, from the others on; those that no way from
+  /// them leads to have none.
+  void fill(std::vector<char> left);
 
   Mesh mesh_;                        ///< with all components oriented outward
   std::vector<Vec3> face_, vertex_;  ///< unit normals, those of vertices averaged over a neighborhood
@@ -43,7 +55,9 @@ class SheetDistance {
   Side side_;
   double none_;
   std::vector<double> radius_;
-  std::vector<char> creased_, folded_;  ///< vertices on creases, next to folds
+  std::vector<char> creased_;
+  std::vector<char> folded_;  ///< vertices that have what their neighbors have
+  std::vector<char> sure_;    ///< vertices at which rays agree
 };
 
 }  // namespace meshpipe
