@@ -399,12 +399,14 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   auto column = [&]() -> std::vector<double>& { return f.s.vertex.get<double>(kind.column); };
   f.s.vertex.set(kind.column, sheets.radii());
   for (double& x : column()) x *= kind.balls;
-  if (kind.balls == 1) {  // ends and rims are sections, however they are shaped
+  auto bound_by_sections = [&] {  // ends and rims are sections, however they are shaped
+    if (kind.balls != 1) return;
     const auto model = model_of(f.s);
     const std::vector<double> around = closed_line_lengths({f.s, f.opposite, model});
     for (std::size_t v = 0; v < around.size(); ++v)
       column()[v] = std::min(column()[v], around[v] / (2 * std::numbers::pi));
-  }
+  };
+  bound_by_sections();
   auto bends = [&](int h) {
     const double l = edge_length(f, h);
     if (l > longest_edge * f.diagonal) return true;
@@ -419,6 +421,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
     if (!split(f, bends)) break;
     for (std::size_t v = before; v < f.s.points.size(); ++v)
       column()[v] = kind.balls * sheets.radius_at(f.s.points[v]);
+    bound_by_sections();
   }
   f.sources.push_back({kind.column, kind.factor()});
   const std::vector<double>& values = column();

@@ -413,3 +413,23 @@ TEST(Size, GeometryIsDividedAsAsked) {
   o.across = 0, o.gap = 2;
   EXPECT_EQ(set_size(plate, nullptr, o).measured[0].vertices, 0);
 }
+
+// A small end in the wall of a wide tube: all of its rim is divided by its own length, also where it is
+// split.
+TEST(Size, RimsOfSmallEndsAreDividedAsAsked) {
+  Surface s = surface_of(tube(4, 24, false));
+  int hole = 0;
+  while (std::abs(centroid(s, hole).z - 2) > 0.1) ++hole;
+  s.tris.erase(s.tris.begin() + hole);
+  s.face.rows = s.tris.size();
+  SizeOptions o;
+  o.around = 40;
+  EXPECT_GT(set_size(s, nullptr, o).added, 0);
+  const auto& size = s.vertex.get<double>("size");
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  for (const auto& loop : boundary_loops(opposite)) {
+    double length = 0;
+    for (int h : loop) length += edge_length(s, h);
+    for (int h : loop) EXPECT_LT(size[origin(s.tris, h)], 1.05 * length / o.around);
+  }
+}
