@@ -136,9 +136,12 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
       look(std::cos(t) * down + std::sin(t) * (std::cos(turn) * x + std::sin(turn) * y));
     }
   if (n < least_hits) return {none_, false};
-  std::sort(found, found + n);
-  const double radius = found[static_cast<int>(rank * (n - 1))];
-  const bool all = n > per_ring && found[static_cast<int>((1 - rank) * (n - 1))] < consensus * radius;
+  double* const first = found + static_cast<int>(rank * (n - 1));
+  double* const third = found + static_cast<int>((1 - rank) * (n - 1));
+  std::nth_element(found, first, found + n);
+  const double radius = *first;
+  std::nth_element(first, third, found + n);
+  const bool all = n > per_ring && *third < consensus * radius;
   return {std::min(radius, none_), all};
 }
 
