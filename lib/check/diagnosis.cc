@@ -88,6 +88,7 @@ Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
   if (!has_sound_indices(surface)) return d;
   if (const auto pairs = self_intersections(surface); !pairs.empty()) {
     d.intersections = pairs.size();
+    d.tangled = pairs.size() > surface.tris.size();
     d.intersection = contacts(surface, {pairs[0]}).points.at(0);
   }
   find_short_edges(surface, d);

@@ -57,7 +57,7 @@ struct Field {
   // Where the surface is near itself: the bounds by half-edge of the surface as it came and along it, the
   // triangles of that, and which of them each triangle is part of. Empty where nothing is bounded.
   std::vector<SizeBound> bounds{};
-  std::vector<Tri> given{};
+  Surface given{};
   std::vector<int> root{};
 };
 
@@ -138,7 +138,7 @@ void each_bound(const Field& f, int h, Visit visit) {
   while (first != f.bounds.end() && first->half_edge / 3 == t) {
     const int g = first->half_edge;
     const auto last = std::lower_bound(first, f.bounds.end(), g + 1, on_edge);
-    const Vec3 p = f.s.points[origin(f.given, g)], along = f.s.points[target(f.given, g)] - p;
+    const Vec3 p = f.s.points[origin(f.given.tris, g)], along = f.s.points[target(f.given.tris, g)] - p;
     const auto [from, to] = std::minmax({dot(a - p, along), dot(b - p, along)});
     const double most = to + slack * dot(along, along);
     first =
@@ -323,6 +323,16 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
                              facts);
 }
 
+/// Puts the surface back as it came and throws GoalMissed if the field asks for more triangles than `limit`.
+void refuse_costly_field(Field& f, double limit, double triangles, const SizeReport& r) {
+  const double count = count_for_size(f.s, f.size) + triangles_of_strips(f.bounds, infinite);
+  if (count <= limit) return;
+  f.s = std::move(f.given);
+  throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
+                   " triangles instead of " + shown(std::round(triangles)) + ": the nearest are " +
+                   shown(r.narrow_gap) + " apart at " + shown(r.narrow_at));
+}
+
 /// Throws: GoalMissed if closed components so slender that the size is more than their circumference, in the
 /// mean along their length, ask for many times as many triangles: four edges around are the least.
 void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, double size, double triangles) {
@@ -436,6 +446,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
 struct Known {
   std::vector<SizeBound> bounds{};
   bool unbounded = false;           ///< there are none
+  double triangles = 0;             ///< that the size asks for; 0: not known
   std::vector<double> curvature{};  ///< per triangle of the surface as it came; empty: not known
 };
 
@@ -457,6 +468,7 @@ bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const 
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
                                SizeReport& report, Known known = {}) {
   std::vector<SizeBound>& bounds = known.bounds;
+  double& triangles = known.triangles;
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinite;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
@@ -473,11 +485,13 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (may_split && o.at)
     while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
     }
+  double limit = infinite;  // triangles
   auto follow_field = [&] {
     for (int pass = 0;; ++pass) {
       set_wishes(f);
       bound_vertices(f);
       make_sizes(f);
+      if ((double)(s.points.size() - n_before) > limit) break;
       if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
     }
   };
@@ -486,14 +500,17 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     if (!known.unbounded) bounds = bounds_below(s, f.opposite, f.size, o, report);
   }
   if (!bounds.empty()) {
+    if (!(triangles > 0)) triangles = count_for_size(s, f.size);
+    limit = std::max(most_times * triangles, many_triangles);
     f.bounds = std::move(bounds);
-    f.given = s.tris;
+    f.given = s;
     f.root.resize(s.tris.size());
     std::iota(f.root.begin(), f.root.end(), 0);
     follow_field();
   }
   if (known.curvature.size() == s.tris.size()) f.curvature = std::move(known.curvature);  // not split since
   lower_where_narrow(f, report);
+  if (!f.bounds.empty()) refuse_costly_field(f, limit, triangles, report);
   report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
   report.added = static_cast<int>(s.points.size() - n_before);
   report.scale = f.scale;
@@ -578,8 +595,9 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     size.assign(surface.points.size(), h);
     const std::vector<int> opposite =
         opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
-    refuse_costly_tubes(surface, opposite, h, area / (0.25 * std::sqrt(3.0) * h * h));
-    Known known{.bounds = bounds_below(surface, opposite, size, options, report)};
+    const double triangles = area / (0.25 * std::sqrt(3.0) * h * h);
+    refuse_costly_tubes(surface, opposite, h, triangles);
+    Known known{.bounds = bounds_below(surface, opposite, size, options, report), .triangles = triangles};
     known.unbounded = known.bounds.empty();
     if (!known.unbounded || has_narrow_tubes(surface, opposite, size, known.curvature)) {
       SizeOptions o = options;

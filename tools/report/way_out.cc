@@ -107,7 +107,7 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.intersections > 0 && !c.ran("mwrap"); },
      [](const Case& c) {
-       return WayOut{c.used("mclean", "--resolve") ? "mwrap" : "mclean --resolve outer",
+       return WayOut{c.found.tangled || c.used("mclean", "--resolve") ? "mwrap" : "mclean --resolve outer",
                      std::to_string(c.found.intersections) +
                          " pairs of triangles of the input intersect, first at " +
                          shown(c.found.intersection)};

@@ -370,6 +370,28 @@ TEST(Size, RefusesWhatIsFarMoreSlenderThanTheSize) {
   EXPECT_NO_THROW(set_size(s, nullptr, options));
 }
 
+//  a sphere in another
+Surface shells(double ratio) {
+  Mesh both = sphere(2000);
+  const int n = (int)both.points.size(), m = (int)both.tris.size();
+  for (int v = 0; v < n; ++v) both.points.push_back(ratio * both.points[v]);
+  for (int t = 0; t < m; ++t) {
+    const auto [a, b, c] = both.tris[t];
+    both.tris.push_back({a + n, b + n, c + n});
+  }
+  return surface_of(both);
+}
+
+TEST(Size, RefusesSheetsThatAskForManyTimesAsManyTriangles) {
+  SizeOptions options;
+  options.triangles = 2000;
+  Surface near = shells(1.0001), apart = shells(1.1);
+  const std::vector<Tri> before = near.tris;
+  EXPECT_THROW(set_size(near, nullptr, options), GoalMissed);
+  EXPECT_EQ(near.tris, before);
+  EXPECT_NO_THROW(set_size(apart, nullptr, options));
+}
+
 TEST(SizeField, Tables) {
   EXPECT_TRUE(is_size_table("# sizes\n0 0 0 1\n"));
   EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
