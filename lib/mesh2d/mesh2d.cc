@@ -10,6 +10,7 @@
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
 #include "lib/core/number.h"
+#include "lib/core/weld.h"
 #include "lib/mesh2d/adapt.h"
 #include "lib/mesh2d/plane_metric.h"
 #include "lib/mesh2d/refine.h"
@@ -157,6 +158,38 @@ void insert_kept(SiteMesh& m, const SizeMetric& field, const std::vector<char>& 
   m.line_points = (int)m.cdt.points.size();
 }
 
+/// Splits edges between line points at the same place, and those along a segment of another line: where a
+/// sheet meets itself, as the two sides of a pocket do, they would close it.
+void open_pockets(SiteMesh& m, const SizeMetric& field, int n) {
+  constexpr double same_place = 1e-6;  // of the size: copies of a point are nearer
+  constexpr int most_passes = 4;       // pockets are small
+  std::vector<Vec3> points;
+  double size = HUGE_VAL;
+  for (int v = 0; v < n; ++v) points.push_back(m.site[v].space), size = std::min(size, m.site[v].size);
+  std::vector<int> first(n);
+  std::iota(first.begin(), first.end(), 0);
+  if (n == 0 || merge_near(points, std::vector<char>(n, 1), same_place * size, first) == 0) return;
+  const Cdt& cdt = m.cdt;
+  std::vector<std::pair<int, int>> segments;
+  auto key = [&](int h) {
+    return std::pair<int, int>(std::minmax(first[cdt.origin(h)], first[cdt.target(h)]));
+  };
+  for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h)
+    if (cdt.fixed[h]) segments.push_back(key(h));
+  std::sort(segments.begin(), segments.end());
+  for (int pass = 0, more = 1; pass < most_passes && more > 0; ++pass) {
+    more = 0;
+    for (int h = 0; h < 3 * (int)cdt.tris.size(); ++h) {
+      const int a = cdt.origin(h), b = cdt.target(h);
+      if (cdt.fixed[h] || std::max(a, b) >= n) continue;
+      if (first[a] != first[b] && !std::binary_search(segments.begin(), segments.end(), key(h))) continue;
+      const Vec2 p = lerp(cdt.points[a], cdt.points[b], 0.5);
+      const int t = cdt.walk(p, h / 3);
+      if (t >= 0) more += insert_site(m, p, field.at(p, m.site[a].place.face), t, {0, 0});
+    }
+  }
+}
+
 PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLines& parts, int part,
                Mesher mesher, const std::vector<char>& keep) {
   const Lines& lines = parts.lines;
@@ -196,6 +229,7 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
       break;
   }
   smooth_in_plane(m, field, smoothing_sweeps);
+  open_pockets(m, field, n);
 
   PlaneMesh result;
   result.tris = std::move(m.cdt.tris);

@@ -516,6 +516,26 @@ TEST(Mesh2d, HasTheVerticesThatAreKept) {
   }
 }
 
+//  a sheet whose left and right borders are at the same place, as those of a pocket: no edge between them,
+//  and none along one of their segments
+TEST(Mesh2d, KeepsPocketsOpen) {
+  const Map3 pocket = [](Vec2 p) { return Vec3{std::abs(p.x - 0.5), p.y, 0.4 * std::sin(M_PI * p.x)}; };
+  const Chart chart = square(20, pocket);
+  for (double h : {0.5, 1.0}) {
+    const Lines lines = border_lines(chart, h);
+    for (Mesher mesher : all_meshers) {
+      const PlaneMesh mesh = mesh_with(chart, lines, h, mesher);
+      examine(mesh, lines, pocket);
+      for (std::size_t e = 0; e < mesh.opposite.size(); ++e) {
+        const Vec2 a = mesh.points[origin(mesh.tris, (int)e)].uv,
+                   b = mesh.points[target(mesh.tris, (int)e)].uv;
+        EXPECT_FALSE(!mesh.on_line[e] && a.x == 0 && b.x == 1 && std::abs(a.y - b.y) < 1.5 * h)
+            << h << ": " << a.y << " to " << b.y;
+      }
+    }
+  }
+}
+
 TEST(Mesh2d, FollowsAGradedSize) {
   Chart chart = square(20);
   std::vector<double> size;
