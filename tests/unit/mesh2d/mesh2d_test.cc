@@ -519,7 +519,9 @@ TEST(Mesh2d, HasTheVerticesThatAreKept) {
 //  a sheet whose left and right borders are at the same place, as those of a pocket: no edge between them,
 //  and none along one of their segments
 TEST(Mesh2d, KeepsPocketsOpen) {
-  const Map3 pocket = [](Vec2 p) { return Vec3{std::abs(p.x - 0.5), p.y, 0.4 * std::sin(M_PI * p.x)}; };
+  const Map3 pocket = [](Vec2 p) {
+    return Vec3{0.1 * std::abs(p.x - 0.5), p.y, 0.05 * std::sin(M_PI * p.x)};
+  };
   const Chart chart = square(20, pocket);
   for (double h : {0.5, 1.0}) {
     const Lines lines = border_lines(chart, h);
