@@ -20,11 +20,14 @@ char span_of(const EditMesh& mesh, int v) {
 
 /// Holds a vertex on no line that is at a corner: a peak. Maps to the plane have moved it by rounding.
 void hold_at_corner(State& s, int v, const std::vector<char>& corner) {
-  constexpr double rounding = 1e-6;  // of the triangle
+  constexpr double rounding = 1e-6;  // of the triangle, and of the edges: others may be near the corner, too
   Place p = s.place[v];
+  double shortest = HUGE_VAL;
+  s.mesh.neighbors(v, [&](int w) { shortest = std::min(shortest, norm(s.points[w] - s.points[v])); });
   for (double* b : {&p.b0, &p.b1, &p.b2}) {
     const int at = s.reference->surface.tris[p.face][b == &p.b0 ? 0 : b == &p.b1 ? 1 : 2];
     if (!(*b > 1 - rounding) || !corner[at]) continue;
+    if (norm(s.reference->surface.points[at] - s.points[v]) > rounding * shortest) continue;
     p.b0 = p.b1 = p.b2 = 0;
     *b = 1;
     put(s, v, p, s.reference->surface.points[at], s.reference->normal(p));
@@ -120,7 +123,7 @@ State start_state(LiftedMesh& lifted, const Reference& reference, const std::vec
   }
   hold_sharp_corners(s);
   for (int v = 0; v < n && !corner.empty(); ++v)
-    if (!s.hold[v]) hold_at_corner(s, v, corner);
+    if (!s.hold[v] && s.mesh.out[v] >= 0) hold_at_corner(s, v, corner);
   if (sheets_meet) share_vertices(s);
   return s;
 }
