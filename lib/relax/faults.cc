@@ -112,7 +112,12 @@ void find_far(const State& s, Known& known, Fault& found) {
   std::vector<std::pair<int, double>> far;
   auto look = [&](int t, double distance) {
     const Tri& v = s.mesh.tris[t];
-    const double size = std::max(mean, (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3);
+    double longest = 0;
+    for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
+    // where the surface admits only smaller triangles than were asked for, their size counts
+    const double local =
+        std::min((s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3, rules::over_longest * longest);
+    const double size = std::max(mean, local);
     if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
   };
   const std::vector<double> distance = sample_distances(s, known.samples, least);

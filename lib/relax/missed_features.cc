@@ -183,9 +183,10 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
     };
     for (int i = 0; i < 3; ++i) {
       const int a = v[i], b = v[(i + 1) % 3];
-      const int pieces =
-          (int)std::min(rules::most_samples, std::ceil(rules::samples_per_edge * norm(p[b] - p[a]) / h));
-      if (a > b || pieces < 2 || !(bends_at(a) || bends_at(b))) continue;
+      const double length = norm(p[b] - p[a]) / h;
+      if (a > b || rules::samples_per_edge * length <= 1) continue;
+      const double rate = bends_at(a) || bends_at(b) ? rules::samples_per_edge : rules::samples_per_flat_edge;
+      const int pieces = (int)std::min(rules::most_samples, std::ceil(rate * length));
       for (int k = 1; k < pieces; ++k) {
         double at[3] = {0, 0, 0};
         at[(i + 1) % 3] = (double)k / pieces, at[i] = 1 - at[(i + 1) % 3];

@@ -48,8 +48,8 @@ struct Samples {
   }
 };
 
-/// Returns the places of the reference that a mesh with edges of length h may miss: its vertices, and where
-/// it bends, points on its edges at most h / 3 apart.
+/// Returns the places of the reference that a mesh with edges of length h may miss: its vertices, and points
+/// on its edges, at most h / 3 apart where it bends, 2 h elsewhere.
 std::vector<Sample> feature_samples(const Reference& reference, double h);
 
 /// Puts mesh vertices on missed features, the maxima of the one-sided distance of the samples from the mesh,

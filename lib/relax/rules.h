@@ -87,8 +87,9 @@ constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
 // faults (faults.cc)
-constexpr double parallel = 0.8;  // cosine: no edge between normals this close sags by `too_far`
-constexpr double too_far = 0.45;  // of the size; a half is the limit of mcheck
+constexpr double parallel = 0.8;      // cosine: no edge between normals this close sags by `too_far`
+constexpr double too_far = 0.45;      // of the size; a half is the limit of mcheck
+constexpr double over_longest = 1.5;  // of the longest edge: the size that mcheck takes a triangle for
 constexpr double nearly_far = 0.7,
                  small_step = 0.06;  // of that, from where the farthest place is looked for; of an edge
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
@@ -100,15 +101,16 @@ constexpr double growth = 1.5,
 constexpr int fault_rounds = 24, useless_rounds = 6;
 
 // missed features (missed_features.cc)
-constexpr double bent = 0.985;          // cosine: 10 degrees, from where edges have samples
-constexpr double samples_per_edge = 3;  // of the mesh: one is half way at most
-constexpr double most_samples = 50;     // of an edge
-constexpr int guess_rounds = 4;         // sweeps over the reference, to guess which triangles are near
-constexpr double missed = 0.1;          // length: the distance from which features are reached
-constexpr double farthest_share = 0.7;  // of the largest distance: those are reached first
-constexpr double larger_size = 1.2;     // over the mean: from here the distance is seen against it
-constexpr double retry = 1.2;           // of the wanted distance: from where half way is worth it
-constexpr double along_border = 0.1;    // of the distance: a sample that slides less is on no border
+constexpr double bent = 0.985;                 // cosine: 10 degrees, from where edges have samples
+constexpr double samples_per_edge = 3;         // of the mesh: one is half way at most
+constexpr double samples_per_flat_edge = 0.5;  // none on edges up to twice as long
+constexpr double most_samples = 50;            // of an edge
+constexpr int guess_rounds = 4;                // sweeps over the reference, to guess which triangles are near
+constexpr double missed = 0.1;                 // length: the distance from which features are reached
+constexpr double farthest_share = 0.7;         // of the largest distance: those are reached first
+constexpr double larger_size = 1.2;            // over the mean: from here the distance is seen against it
+constexpr double retry = 1.2;                  // of the wanted distance: from where half way is worth it
+constexpr double along_border = 0.1;           // of the distance: a sample that slides less is on no border
 constexpr int features = 4, triangles_per_feature = 800;  // the larger: more cost the mesh its regularity
 constexpr double spoils = 1.8e-3;      // of the objective: one triangle with 0.9 of the quality wanted
 constexpr double spoils_farther = 5;   // of `missed`: up to where distance excuses more
