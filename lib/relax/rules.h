@@ -96,7 +96,7 @@ constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
-constexpr double growth = 1.5,
+constexpr double growth = 2,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
 
