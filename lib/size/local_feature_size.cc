@@ -20,6 +20,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
+constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not asked for by peaks
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
 constexpr double opposite_sides = 0.6 * pi;  ///< least angle between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
@@ -138,9 +139,10 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const std::size_t n = mesh.points.size();
   std::vector<double> feature = closed_line_lengths(surface), bend(n, 0);
   for (double& x : feature) x /= ring_edges;
-  // at a size's distance from a peak
+  // at a size's distance from a peak, whatever the size: what was lowered for it before is not once more
+  const double least = least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
   for (const Peak& p : sharp_peaks(surface, size))
-    feature[p.vertex] = size[p.vertex] * std::max(p.angle, least_peak) / ring_edges;
+    feature[p.vertex] = std::max(least, size[p.vertex] * std::max(p.angle, least_peak) / ring_edges);
   const Neighbors next(mesh);
 
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)

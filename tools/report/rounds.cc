@@ -74,7 +74,9 @@ bool another_round(const std::vector<Score>& rounds, int most) {
     if (s.requirement.empty() || first || s.value > at->second) {
       vain = 0;
       at->second = s.value;
-    } else if (++vain == most_vain_rounds) {
+    } else if (++vain == most_vain_rounds ||
+               (s.requirement == "intersections" &&
+                s.value < std::min(more_crossings * at->second, -many_crossings))) {
       return false;
     }
   }

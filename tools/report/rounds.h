@@ -39,6 +39,9 @@ constexpr double most_growth = 2, small_result = 15000;
 constexpr int rounds_of_count = 2;
 /// After this many rounds in a row that are no better than an earlier one, there is no further round.
 constexpr int most_vain_rounds = 2;
+/// Nor is there one once this many pairs of triangles cross, and twice as many as in the best round: there
+/// smaller sizes only crumple the mesh.
+constexpr double many_crossings = 100, more_crossings = 2;
 
 /// Returns the score of a failure. None for requirements without an order (topology, patches) or never seen
 /// to stall.

@@ -345,6 +345,14 @@ TEST(Size, IsLoweredAtPeaksSoThatFourEdgesFitAroundThem) {
   o.size = 0.2;
   set_size(s, nullptr, o);
   EXPECT_NEAR(s.vertex.get<double>("size")[0], 0.2 * 2 * M_PI * 0.1 / sqrt(1.01) / 4, 0.002);
+  // a field that was lowered already is lowered again, but not for ever
+  SizeOptions again;
+  again.data = "before";
+  for (int i = 0; i < 4; ++i) {
+    s.vertex.set("before", std::vector<double>(s.vertex.get<double>("size")));
+    set_size(s, nullptr, again);
+  }
+  EXPECT_GT(s.vertex.get<double>("size")[0], 0.001);
 }
 
 TEST(Expression, ValuesAndFailures) {
