@@ -55,7 +55,7 @@ struct Treatment {
     if (options.trim <= 0) return Planes(n());
     Planes planes = planes_within(surface, ends, length, why);
     cut_possible_ends(surface, ends, planes, why);
-    refuse_all(ends, why, "cut less");
+    refuse_all(ends, why, "cut less", &options.kept);
     for (int i = 0; i < n(); ++i) reports[i].trimmed = length[i];
     return planes;
   }
@@ -94,7 +94,8 @@ struct Treatment {
       else if (!why[i].empty())
         why[i] = "its rim, which is " + shown(ends[i].planarity) +
                  " out of its plane, cannot be made plane: " + why[i];
-    refuse_all(ends, why, "try --trim, or close it with mclean --fill-holes");
+    refuse_all(ends, why, "try --trim, or close it with mclean --fill-holes",
+               options.cap ? &options.kept : nullptr);
     for (int i = 0; i < n(); ++i)
       if (planes[i]) reports[i].trimmed = depth[i];
     split_chords(surface, ends);
@@ -171,7 +172,7 @@ struct Treatment {
                           : "that of " + title_of(ends, j)) +
                  " near " + shown(c.place);
     }
-    refuse_all(ends, why, "extend less");
+    refuse_all(ends, why, "extend less", &options.kept);
     measure_all();
   }
 

@@ -217,21 +217,23 @@ void refuse(const std::vector<End>& ends, int i, const std::string& why) {
   throw NotAdmissible(title_of(ends, i) + ": " + why);
 }
 
-void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why,
-                const std::string& advice) {
+void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why, const std::string& advice,
+                const std::vector<char>* kept) {
   const int n = (int)ends.size();
   std::string list;
-  int first = -1, count = 0;
-  for (int i = n - 1; i >= 0; --i)
-    if (!why[i].empty()) {
-      list = ends[i].name + (list.empty() ? "" : ",") + list;
-      first = i;
-      ++count;
-    }
+  int first = -1, count = 0, listed = 0;
+  for (int i = n - 1; i >= 0; --i) {
+    if (!why[i].empty()) first = i, ++count;
+    if (!kept || (why[i].empty() && (kept->empty() || !(*kept)[i]))) continue;
+    const bool is_word = ends[i].name.find(',') == std::string::npos;
+    list = (is_word ? ends[i].name : std::to_string(i + 1)) + (list.empty() ? "" : ",") + list;
+    ++listed;
+  }
   if (first < 0) return;
   const std::string others = count > 1 ? "; so with " + std::to_string(count - 1) + " more" : "";
   refuse(ends, first,
-         why[first] + others + "; " + advice + (count < n ? ", or try --except " + list : std::string()));
+         why[first] + others + "; " + advice +
+             (kept && listed < n ? ", or try --except " + list : std::string()));
 }
 
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end) {

@@ -28,8 +28,10 @@ End end_of(const Mesh& mesh, std::vector<int> rim);
 std::vector<std::vector<int>> rims_of(const Connectivity& c);
 
 [[noreturn]] void refuse(const std::vector<End>& ends, int i, const std::string& why);
-/// Refuses the ends that have a reason, if there are any: tells that of the first, and lists all.
-void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why, const std::string& advice);
+/// Throws: NotAdmissible if an end has a reason, with that of the first. With flags of the ends that are left
+/// out already (`kept`, may be empty) it names these and all that have a reason, for --except.
+void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why, const std::string& advice,
+                const std::vector<char>* kept = nullptr);
 
 /// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end);
@@ -46,8 +48,8 @@ std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& fla
 /// wall: what lies behind such an edge would be flat in a plane rim, and a cap would touch it or have it too.
 void split_chords(Surface& surface, const std::vector<End>& ends);
 
-/// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there; none
-/// where the length is 0, and where there is none such: `why` then says so.
+/// Returns, per end, the plane at a length from the rim along the end's axis, normal to the wall there. No
+/// plane where the length is 0, or the vessel is shorter: then `why` has the reason.
 std::vector<std::optional<Plane>> planes_within(const Mesh& mesh, const std::vector<End>& ends,
                                                 const std::vector<double>& length,
                                                 std::vector<std::string>& why);

@@ -290,8 +290,8 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
 }
 
 /// Marks ends, junctions and turns of the border and model edges, whatever the parts, and peaks.
-std::vector<char> mark_corners(const Connectivity& mesh, const Surface& s,
-                               const std::vector<SpecialEdge>& edges, const Places& place, double limit) {
+std::vector<char> mark_corners(const Surface& s, const std::vector<SpecialEdge>& edges, const Places& place,
+                               double limit, const std::vector<Peak>& peaks) {
   const auto& size = s.vertex.get<double>("size");
   std::vector<char> corner(s.points.size(), 0);
   std::vector<SpecialEdge> kept;
@@ -307,7 +307,7 @@ std::vector<char> mark_corners(const Connectivity& mesh, const Surface& s,
     corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
   const Chains chains = chain_edges(kept, corner, place);
   for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, !place.first.empty(), corner);
-  for (const Peak& p : sharp_peaks(mesh, size)) corner[p.vertex] = 1;
+  for (const Peak& p : peaks) corner[p.vertex] = 1;
   return corner;
 }
 
@@ -425,7 +425,8 @@ std::vector<char> input_border(const Surface& surface) {
 std::vector<char> model_corners(const Surface& surface, double corner) {
   const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
   const Connectivity mesh{surface, opposite, model_of(surface)};
-  return mark_corners(mesh, surface, special_edges(mesh, surface.face.get<int>("part")), {}, corner);
+  return mark_corners(surface, special_edges(mesh, surface.face.get<int>("part")), {}, corner,
+                      sharp_peaks(mesh, surface.vertex.get<double>("size")));
 }
 
 std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
@@ -466,7 +467,8 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   const Places place{sheets_meet ? first_at_border(mesh) : std::vector<int>()};
   std::vector<SpecialEdge> edges = special_edges(mesh, part, tag);
   if (sheets_meet) drop_copies(edges, place);
-  std::vector<char> corners = mark_corners(mesh, surface, edges, place, corner);
+  const std::vector<Peak> peaks = sharp_peaks(mesh, size);
+  std::vector<char> corners = mark_corners(surface, edges, place, corner, peaks);
   for (int v = 0; v < n_vertices; ++v) corners[place(v)] |= corners[v];
   if (sheets_meet) mark_changes(mesh, place, corners);
   std::vector<int> chain_tag;
@@ -496,7 +498,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   if (!keep_border && !sheets_meet) divide_at_sharp_corners(mesh, size, chains, division);
   for (std::size_t l = 0; l < chains.leader.size(); ++l) division[l] = division[chains.leader[l]];
   std::vector<char> inside(n_vertices, 0);
-  for (const Peak& p : sharp_peaks(mesh, size)) inside[p.vertex] = 1;
+  for (const Peak& p : peaks) inside[p.vertex] = 1;
   for (int v : chains.vertex) inside[v] = 0;
   refine_until_noncrossing(chains, charts, inside, division);
 

@@ -6,10 +6,11 @@
 
 namespace meshpipe {
 
-/// Divides lines (borders, model edges) anew next to vertices where two of them bound a sector of less than 8
-/// degrees: one triangle as long as the size fills its end; from there on all segments are 8 times as long
+/// Divides lines (borders, model edges) anew next to vertices where two of them bound a sector of less than
+/// 1/8 radian: one triangle as long as the size fills its end; from there on all segments are 8 times as long
 /// as the sector is wide, and on both lines at the same distances, until the segments that were there are
-/// shorter. Sizes cannot ask for that, since they change gradually.
+/// shorter. Sizes cannot ask for that, since they change gradually. Lines that would take more than 300 cuts
+/// stay as they are.
 void divide_at_sharp_corners(const Connectivity& mesh, const std::vector<double>& size, const Chains& chains,
                              Division& division);
 

@@ -61,9 +61,9 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
-/// A large distance of triangle t from the reference: that of the middles of it and its edges, and where one
-/// is nearly `limit`, the largest that steps from the farthest come to. By a search: a walk may end on the
-/// wrong sheet.
+/// Returns the largest distance of triangle t from the reference at its middle and those of its edges; where
+/// that is nearly `limit`, the larger one that ever shorter steps from there come to. A walk may end on the
+/// wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const Tri& v = s.mesh.tris[t];
   std::array<double, 3> farthest{};

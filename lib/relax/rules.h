@@ -90,13 +90,13 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;      // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.45;      // of the size; a half is the limit of mcheck
 constexpr double over_longest = 1.5;  // of the longest edge: the size that mcheck takes a triangle for
-constexpr double nearly_far = 0.7,
-                 small_step = 0.06;  // of that, from where the farthest place is looked for; of an edge
+constexpr double nearly_far = 0.7;    // of the bearable: from there the farthest place is looked for
+constexpr double small_step = 0.06;   // of an edge: the last step on that way
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
-constexpr double growth = 2,
+constexpr double growth = 1.6,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
 

@@ -139,7 +139,7 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const std::size_t n = mesh.points.size();
   std::vector<double> feature = closed_line_lengths(surface), bend(n, 0);
   for (double& x : feature) x /= ring_edges;
-  // at a size's distance from a peak, whatever the size: what was lowered for it before is not once more
+  // a quarter of the way around at a size's distance from a peak; `least`, or each run would lower it again
   const double least = least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
   for (const Peak& p : sharp_peaks(surface, size))
     feature[p.vertex] = std::max(least, size[p.vertex] * std::max(p.angle, least_peak) / ring_edges);

@@ -323,10 +323,11 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
                              facts);
 }
 
-/// Puts the surface back as it came and throws GoalMissed if the field asks for more triangles than `limit`.
+/// Puts the surface back as it was before it was split for its bounds (not the chart table), and throws
+/// GoalMissed, if the field asks for more triangles than `limit`, or has taken as many vertices.
 void refuse_costly_field(Field& f, double limit, double triangles, const SizeReport& r) {
   const double count = count_for_size(f.s, f.size) + triangles_of_strips(f.bounds, infinite);
-  if (count <= limit) return;
+  if (count <= limit && (double)(f.s.points.size() - f.given.points.size()) <= limit) return;
   f.s = std::move(f.given);
   throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
                    " triangles instead of " + shown(std::round(triangles)) + ": the nearest are " +
@@ -491,7 +492,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
       set_wishes(f);
       bound_vertices(f);
       make_sizes(f);
-      if ((double)(s.points.size() - n_before) > limit) break;
+      if ((double)(s.points.size() - f.given.points.size()) > limit) break;  // it is refused
       if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
     }
   };
