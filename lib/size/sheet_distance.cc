@@ -238,23 +238,24 @@ void SheetDistance::leave_branchings(const Connectivity& c) {
 
 void SheetDistance::fill(std::vector<char> left) {
   const Neighbors next(mesh_);
-  for (bool more = true; more;) {
-    more = false;
-    const std::vector<char> before = left;
-    for (int v = 0; v < static_cast<int>(left.size()); ++v) {
-      if (!before[v]) continue;
+  std::vector<int> todo;
+  for (int v = 0; v < static_cast<int>(left.size()); ++v)
+    if (left[v]) todo.push_back(v);
+  for (std::vector<int> filled{0}; !filled.empty();) {  // layer by layer
+    filled.clear();
+    std::erase_if(todo, [&](int v) {
       double sum = 0;
       int n = 0;
       for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-        if (!before[next.vertex[k]]) sum += radius_[next.vertex[k]], ++n;
-      if (n == 0) continue;
+        if (!left[next.vertex[k]]) sum += radius_[next.vertex[k]], ++n;
+      if (n == 0) return false;
       radius_[v] = sum / n;
-      left[v] = 0;
-      more = true;
-    }
+      filled.push_back(v);
+      return true;
+    });
+    for (int v : filled) left[v] = 0;
   }
-  for (int v = 0; v < static_cast<int>(left.size()); ++v)
-    if (left[v]) radius_[v] = none_;
+  for (int v : todo) radius_[v] = none_;
 }
 
 double SheetDistance::angle_on_side(const Connectivity& c, int h) const {

@@ -45,8 +45,8 @@ class SheetDistance {
   void leave_branchings(const Connectivity& surface);
   /// Of the surface at an edge, on the side that is measured, in degrees.
   double angle_on_side(const Connectivity& surface, int half_edge) const;
-  /// Replaces what vertices have by the mean of their neighbors, from the others on; those that no way from
-  /// them leads to have none.
+  /// Replaces the radii of the vertices flagged, layer by layer, by the mean of their neighbors; `none` where
+  /// all that is connected is flagged.
   void fill(std::vector<char> left);
 
   Mesh mesh_;                        ///< with all components oriented outward
