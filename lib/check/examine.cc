@@ -46,13 +46,12 @@ std::vector<double> mean_edges(const Mesh& mesh) {
 /// contract harder to meet.
 std::vector<double> allowed_distances(const Mesh& mesh, const std::vector<double>& size,
                                       const std::vector<double>& smooth_off, double least_size) {
-  constexpr double longest = 1.5;
   std::vector<double> allowed(mesh.tris.size());
   for (int t = 0; t < (int)allowed.size(); ++t) {
     const Tri& v = mesh.tris[t];
     const double edge =
         std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
-    const double local = std::min((size[v[0]] + size[v[1]] + size[v[2]]) / 3, longest * edge);
+    const double local = std::min((size[v[0]] + size[v[1]] + size[v[2]]) / 3, size_over_longest * edge);
     allowed[t] = most_deviation * std::max(local, least_size) +
                  std::max({smooth_off[v[0]], smooth_off[v[1]], smooth_off[v[2]]});
   }

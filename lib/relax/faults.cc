@@ -2,6 +2,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
+#include "lib/core/triangle_count.h"
 #include "lib/relax/repair.h"
 
 namespace meshpipe {
@@ -114,9 +115,8 @@ void find_far(const State& s, Known& known, Fault& found) {
     const Tri& v = s.mesh.tris[t];
     double longest = 0;
     for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
-    // where the surface admits only smaller triangles than were asked for, their size counts
     const double local =
-        std::min((s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3, rules::over_longest * longest);
+        std::min((s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3, size_over_longest * longest);
     const double size = std::max(mean, local);
     if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
   };

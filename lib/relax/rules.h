@@ -89,7 +89,6 @@ constexpr double forced_share = 0.8,
 // faults (faults.cc)
 constexpr double parallel = 0.8;      // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.45;      // of the size; a half is the limit of mcheck
-constexpr double over_longest = 1.5;  // of the longest edge: the size that mcheck takes a triangle for
 constexpr double nearly_far = 0.7;    // of the bearable: from there the farthest place is looked for
 constexpr double small_step = 0.06;   // of an edge: the last step on that way
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most

@@ -110,7 +110,7 @@ TEST(sheet_distance, RadiusOfTubesAlsoWhereTheyMeet) {
     std::vector<Branch> branches;
     double blend;
   };
-  for (const auto& [branches, blend] :
+  for (const Junction& junction :
        {Junction{{{{0, 0, -4}, 0.5}, {{1.6, 0.3, 4}, 0.42}, {{-2, -0.3, 3.5}, 0.4}}, 0.2},
         {{{{0, 0, -4}, 0.5}, {{1.6, 0.3, 4}, 0.42}, {{-2, -0.3, 3.5}, 0.4}}, 1e-9},
         {{{{0, 0, -4}, 0.5}, {{0, 0, 4}, 0.5}, {{4, 0, 0}, 0.5}}, 0.2},
@@ -122,9 +122,9 @@ TEST(sheet_distance, RadiusOfTubesAlsoWhereTheyMeet) {
     };
     auto f = [&](Vec3 p) {
       double d = 1e9;
-      for (const Branch& b : branches) {  // as unions of a tree are, blended
-        const double e = distance(b, p), h = std::max(blend - std::abs(d - e), 0.0);
-        d = std::min(d, e) - h * h / (4 * blend);
+      for (const Branch& b : junction.branches) {  // as unions of a tree are, blended
+        const double e = distance(b, p), h = std::max(junction.blend - std::abs(d - e), 0.0);
+        d = std::min(d, e) - h * h / (4 * junction.blend);
       }
       return d;
     };
@@ -137,10 +137,10 @@ TEST(sheet_distance, RadiusOfTubesAlsoWhereTheyMeet) {
       double lo = 1e9, hi = 0;
       int near = 0;
       bool end = false;
-      for (const Branch& b : branches) {
+      for (const Branch& b : junction.branches) {
         const double length = norm(b.to), d = distance(b, m.points[v]);
         end |= dot(m.points[v], b.to) / length > length - 1.2 * b.radius && d < 0.5 * b.radius;
-        if (d > 0.5 * b.radius + blend) continue;
+        if (d > 0.5 * b.radius + junction.blend) continue;
         ++near;
         lo = std::min(lo, b.radius), hi = std::max(hi, b.radius);
       }
