@@ -62,31 +62,72 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
-/// Returns the largest distance of triangle t from the reference at its middle and those of its edges; where
-/// that is nearly `limit`, the larger one that ever shorter steps from there come to. A walk may end on the
-/// wrong sheet, so it is searched for.
-double distance_of(const State& s, int t, const Bvh& tree, double limit) {
-  const Tri& v = s.mesh.tris[t];
-  std::array<double, 3> farthest{};
-  double most = 0;
-  auto look = [&](const std::array<double, 3>& b) {
-    const Vec3 p = b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
-    if (const double d = tree.nearest(p).distance; d > most) most = d, farthest = b;
-  };
-  constexpr double third = 1.0 / 3;
-  look({third, third, third});
-  for (int i = 0; i < 3; ++i) look({i == 0 ? 0 : 0.5, i == 1 ? 0 : 0.5, i == 2 ? 0 : 0.5});
-  if (most < rules::nearly_far * limit || most > limit) return most;
-  for (double step = 0.25; step > rules::small_step; step /= 2) {
-    const std::array<double, 3> from = farthest;
+/// Climbs in a triangle from barycentric coordinates `at`, where f is `most`, by ever shorter steps from
+/// `first` on; returns the largest value it comes to, and sets where.
+template <class F>
+double climb(std::array<double, 3>& at, double most, double first, F f) {
+  for (double step = first; step > rules::last_step * first; step /= 2) {
+    const std::array<double, 3> from = at;
     for (int i = 0; i < 3; ++i)
       for (int j : {next(i), prev(i)}) {
         std::array<double, 3> b = from;
         b[i] += step, b[j] -= step;
-        if (b[j] >= 0) look(b);
+        if (b[j] < 0) continue;
+        if (const double d = f(b); d > most) most = d, at = b;
       }
   }
   return most;
+}
+
+/// Returns the largest distance of triangle t from the reference at its middle and those of its edges; where
+/// that is nearly `limit`, the larger one that is climbed to from there. A walk may end on the wrong sheet,
+/// so it is searched for.
+double distance_of(const State& s, int t, const Bvh& tree, double limit) {
+  const Tri& v = s.mesh.tris[t];
+  std::array<double, 3> farthest{};
+  double most = 0;
+  auto distance = [&](const std::array<double, 3>& b) {
+    return tree.nearest(b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]]).distance;
+  };
+  constexpr double third = 1.0 / 3;
+  for (const std::array<double, 3>& b :
+       {std::array{third, third, third}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}})
+    if (const double d = distance(b); d > most) most = d, farthest = b;
+  if (most < rules::nearly_far * limit || most > limit) return most;
+  return climb(farthest, most, rules::first_step, distance);
+}
+
+/// Adds samples that are farther from the mesh than `limit` in triangles of the reference where one that was
+/// measured after `time` is nearly as far.
+void add_far_samples(const State& s, Samples& samples, std::vector<double>& distance, int time,
+                     double limit) {
+  std::vector<int> from;
+  for (int i = 0; i < (int)distance.size(); ++i)
+    if (samples.list[i].time > time && distance[i] > rules::nearly_far * limit && distance[i] <= limit)
+      from.push_back(i);
+  std::vector<Sample> found(from.size());
+#pragma omp parallel for schedule(dynamic, 16) if (from.size() > 100)
+  for (int i = 0; i < (int)from.size(); ++i) {
+    const Sample& x = samples.list[from[i]];
+    Sample& y = found[i];
+    auto nearest = [&](const std::array<double, 3>& b) {
+      return samples.search.nearest(s.reference->walk.point({x.place.face, b[0], b[1], b[2]}), 1e300, 0);
+    };
+    std::array<double, 3> at{x.place.b0, x.place.b1, x.place.b2};
+    y.distance = nearest(at).distance;
+    if (y.distance < rules::nearly_far * limit) continue;
+    const auto& [a, b, c] = s.reference->surface.tris[x.place.face];
+    const std::vector<Vec3>& p = s.reference->surface.points;
+    const double length = std::max({norm(p[b] - p[a]), norm(p[c] - p[b]), norm(p[a] - p[c])});
+    const double first = std::min(1.0, 2 * s.target(s.mesh.tris[x.near][0]) / length);
+    y.distance = climb(at, y.distance, rules::first_step * first,
+                       [&](const auto& place) { return nearest(place).distance; });
+    y.place = {x.place.face, at[0], at[1], at[2]};
+    y.near = nearest(at).place.face;
+    y.time = s.clocks.now;
+  }
+  for (const Sample& y : found)
+    if (y.distance > limit) samples.list.push_back(y), distance.push_back(y.distance);
 }
 
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags.
@@ -120,7 +161,8 @@ void find_far(const State& s, Known& known, Fault& found) {
     const double size = std::max(mean, local);
     if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
   };
-  const std::vector<double> distance = sample_distances(s, known.samples, least);
+  std::vector<double> distance = sample_distances(s, known.samples, least);
+  add_far_samples(s, known.samples, distance, known.time, least);
   for (std::size_t i = 0; i < distance.size(); ++i)
     if (distance[i] > least) look(known.samples.list[i].near, distance[i]);
   look_at_changed(s, known);
