@@ -89,6 +89,7 @@ int main(int argc, char** argv) {
       }
       corners = line_corners(reference, lines);
       o.relax.sheets_meet = has_sheets(stream);
+      if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
       o.relax.target_triangles = stream.asked_triangles;
     } else {
       clean(stream.surface);

@@ -28,6 +28,7 @@ bool line_stays(const State& s, int gone, int kept, Vec3 p) {
   });
   if (beyond < 0) return false;
   const Vec3 chord = p - s.points[beyond];
+  if (is_shared(s, gone) && norm(chord) > rules::junction_segment * s.target(gone)) return false;
   return !(norm(cross(chord, s.points[gone] - s.points[beyond])) >
            rules::line_deviation * s.target(gone) * norm(chord));
 }

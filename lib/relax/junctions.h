@@ -39,6 +39,10 @@ bool doubles_edges(const State& s, int h, int gone);
 /// Flips or splits edges between the same vertices as one of another sheet.
 void part_double_edges(State& s);
 
+/// Moves vertices inside of sheets so that the regions have the volumes that they have in the reference,
+/// except where triangles would intersect.
+void keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<SheetPatch>& sheets);
+
 /// Sets the copies of a patch with these vertices of s. Where some are outside of it, all are frozen.
 void extract_copies(const State& s, const std::vector<int>& vertices, State& patch);
 

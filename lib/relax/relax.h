@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lib/lift/lift.h"
+#include "lib/solids/solids.h"
 
 namespace meshpipe {
 
@@ -14,6 +15,9 @@ struct RelaxOptions {
   double target_triangles = 0;
   bool keep_border = false;  ///< no new vertex on the border
   bool sheets_meet = false;  ///< border vertices at the same place, to the last bit, are copies of one
+  /// The regions on both sides of each patch, whose volumes are kept: vertices inside of sheets then lie a
+  /// little off the reference, where chords would cut off what is curved.
+  std::vector<SheetPatch> sheets;
 };
 
 struct RelaxCounts {

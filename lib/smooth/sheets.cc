@@ -17,6 +17,7 @@ namespace {
 
 constexpr int steps = 25;                           // of each sign
 constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
+constexpr int rounds = 4;  // of volume: what one holds back leaves the rest to others
 
 /// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
 /// as at the end of such a line, which would become ever shorter.
@@ -74,6 +75,26 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
   p = std::move(to);
 }
 
+/// Gives the regions their volumes again, no vertex farther than `within` from where it was.
+void keep_volumes(Mesh& mesh, const Solids& regions, const std::vector<Vec3>& start,
+                  const std::vector<char>& held, double within) {
+  Compliance compliance{std::vector<double>(start.size(), 1), std::vector<double>(start.size(), within)};
+  for (std::size_t v = 0; v < held.size(); ++v)
+    if (held[v]) compliance.share[v] = 0;
+  for (int i = 0; i < rounds; ++i) {
+    match_volumes(mesh, regions.sides, regions.volume, compliance);
+    bool bounded = false;
+    for (std::size_t v = 0; v < start.size(); ++v) {
+      const Vec3 way = mesh.points[v] - start[v];
+      if (!(norm(way) > within)) continue;
+      mesh.points[v] = start[v] + within / norm(way) * way;
+      compliance.share[v] = 0;
+      bounded = true;
+    }
+    if (!bounded) return;
+  }
+}
+
 /// Root mean square of the angles between triangles, each oriented as it is, in degrees.
 double mean_angle(const Mesh& mesh, const Net& net) {
   const std::vector<Vec3> normal = face_normals(mesh);
@@ -101,7 +122,11 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   const Solids before = find_solids(joined);
   for (int i = 0; i < steps; ++i)
     for (double share : {forward, backward}) step(net, start, r.within, share, joined.points);
-  r.moved_back = separate(joined, start, net.held);
+  for (int i = 0, moved = 1; i < rounds && moved > 0;
+       ++i) {  // what is moved back is volume that others have to give
+    keep_volumes(joined, before, start, net.held, r.within);
+    r.moved_back += moved = separate(joined, start, net.held);
+  }
   r.angle_after = mean_angle(joined, net);
   if (!(r.angle_after < r.angle_before)) {
     joined.points = start;

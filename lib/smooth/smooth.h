@@ -34,8 +34,8 @@ struct SmoothReport {
 SmoothReport smooth(Surface& surface, const SmoothOptions& options);
 
 /// Smooths sheets that meet, whose border vertices at the same place are one. Lines where they meet are
-/// smoothed as lines; free borders stay. Volumes are almost kept, region by region. Throws: NotAdmissible if
-/// there are no triangles. Source: Taubin as above, with his negative steps.
+/// smoothed as lines; free borders stay. Volumes are kept, region by region, as far as the bound permits.
+/// Throws: NotAdmissible if there are no triangles. Source: Taubin as above, with his negative steps.
 SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options);
 
 /// Returns lines for the user.

@@ -54,4 +54,16 @@ struct RegionMeasure {
 /// Measures the regions that have a label in `sheets`, by the divergence theorem; in ascending order.
 std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets);
 
+/// How vertices give way when regions are to have other volumes.
+struct Compliance {
+  std::vector<double> share;     ///< of the motion, per vertex; 0: stays
+  std::vector<double> farthest;  ///< per vertex: it is moved by no more than this
+};
+
+/// Moves vertices so that region r has the volume `volume[r]`, as pressure in each region would: along
+/// normals, alike where vertices have the same share. `sides` is as in Solids, `volume[0]` is not looked at.
+/// Requires: triangles that meet share their vertices. Returns the largest relative difference left.
+double match_volumes(Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
+                     const std::vector<double>& volume, const Compliance& compliance);
+
 }  // namespace meshpipe
