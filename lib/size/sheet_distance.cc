@@ -34,6 +34,8 @@ constexpr double least_resolved = 0.5;  ///< of an edge: smaller balls next to a
 constexpr double consensus = 1.02;
 constexpr double branching = 1.5;  ///< radii from where rays agree: beyond them it is no branching of tubes
 constexpr double largest_corner = 120, least_reflex = 220;  ///< degrees; noise bends less
+/// Radii from what is measured, as far as there is an opening next to it: rays leave through it.
+constexpr double opening = 2;
 constexpr double lone = 0.5;   ///< of the least of the neighbors: a thin place has two vertices at least
 constexpr int most_sides = 8;  ///< that are measured at one point of creases
 constexpr double same_side = 0.999;  ///< cosine between normals
@@ -102,6 +104,7 @@ SheetDistance::SheetDistance(const Connectivity& surface, Side side, double none
       folded_(mesh_.points.size(), 0),
       sure_(mesh_.points.size(), 0) {
   measure();
+  if (side_ == inside) close_openings(surface);
   leave_branchings(surface);
   leave_folds(surface);
 }
@@ -204,6 +207,30 @@ void SheetDistance::measure() {
     }
 }
 
+/// Next to open ends rays find nothing, or too little: what is measured behind them holds up to the rim.
+void SheetDistance::close_openings(const Connectivity& c) {
+  std::vector<int> component;
+  std::vector<char> open(components(c.opposite, component), 0);
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (c.is_border(h)) open[component[h / 3]] = 1;
+  const Neighbors next(mesh_);
+  std::vector<double> way(c.n_vertices(), std::numeric_limits<double>::infinity());  // in radii
+  std::vector<int> sources;
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (const int v = c.from(h); open[component[h / 3]] && radius_[v] < none_ && way[v] > 0)
+      way[v] = 0, sources.push_back(v);
+  shortest_paths(sources, way, [&](int v, auto reach) {
+    if (way[v] > opening) return false;
+    for (int k = next.start[v]; k < next.start[v + 1]; ++k)
+      if (const int u = next.vertex[k];
+          reach(u, way[v] + norm(mesh_.points[u] - mesh_.points[v]) / radius_[v])) {
+        radius_[u] = radius_[v];
+        folded_[u] = 1;
+      }
+    return true;
+  });
+}
+
 /// Where branches meet, rays find other ones, or none: vertices whose rays disagree get what those around
 /// them have, as far as a tube is wide.
 void SheetDistance::leave_branchings(const Connectivity& c) {
@@ -247,7 +274,7 @@ void SheetDistance::fill(std::vector<char> left) {
       double sum = 0;
       int n = 0;
       for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-        if (!left[next.vertex[k]]) sum += radius_[next.vertex[k]], ++n;
+        if (const int u = next.vertex[k]; !left[u] && radius_[u] < none_) sum += radius_[u], ++n;
       if (n == 0) return false;
       radius_[v] = sum / n;
       filled.push_back(v);
@@ -256,6 +283,16 @@ void SheetDistance::fill(std::vector<char> left) {
     for (int v : filled) left[v] = 0;
   }
   for (int v : todo) radius_[v] = none_;
+}
+
+/// Do sides that are not next to each other meet at less than the angle of folds where half-edge h starts?
+bool SheetDistance::is_tip(const Connectivity& c, int h) const {
+  static const double least = std::cos((180 - fold_angle) * degree);
+  bool tip = false;
+  c.for_each_spoke(h, [&](int g) {
+    c.for_each_spoke(h, [&](int k) { tip |= dot(face_[g / 3], face_[k / 3]) < least; });
+  });
+  return tip;
 }
 
 double SheetDistance::angle_on_side(const Connectivity& c, int h) const {
@@ -272,6 +309,10 @@ void SheetDistance::leave_folds(const Connectivity& c) {
     if (c.is_border(h)) continue;
     if (angle_on_side(c, h) < fold_angle) fold[c.from(h)] = fold[c.to(h)] = 1;
   }
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (const int v = c.from(h);
+        creased_[v] && !folded_[v] && radius_[v] < least_resolved * c.length(h) && is_tip(c, h))
+      folded_[v] = 1;
   for (int v = 0; v < c.n_vertices(); ++v) folded_[v] |= fold[v];
   for (int h = 0; h < c.n_half_edges(); ++h)
     for (auto [v, u] : {std::pair{c.from(h), c.to(h)}, std::pair{c.to(h), c.from(h)}})

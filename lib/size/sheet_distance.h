@@ -41,6 +41,8 @@ class SheetDistance {
   /// The smallest at point p of face t and the other sides of a crease there.
   double ball_on_sides(int t, Vec3 p) const;
   void measure();
+  void close_openings(const Connectivity& surface);
+  bool is_tip(const Connectivity& surface, int half_edge) const;
   void leave_folds(const Connectivity& surface);
   void leave_branchings(const Connectivity& surface);
   /// Of the surface at an edge, on the side that is measured, in degrees.
