@@ -10,6 +10,7 @@
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
+#include "lib/size/local_feature_size.h"
 
 namespace meshpipe {
 namespace {
@@ -23,11 +24,16 @@ constexpr int least_hits = 5;  ///< of 13 rays: with fewer nothing faces the poi
 constexpr double rank = 0.25;
 const double opposed =
     std::cos(120 * degree);  ///< largest cosine between the normals of sheets that face each other
+/// Between those of sheets that are parallel. Others meet somewhere: if the ball between them is smaller than
+/// this share of the edges at a crease, or of a rim's radius, that is a fold which no single edge shows.
+const double parallel = std::cos(150 * degree);
+constexpr double least_wedge = 0.5;
 const double smooth = std::cos(40 * degree);  ///< least cosine between normals of one smooth surface
 constexpr int averaged =
     4;  ///< rings of triangles for a normal: noise of a tenth of an edge tilts it by 2 degrees
 constexpr double fold_angle = 75;       ///< degrees; a little above that of sheets that face each other
-constexpr double least_resolved = 0.5;  ///< of an edge: smaller balls next to a fold touch its other side
+/// Of the distance from a fold, within an edge of it: smaller balls touch its other side.
+constexpr double least_resolved = 0.8;
 /// Of the radii by rays of one vertex, their third quartile over the first. With 1.02 all vertices where
 /// tubes meet are within 6 % of one of them, with 1.03 some are 50 % off; noise leaves fewer vertices to fill
 /// from.
@@ -102,7 +108,8 @@ SheetDistance::SheetDistance(const Connectivity& surface, Side side, double none
       radius_(mesh_.points.size(), none),
       creased_(mesh_.points.size(), 0),
       folded_(mesh_.points.size(), 0),
-      sure_(mesh_.points.size(), 0) {
+      sure_(mesh_.points.size(), 0),
+      wedge_(mesh_.points.size(), 0) {
   measure();
   if (side_ == inside) close_openings(surface);
   leave_branchings(surface);
@@ -121,7 +128,7 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
   const Vec3 down = -sign * normal;
   const Vec3 x = normalized(std::abs(down.x) < 0.6 ? cross(down, {1, 0, 0}) : cross(down, {0, 1, 0}));
   const Vec3 y = cross(down, x);
-  double found[1 + 2 * per_ring];
+  std::pair<double, double> found[1 + 2 * per_ring];  // radii, cosines between the normals
   int n = 0;
   auto look = [&](Vec3 d) {
     const Bvh::RayHit hit = tree_.first_hit(p, d, sign);
@@ -130,7 +137,7 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
     if (dot(normal, m) > opposed) return;
     // a ball of radius r around c touches both: p = c + r normal, p + distance d = c + r m; in the mean
     const double r = -sign * hit.distance * dot(d, across) / dot(across, across);
-    if (r > 0) found[n++] = r;
+    if (r > 0) found[n++] = {r, dot(normal, m)};
   };
   look(down);
   for (double t : tilt)
@@ -138,18 +145,18 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
       const double turn = 2 * std::numbers::pi * (i + (t == tilt[0] ? 0 : 0.5)) / per_ring;
       look(std::cos(t) * down + std::sin(t) * (std::cos(turn) * x + std::sin(turn) * y));
     }
-  if (n < least_hits) return {none_, false};
-  double* const first = found + static_cast<int>(rank * (n - 1));
-  double* const third = found + static_cast<int>((1 - rank) * (n - 1));
-  std::nth_element(found, first, found + n);
-  const double radius = *first;
-  std::nth_element(first, third, found + n);
-  const bool all = n > per_ring && *third < consensus * radius;
-  return {std::min(radius, none_), all};
+  if (n < least_hits) return {none_};
+  auto nth = [&](double share) {
+    const auto at = found + static_cast<int>(share * (n - 1));
+    std::nth_element(found, at, found + n);
+    return *at;
+  };
+  const double radius = nth(rank).first, cosine = nth(rank).second, third = nth(1 - rank).first;
+  return {std::min(radius, none_), n > per_ring && third < consensus * radius, cosine > parallel};
 }
 
-double SheetDistance::ball_on_face(int t, Vec3 p) const {
-  return ball(lerp(p, centroid(mesh_, t), inset), face_[t]).radius;
+SheetDistance::Ball SheetDistance::ball_on_face(int t, Vec3 p) const {
+  return ball(lerp(p, centroid(mesh_, t), inset), face_[t]);
 }
 
 double SheetDistance::radius_at(Vec3 p) const {
@@ -160,15 +167,16 @@ double SheetDistance::radius_at(Vec3 p) const {
   double longest = 0;
   for (int h = 3 * place.face; h < 3 * place.face + 3; ++h)
     longest = std::max(longest, edge_length(mesh_, h));
-  const double least = lone * (std::min({radius_[i], radius_[j], radius_[k]}) - longest);
+  const auto [least, most] = std::minmax({radius_[i], radius_[j], radius_[k]});
   const Vec3 n = normal_at(place.face, place.b1, place.b2);
-  return std::max(least, n == face_[place.face] ? ball_on_sides(place.face, p) : ball(p, n).radius);
+  const double there = n == face_[place.face] ? ball_on_sides(place.face, p) : ball(p, n).radius;
+  return std::clamp(there, lone * (least - longest), (most + longest) / lone);
 }
 
 double SheetDistance::ball_on_sides(int face, Vec3 p) const {
   Vec3 done[most_sides] = {face_[face]};
   int sides = 1;
-  double least = ball_on_face(face, p);
+  double least = ball_on_face(face, p).radius;
   const Vec3 r = on_surface * none_ * Vec3{1, 1, 1};
   tree_.overlapping({p - r, p + r}, [&](int t) {
     const auto& [a, b, c] = mesh_.tris[t];
@@ -178,14 +186,14 @@ double SheetDistance::ball_on_sides(int face, Vec3 p) const {
     for (int s = 0; s < sides; ++s)
       if (dot(done[s], face_[t]) > same_side) return;
     done[sides++] = face_[t];
-    least = std::min(least, ball_on_face(t, p));
+    least = std::min(least, ball_on_face(t, p).radius);
   });
   return least;
 }
 
 void SheetDistance::measure() {
   const int n = static_cast<int>(mesh_.points.size()), n_tris = static_cast<int>(mesh_.tris.size());
-  std::vector<double> at_corner(3 * static_cast<std::size_t>(n_tris), -1);
+  std::vector<Ball> at_corner(3 * static_cast<std::size_t>(n_tris), Ball{-1});
   for (int h = 0; h < 3 * n_tris; ++h)
     if (const int v = origin(mesh_.tris, h);
         norm(face_[h / 3]) > 0 && !(dot(face_[h / 3], vertex_[v]) > smooth))
@@ -196,14 +204,16 @@ void SheetDistance::measure() {
       if (const int v = mesh_.tris[t][i]; creased_[v] && norm(face_[t]) > 0)
         at_corner[3 * t + i] = ball_on_face(t, mesh_.points[v]);
   for (int h = 0; h < 3 * n_tris; ++h)
-    if (const int v = origin(mesh_.tris, h); at_corner[h] >= 0)
-      radius_[v] = std::min(radius_[v], at_corner[h]);
+    if (const int v = origin(mesh_.tris, h); at_corner[h].radius >= 0 && at_corner[h].radius < radius_[v]) {
+      radius_[v] = at_corner[h].radius;
+      wedge_[v] = at_corner[h].wedge;
+    }
 #pragma omp parallel for schedule(dynamic, 64)
   for (int v = 0; v < n; ++v)
     if (!creased_[v] && norm(vertex_[v]) > 0) {
-      const auto [radius, sure] = ball(mesh_.points[v], vertex_[v]);
-      radius_[v] = radius;
-      sure_[v] = sure;
+      const Ball there = ball(mesh_.points[v], vertex_[v]);
+      radius_[v] = there.radius;
+      sure_[v] = there.sure;
     }
 }
 
@@ -285,20 +295,28 @@ void SheetDistance::fill(std::vector<char> left) {
   for (int v : todo) radius_[v] = none_;
 }
 
-/// Do sides that are not next to each other meet at less than the angle of folds where half-edge h starts?
-bool SheetDistance::is_tip(const Connectivity& c, int h) const {
-  static const double least = std::cos((180 - fold_angle) * degree);
-  bool tip = false;
-  c.for_each_spoke(h, [&](int g) {
-    c.for_each_spoke(h, [&](int k) { tip |= dot(face_[g / 3], face_[k / 3]) < least; });
-  });
-  return tip;
-}
-
 double SheetDistance::angle_on_side(const Connectivity& c, int h) const {
   const bool inverted = c.mesh.tris[h / 3] != mesh_.tris[h / 3];
   const double behind = angle_behind(c, h);
   return (side_ == inside) != inverted ? behind : 360 - behind;
+}
+
+/// Flags the vertices within an edge of a fold at which the ball touches the other side of the fold.
+void SheetDistance::leave_sides(const Connectivity& c, const std::vector<char>& fold,
+                                std::vector<double> reach) {
+  std::vector<double> way(c.n_vertices(), std::numeric_limits<double>::infinity());
+  std::vector<int> sources;
+  for (int v = 0; v < c.n_vertices(); ++v)
+    if (fold[v]) way[v] = 0, sources.push_back(v);
+  const Neighbors next(mesh_);
+  shortest_paths(sources, way, [&](int v, auto lower) {
+    if (radius_[v] < least_resolved * way[v]) folded_[v] = 1;
+    for (int k = next.start[v]; k < next.start[v + 1]; ++k) {
+      const int u = next.vertex[k];
+      const double d = way[v] + norm(mesh_.points[u] - mesh_.points[v]);
+      if (d <= reach[v] && lower(u, d)) reach[u] = reach[v];
+    }
+  });
 }
 
 /// Replaces what is measured on folds, and next to them what is below half an edge: the mean of the neighbors
@@ -309,14 +327,16 @@ void SheetDistance::leave_folds(const Connectivity& c) {
     if (c.is_border(h)) continue;
     if (angle_on_side(c, h) < fold_angle) fold[c.from(h)] = fold[c.to(h)] = 1;
   }
+  std::vector<double> longest(c.n_vertices(), 0);
   for (int h = 0; h < c.n_half_edges(); ++h)
-    if (const int v = c.from(h);
-        creased_[v] && !folded_[v] && radius_[v] < least_resolved * c.length(h) && is_tip(c, h))
-      folded_[v] = 1;
-  for (int v = 0; v < c.n_vertices(); ++v) folded_[v] |= fold[v];
-  for (int h = 0; h < c.n_half_edges(); ++h)
-    for (auto [v, u] : {std::pair{c.from(h), c.to(h)}, std::pair{c.to(h), c.from(h)}})
-      if (fold[v] && radius_[u] < least_resolved * c.length(h)) folded_[u] = 1;
+    for (int v : {c.from(h), c.to(h)}) longest[v] = std::max(longest[v], c.length(h));
+  const std::vector<double> around = closed_line_lengths(c);  // of rims, which are finer than what they end
+  for (int v = 0; v < c.n_vertices(); ++v) {
+    if (around[v] < none_) longest[v] = std::max(longest[v], around[v] / (2 * std::numbers::pi));
+    fold[v] |= creased_[v] && wedge_[v] && radius_[v] < least_wedge * longest[v];
+    folded_[v] |= fold[v];
+  }
+  leave_sides(c, fold, longest);
   fill(folded_);
   const Neighbors next(mesh_);
   // what a single vertex has alone is a fault there

@@ -30,19 +30,20 @@ class SheetDistance {
 
  private:
   Vec3 normal_at(int face, double b1, double b2) const;
-  /// A ball at a point, and whether rays to all directions find about the same.
+  /// A ball at a point, whether rays to all directions find about the same, and whether it touches sheets
+  /// that are not parallel.
   struct Ball {
     double radius;
-    bool sure;
+    bool sure = false, wedge = false;
   };
   Ball ball(Vec3 p, Vec3 normal) const;
   /// The ball at a point of face t near corner p, for creases, where vertices have no normal.
-  double ball_on_face(int t, Vec3 p) const;
+  Ball ball_on_face(int t, Vec3 p) const;
   /// The smallest at point p of face t and the other sides of a crease there.
   double ball_on_sides(int t, Vec3 p) const;
   void measure();
   void close_openings(const Connectivity& surface);
-  bool is_tip(const Connectivity& surface, int half_edge) const;
+  void leave_sides(const Connectivity& surface, const std::vector<char>& fold, std::vector<double> reach);
   void leave_folds(const Connectivity& surface);
   void leave_branchings(const Connectivity& surface);
   /// Of the surface at an edge, on the side that is measured, in degrees.
@@ -60,6 +61,7 @@ class SheetDistance {
   std::vector<char> creased_;
   std::vector<char> folded_;  ///< vertices that have what their neighbors have
   std::vector<char> sure_;    ///< vertices at which rays agree
+  std::vector<char> wedge_;   ///< creased vertices with a ball between sheets that are not parallel
 };
 
 }  // namespace meshpipe

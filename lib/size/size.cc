@@ -406,7 +406,7 @@ struct Measured {
 /// Measures the surface into a vertex column that becomes a source. Where edges longer than their sizes miss
 /// what is between their ends they are split, and the new vertices measured.
 MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
-  const SheetDistance sheets({f.s, f.opposite}, kind.side, f.diagonal);
+  const SheetDistance sheets({f.s, f.opposite, model_of(f.s)}, kind.side, f.diagonal);
   auto column = [&]() -> std::vector<double>& { return f.s.vertex.get<double>(kind.column); };
   f.s.vertex.set(kind.column, sheets.radii());
   for (double& x : column()) x *= kind.balls;
