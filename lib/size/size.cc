@@ -418,7 +418,9 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
       column()[v] = std::min(column()[v], around[v] / (2 * std::numbers::pi));
   };
   bound_by_sections();
+  int known = 0;  // edges between vertices below this one have been looked at
   auto bends = [&](int h) {
+    if (std::max(origin(f.s.tris, h), target(f.s.tris, h)) < known) return false;
     const double l = edge_length(f, h);
     if (l > longest_edge * f.diagonal) return true;
     const double a = column()[origin(f.s.tris, h)], b = column()[target(f.s.tris, h)];
@@ -430,6 +432,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   for (int pass = 0; may_split && pass < most_passes; ++pass) {
     const std::size_t before = f.s.points.size();
     if (!split(f, bends)) break;
+    known = (int)before;
     for (std::size_t v = before; v < f.s.points.size(); ++v)
       column()[v] = kind.balls * sheets.radius_at(f.s.points[v]);
     bound_by_sections();

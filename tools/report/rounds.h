@@ -34,9 +34,9 @@ constexpr int most_rounds = 4, most_rounds_for_distance = 6;
 /// No other round starts once those after the first have made this many times its triangles (or times
 /// `small_result`, where that is more): sizes that fall and fall do not help.
 constexpr double most_growth = 2, small_result = 15000;
-/// After this many rounds the number of triangles asked for is given up: it stands in the way of smaller
-/// sizes.
-constexpr int rounds_of_count = 2;
+/// The verdicts of this many rounds keep the number of triangles asked for, so that two rounds aim at it;
+/// later ones give it up: it stands in the way of smaller sizes.
+constexpr int rounds_of_count = 1;
 /// After this many rounds in a row that are no better than an earlier one, there is no further round.
 constexpr int most_vain_rounds = 2;
 /// Nor is there one once this many pairs of triangles cross, and twice as many as in the best round: there
