@@ -24,6 +24,8 @@ constexpr double most_moved = 0.25;
 /// Radii by which caps that are not plane bulge, one after another until they keep off the wall.
 constexpr double bulges[] = {0, 0.1, 0.2, 0.4, 0.7};
 
+constexpr const char* fill_holes = "close it with mclean --fill-holes";
+
 using Planes = std::vector<std::optional<Plane>>;
 
 /// Runs the steps of treat_ends on one surface.
@@ -48,14 +50,17 @@ struct Treatment {
     std::vector<double> length;
     std::vector<std::string> why(n());
     for (int i = 0; i < n(); ++i) {
-      if (trims(i) && !(ends[i].area > 0)) why[i] = "its rim has no area; close it with mclean --fill-holes";
+      if (trims(i) && !(ends[i].area > 0)) why[i] = "its rim has no area";
       length.push_back(
           !trims(i) || !why[i].empty() ? 0 : options.trim * (options.trim_by_radius ? ends[i].radius : 1));
     }
     if (options.trim <= 0) return Planes(n());
     Planes planes = planes_within(surface, ends, length, why);
     cut_possible_ends(surface, ends, planes, why);
-    refuse_all(ends, why, "cut less", &options.kept);
+    const auto first = std::find_if(why.begin(), why.end(), [](auto& w) { return !w.empty(); });
+    refuse_all(ends, why,
+               first == why.end() || ends[first - why.begin()].area > 0 ? "cut less" : fill_holes,
+               &options.kept);
     for (int i = 0; i < n(); ++i) reports[i].trimmed = length[i];
     return planes;
   }
@@ -94,7 +99,7 @@ struct Treatment {
       else if (!why[i].empty())
         why[i] = "its rim, which is " + shown(ends[i].planarity) +
                  " out of its plane, cannot be made plane: " + why[i];
-    refuse_all(ends, why, "try --trim, or close it with mclean --fill-holes",
+    refuse_all(ends, why, options.cap ? fill_holes : "try --cap, which closes it by a cap that is not plane",
                options.cap ? &options.kept : nullptr);
     for (int i = 0; i < n(); ++i)
       if (planes[i]) reports[i].trimmed = depth[i];
@@ -135,7 +140,7 @@ struct Treatment {
   /// cut.
   bool is_simple(int i) const {
     const End& end = ends[i];
-    if (!(end.area > 0)) refuse(ends, i, "its rim has no area; close it with mclean --fill-holes");
+    if (!(end.area > 0)) refuse(ends, i, std::string("its rim has no area; ") + fill_holes);
     const std::optional<Vec3> place = crossing_of(surface, end);
     if (place && (trims(i) || !options.flatten))
       refuse(ends, i,
