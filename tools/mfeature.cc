@@ -194,9 +194,10 @@ void mark(Io& io, Options& o) {
   const double length = o.size > 0 ? o.size : size_for_count(total_area(surface), o.triangles);
   if (asked) o.size = length;
   std::vector<int> before = surface.face.has("patch") ? surface.face.get<int>("patch") : std::vector<int>();
+  CapPatches caps;
   for (const std::string& remark : stream.remarks)
-    if (const CapPatches caps = parse_caps(remark); caps.first <= caps.last)
-      o.first_cap = caps.first, o.last_cap = caps.last;
+    if (const CapPatches more = parse_caps(remark); more.first <= more.last) caps = more;
+  if (caps.first <= caps.last) o.first_cap = caps.first, o.last_cap = caps.last;
   const PatchMerge merge = merge_patches(io, stream, o, length);
   io.report["patches_before"] = merge.patch.size();
   io.report["patches"] = merge.count();
@@ -209,7 +210,9 @@ void mark(Io& io, Options& o) {
     throw NotAdmissible("--tolerance " + o.tolerance +
                         ": features of sheets that meet are not removed; use 0");
   const double tolerance = meets ? 0 : tolerance_of(o, length, diagonal(surface));
-  if (defeature(io, stream, {tolerance, o.keep_boundary}, before, given)) marked = features();
+  DefeatureOptions narrow{tolerance, o.keep_boundary};
+  if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
+  if (defeature(io, stream, narrow, before, given)) marked = features();
   report(io, marked);
   io.write(stream);
 }

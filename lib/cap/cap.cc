@@ -58,8 +58,7 @@ struct Treatment {
     Planes planes = planes_within(surface, ends, length, why);
     cut_possible_ends(surface, ends, planes, why);
     const auto first = std::find_if(why.begin(), why.end(), [](auto& w) { return !w.empty(); });
-    refuse_all(ends, why,
-               first == why.end() || ends[first - why.begin()].area > 0 ? "cut less" : fill_holes,
+    refuse_all(ends, why, first == why.end() || ends[first - why.begin()].area > 0 ? "cut less" : fill_holes,
                &options.kept);
     for (int i = 0; i < n(); ++i) reports[i].trimmed = length[i];
     return planes;
@@ -136,18 +135,25 @@ struct Treatment {
     if (options.flatten && std::count(failed.begin(), failed.end(), 1) > 0) cut_level(failed);
   }
 
-  /// Returns whether a rim is a simple polygon as seen along its normal. Throws if it is not and may not be
-  /// cut.
+  /// Returns whether a rim is a simple polygon as seen along its normal. Throws if it is not, and is neither
+  /// to be cut nor to be closed as it is, by a cap that is not plane.
   bool is_simple(int i) const {
     const End& end = ends[i];
     if (!(end.area > 0)) refuse(ends, i, std::string("its rim has no area; ") + fill_holes);
-    const std::optional<Vec3> place = crossing_of(surface, end);
-    if (place && (trims(i) || !options.flatten))
+    const std::string crossing = crossing_at(i);
+    if (!crossing.empty() && (trims(i) || (!options.flatten && (!options.cap || extends(i)))))
       refuse(ends, i,
-             std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
-                 ", seen along its normal, near " + shown(*place) + "; it is " + shown(end.planarity) +
-                 " out of its plane; try " + (trims(i) ? "to cut more" : "--flatten or --trim"));
-    return !place;
+             crossing + "; it is " + shown(end.planarity) + " out of its plane; try " +
+                 (trims(i) ? "to cut more" : "--flatten or --trim"));
+    return crossing.empty();
+  }
+
+  /// Says where a rim crosses itself as seen along its normal; empty if it does not.
+  std::string crossing_at(int i) const {
+    const std::optional<Vec3> place = crossing_of(surface, ends[i]);
+    if (!place) return "";
+    return std::string(ends[i].rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
+           ", seen along its normal, near " + shown(*place);
   }
 
   void find_faces_like() {
@@ -218,9 +224,11 @@ struct Treatment {
   }
 
   [[noreturn]] void refuse_cap(int i, const std::string& why) const {
+    const std::string crossing = crossing_at(i);
     refuse(
         ends, i,
-        "its cap " + why + "; its rim is " + shown(ends[i].planarity) + " out of its plane; try " +
+        (crossing.empty() ? "" : crossing + "; ") + "its cap " + why + "; its rim is " +
+            shown(ends[i].planarity) + " out of its plane; try " +
             (options.flatten || ends[i].planarity <= rounding * diagonal(surface) ? "--trim" : "--flatten"));
   }
 

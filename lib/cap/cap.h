@@ -53,6 +53,8 @@ struct CapPatches {
 std::string remark_of(const CapPatches& patches);
 /// What a remark says; nothing of other texts.
 CapPatches parse_caps(const std::string& remark);
+/// Flags the triangles of those of these patches that are plane, for what must keep them so.
+std::vector<char> plane_triangles(const Surface& surface, const CapPatches& patches);
 
 struct CapOptions {
   double trim = 0;              ///< cuts this length off each end; 0: nothing

@@ -15,6 +15,9 @@ namespace {
 /// Cosine between the normals of two loops from which they may be the two borders of a wall.
 constexpr double opposite_normals = -0.8;
 
+/// Share of the diagonal within which a cap is plane: that of rounding.
+constexpr double plane_share = 1e-9;
+
 /// Sums over the segments of a loop, relative to `origin`.
 struct Sums {
   Vec3 moment, area;  ///< of the length; half the cross products
@@ -207,6 +210,29 @@ CapPatches parse_caps(const std::string& remark) {
   CapPatches patches;
   if (std::sscanf(remark.c_str(), "capped %d %d", &patches.first, &patches.last) != 2) return {};
   return patches;
+}
+
+std::vector<char> plane_triangles(const Surface& surface, const CapPatches& patches) {
+  const auto& patch = surface.face.get<int>("patch");
+  const int n = std::max(0, patches.last - patches.first + 1);
+  auto row = [&](std::size_t t) {
+    return patch[t] < patches.first || patch[t] > patches.last ? -1 : patch[t] - patches.first;
+  };
+  std::vector<Vec3> area(n), point(n);
+  for (std::size_t t = 0; t < patch.size(); ++t)
+    if (const int k = row(t); k >= 0) {
+      area[k] = area[k] + area_vector(surface, (int)t);
+      point[k] = surface.points[surface.tris[t][0]];
+    }
+  const double most = plane_share * diagonal(surface);
+  std::vector<char> plane(n, 1), flags(patch.size(), 0);
+  for (std::size_t t = 0; t < patch.size(); ++t)
+    if (const int k = row(t); k >= 0)
+      for (int v : surface.tris[t])
+        if (std::abs(dot(surface.points[v] - point[k], normalized(area[k]))) > most) plane[k] = 0;
+  for (std::size_t t = 0; t < patch.size(); ++t)
+    if (const int k = row(t); k >= 0) flags[t] = plane[k];
+  return flags;
 }
 
 std::string title_of(const std::vector<End>& ends, int i) {

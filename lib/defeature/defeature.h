@@ -30,6 +30,7 @@ struct DefeatureReport {
 struct DefeatureOptions {
   double tolerance = 0;       ///< 0: nothing is removed
   bool keep_borders = false;  ///< no vertex of a border moves
+  std::vector<char> plane{};  ///< flags of triangles whose vertices stay in their plane; empty: none
 };
 
 /// Closes strips between two lines (model edges, borders) that are at most `tolerance` wide, and contracts

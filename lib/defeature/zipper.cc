@@ -17,6 +17,7 @@ constexpr double fold_angle = 160 * degree;
 constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
 constexpr double wrinkle = 0.4;            ///< tolerances: higher triangles show as creases on their own
 constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
+constexpr double off_plane = 1e-7;         ///< of the tolerance: rounding of vertices that stay in a plane
 constexpr double flattest = 1e-6;  ///< least height of a triangle over its length, above rounding errors
 
 double turn(Vec3 a, Vec3 b) { return norm(a) > 0 && norm(b) > 0 ? angle(a, b) : 0; }
@@ -182,6 +183,9 @@ bool Zipper::may_merge(int h, int gone) const {
     const Vec3 old_normal = normal(t), new_normal = moved(t);
     for (int k : {e, next(e), prev(e)})
       if (const int o = mesh.opp[k]; o >= 0) before = std::max(before, turn(old_normal, normal(o / 3)));
+    if (!options_.plane.empty() && options_.plane[origin[t]])
+      ok = ok &&
+           std::abs(dot(to - points[gone], old_normal)) <= off_plane * options_.tolerance * norm(old_normal);
     if (vanishes(t)) return;
     const double l = longest_edge(to, points[mesh.to(e)], points[mesh.apex(e)]);
     ok = ok && norm(new_normal) > flattest * l * l;

@@ -31,7 +31,7 @@ constexpr double least_wedge = 0.5;
 const double smooth = std::cos(40 * degree);  ///< least cosine between normals of one smooth surface
 constexpr int averaged =
     4;  ///< rings of triangles for a normal: noise of a tenth of an edge tilts it by 2 degrees
-constexpr double fold_angle = 75;       ///< degrees; a little above that of sheets that face each other
+constexpr double fold_angle = 75;  ///< degrees; a little above that of sheets that face each other
 /// Of the distance from a fold, within an edge of it: smaller balls touch its other side.
 constexpr double least_resolved = 0.8;
 /// Of the radii by rays of one vertex, their third quartile over the first. With 1.02 all vertices where
@@ -152,7 +152,7 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
     return *at;
   };
   const double radius = nth(rank).first, cosine = nth(rank).second, third = nth(1 - rank).first;
-  return {std::min(radius, none_), n > per_ring && third < consensus * radius, cosine > parallel};
+  return {std::min(radius, none_), n > per_ring && third<consensus * radius, cosine> parallel};
 }
 
 SheetDistance::Ball SheetDistance::ball_on_face(int t, Vec3 p) const {
