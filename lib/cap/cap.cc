@@ -28,6 +28,14 @@ constexpr const char* fill_holes = "close it with mclean --fill-holes";
 
 using Planes = std::vector<std::optional<Plane>>;
 
+/// Says where the rim of an end crosses itself as seen along its normal; empty if it does not.
+std::string crossing_at(const Mesh& mesh, const End& end) {
+  const std::optional<Vec3> place = crossing_of(mesh, end);
+  if (!place) return "";
+  return std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
+         ", seen along its normal, near " + shown(*place);
+}
+
 /// Runs the steps of treat_ends on one surface.
 struct Treatment {
   Surface& surface;
@@ -140,20 +148,12 @@ struct Treatment {
   bool is_simple(int i) const {
     const End& end = ends[i];
     if (!(end.area > 0)) refuse(ends, i, std::string("its rim has no area; ") + fill_holes);
-    const std::string crossing = crossing_at(i);
+    const std::string crossing = crossing_at(surface, ends[i]);
     if (!crossing.empty() && (trims(i) || (!options.flatten && (!options.cap || extends(i)))))
       refuse(ends, i,
              crossing + "; it is " + shown(end.planarity) + " out of its plane; try " +
                  (trims(i) ? "to cut more" : "--flatten or --trim"));
     return crossing.empty();
-  }
-
-  /// Says where a rim crosses itself as seen along its normal; empty if it does not.
-  std::string crossing_at(int i) const {
-    const std::optional<Vec3> place = crossing_of(surface, ends[i]);
-    if (!place) return "";
-    return std::string(ends[i].rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
-           ", seen along its normal, near " + shown(*place);
   }
 
   void find_faces_like() {
@@ -224,7 +224,7 @@ struct Treatment {
   }
 
   [[noreturn]] void refuse_cap(int i, const std::string& why) const {
-    const std::string crossing = crossing_at(i);
+    const std::string crossing = crossing_at(surface, ends[i]);
     refuse(
         ends, i,
         (crossing.empty() ? "" : crossing + "; ") + "its cap " + why + "; its rim is " +

@@ -27,7 +27,7 @@ const double opposed =
 /// Between those of sheets that are parallel. Others meet somewhere: if the ball between them is smaller than
 /// this share of the edges at a crease, or of a rim's radius, that is a fold which no single edge shows.
 const double parallel = std::cos(150 * degree);
-constexpr double least_wedge = 0.5;
+constexpr double least_slanted = 0.5;
 const double smooth = std::cos(40 * degree);  ///< least cosine between normals of one smooth surface
 constexpr int averaged =
     4;  ///< rings of triangles for a normal: noise of a tenth of an edge tilts it by 2 degrees
@@ -90,6 +90,30 @@ Mesh oriented_outward(const Connectivity& c) {
   return mesh;
 }
 
+/// Replaces the radii of the vertices flagged, layer by layer, by the mean of their neighbors' that are
+/// known; `none` where there are none.
+void fill(const Mesh& mesh, double none, std::vector<char> left, std::vector<double>& radius) {
+  const Neighbors next(mesh);
+  std::vector<int> todo;
+  for (int v = 0; v < static_cast<int>(left.size()); ++v)
+    if (left[v]) todo.push_back(v);
+  for (std::vector<int> filled{0}; !filled.empty();) {  // layer by layer
+    filled.clear();
+    std::erase_if(todo, [&](int v) {
+      double sum = 0;
+      int n = 0;
+      for (int k = next.start[v]; k < next.start[v + 1]; ++k)
+        if (const int u = next.vertex[k]; !left[u] && radius[u] < none) sum += radius[u], ++n;
+      if (n == 0) return false;
+      radius[v] = sum / n;
+      filled.push_back(v);
+      return true;
+    });
+    for (int v : filled) left[v] = 0;
+  }
+  for (int v : todo) radius[v] = none;
+}
+
 }  // namespace
 
 double angle_behind(const Connectivity& c, int h) {
@@ -109,7 +133,7 @@ SheetDistance::SheetDistance(const Connectivity& surface, Side side, double none
       creased_(mesh_.points.size(), 0),
       folded_(mesh_.points.size(), 0),
       sure_(mesh_.points.size(), 0),
-      wedge_(mesh_.points.size(), 0) {
+      slanted_(mesh_.points.size(), 0) {
   measure();
   if (side_ == inside) close_openings(surface);
   leave_branchings(surface);
@@ -206,7 +230,7 @@ void SheetDistance::measure() {
   for (int h = 0; h < 3 * n_tris; ++h)
     if (const int v = origin(mesh_.tris, h); at_corner[h].radius >= 0 && at_corner[h].radius < radius_[v]) {
       radius_[v] = at_corner[h].radius;
-      wedge_[v] = at_corner[h].wedge;
+      slanted_[v] = at_corner[h].slanted;
     }
 #pragma omp parallel for schedule(dynamic, 64)
   for (int v = 0; v < n; ++v)
@@ -270,29 +294,7 @@ void SheetDistance::leave_branchings(const Connectivity& c) {
     return true;
   });
   for (int v = 0; v < n; ++v) folded_[v] |= left[v];
-  fill(std::move(left));
-}
-
-void SheetDistance::fill(std::vector<char> left) {
-  const Neighbors next(mesh_);
-  std::vector<int> todo;
-  for (int v = 0; v < static_cast<int>(left.size()); ++v)
-    if (left[v]) todo.push_back(v);
-  for (std::vector<int> filled{0}; !filled.empty();) {  // layer by layer
-    filled.clear();
-    std::erase_if(todo, [&](int v) {
-      double sum = 0;
-      int n = 0;
-      for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-        if (const int u = next.vertex[k]; !left[u] && radius_[u] < none_) sum += radius_[u], ++n;
-      if (n == 0) return false;
-      radius_[v] = sum / n;
-      filled.push_back(v);
-      return true;
-    });
-    for (int v : filled) left[v] = 0;
-  }
-  for (int v : todo) radius_[v] = none_;
+  fill(mesh_, none_, std::move(left), radius_);
 }
 
 double SheetDistance::angle_on_side(const Connectivity& c, int h) const {
@@ -333,11 +335,11 @@ void SheetDistance::leave_folds(const Connectivity& c) {
   const std::vector<double> around = closed_line_lengths(c);  // of rims, which are finer than what they end
   for (int v = 0; v < c.n_vertices(); ++v) {
     if (around[v] < none_) longest[v] = std::max(longest[v], around[v] / (2 * std::numbers::pi));
-    fold[v] |= creased_[v] && wedge_[v] && radius_[v] < least_wedge * longest[v];
+    fold[v] |= creased_[v] && slanted_[v] && radius_[v] < least_slanted * longest[v];
     folded_[v] |= fold[v];
   }
   leave_sides(c, fold, longest);
-  fill(folded_);
+  fill(mesh_, none_, folded_, radius_);
   const Neighbors next(mesh_);
   // what a single vertex has alone is a fault there
   const std::vector<double> before = radius_;

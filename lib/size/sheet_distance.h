@@ -31,10 +31,10 @@ class SheetDistance {
  private:
   Vec3 normal_at(int face, double b1, double b2) const;
   /// A ball at a point, whether rays to all directions find about the same, and whether it touches sheets
-  /// that are not parallel.
+  /// that are far from parallel.
   struct Ball {
     double radius;
-    bool sure = false, wedge = false;
+    bool sure = false, slanted = false;
   };
   Ball ball(Vec3 p, Vec3 normal) const;
   /// The ball at a point of face t near corner p, for creases, where vertices have no normal.
@@ -48,9 +48,6 @@ class SheetDistance {
   void leave_branchings(const Connectivity& surface);
   /// Of the surface at an edge, on the side that is measured, in degrees.
   double angle_on_side(const Connectivity& surface, int half_edge) const;
-  /// Replaces the radii of the vertices flagged, layer by layer, by the mean of their neighbors; `none` where
-  /// all that is connected is flagged.
-  void fill(std::vector<char> left);
 
   Mesh mesh_;                        ///< with all components oriented outward
   std::vector<Vec3> face_, vertex_;  ///< unit normals, those of vertices averaged over a neighborhood
@@ -59,9 +56,9 @@ class SheetDistance {
   double none_;
   std::vector<double> radius_;
   std::vector<char> creased_;
-  std::vector<char> folded_;  ///< vertices that have what their neighbors have
-  std::vector<char> sure_;    ///< vertices at which rays agree
-  std::vector<char> wedge_;   ///< creased vertices with a ball between sheets that are not parallel
+  std::vector<char> folded_;   ///< vertices that have what their neighbors have
+  std::vector<char> sure_;     ///< vertices at which rays agree
+  std::vector<char> slanted_;  ///< creased vertices with a ball between sheets that are not parallel
 };
 
 }  // namespace meshpipe

@@ -146,6 +146,17 @@ TEST(Defeature, BordersThatAreKeptDoNotMove) {
   for (const Vec3& p : before.points) EXPECT_TRUE((p.y > 0 && p.y < 4) || tree.nearest(p).distance == 0);
 }
 
+// A strip goes where its vertices move in the planes that stay, and stays where they would leave them.
+TEST(Defeature, PlanesThatAreKeptStayPlane) {
+  for (const bool step : {false, true}) {
+    Surface s =
+        extruded({{0, 0}, {1, 0}, {1 + (step ? 0 : width), step ? width : 0}, {2, step ? width : 0}}, 4);
+    DefeatureOptions o{wide_enough};
+    o.plane.assign(s.tris.size(), 1);
+    EXPECT_EQ(remove_small_features(s, o).removed.empty(), step);
+  }
+}
+
 TEST(Defeature, ColumnsFollow) {
   Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
   std::vector<double> y;

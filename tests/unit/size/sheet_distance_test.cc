@@ -155,6 +155,26 @@ TEST(sheet_distance, RadiusOfTubesAlsoWhereTheyMeet) {
   }
 }
 
+//    Tubes of three to six sides, as thin branches of coarse trees are: no fold is their radius, no opening
+//    their end. The branches' radii are 0.095 to 0.5; the circle in a triangle has half of that around it.
+TEST(sheet_distance, RadiusOfCoarseTubesIsThatOfASection) {
+  for (int around : {4, 5, 6, 8}) {
+    const Mesh m = tube(5, around, false);
+    for (double r : radii(m, SheetDistance::inside)) {
+      EXPECT_GT(r, 0.69 * 0.5) << around;
+      EXPECT_LT(r, 1.05 * 0.5) << around;
+    }
+  }
+  for (int outlets : {60, 147}) {
+    const Mesh m = branching_tree(0, outlets, 0.8, 25000, 1);
+    std::vector<double> r = radii(m, SheetDistance::inside);
+    std::sort(r.begin(), r.end());
+    EXPECT_GT(r[0], 0.45 * 0.095) << outlets;
+    EXPECT_GT(r[r.size() / 50], 0.6 * 0.095) << outlets;
+    EXPECT_LT(r.back(), 1.1 * 0.5) << outlets;
+  }
+}
+
 //    A roof of 40 degrees over a floor, ten long: its edges are folds, not thin places.
 TEST(sheet_distance, FoldsAreNotThin) {
   Mesh m = tube(10, 100, true);
