@@ -14,6 +14,8 @@ namespace {
 
 /// Share of the diagonal by which a plane rim is off for the single precision of a file: caps make it plane.
 constexpr double rounding = 1e-6;
+/// And share of its radius: less is not meant.
+constexpr double almost_plane = 1e-3;
 /// Radii below the lowest vertex of a rim at which it is cut, if moving it would fold the wall.
 constexpr double below_rim = 0.1;
 
@@ -132,7 +134,8 @@ struct Treatment {
       if (!options.flatten && !options.cap && !extends(i) && !cuts[i]) continue;
       winds[i] = !is_simple(i);
       winds[i] |= ends[i].planarity > most_moved * ends[i].radius;
-      if (!cuts[i] && !winds[i] && (options.flatten || ends[i].planarity <= noise))
+      if (!cuts[i] && !winds[i] &&
+          (options.flatten || ends[i].planarity <= std::max(noise, almost_plane * ends[i].radius)))
         planes[i] = Plane{ends[i].center, ends[i].normal};
     }
     std::vector<char> failed = flatten(planes);

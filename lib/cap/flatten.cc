@@ -207,21 +207,28 @@ void split_chords(Surface& surface, const std::vector<End>& ends) {
   if (std::count(mark.begin(), mark.end(), 1) == 0) return;
   const int before = (int)rim.size();
   split_edges({surface, opposite}, mark, nullptr);
-  // each new vertex leaves the rim's plane for the vertices of the wall that are opposite
-  std::vector<Vec3> sum(surface.points.size() - rim.size());
-  std::vector<int> count(sum.size(), 0);
-  for (const Tri& t : surface.tris)
-    for (int v : t)
-      for (int w : t)
-        if (v >= before && w < before && !rim[w]) {
-          sum[v - before] = sum[v - before] + surface.points[w];
-          ++count[v - before];
-        }
-  for (std::size_t k = 0; k < sum.size(); ++k)
-    if (count[k] > 0) {
-      Vec3& p = surface.points[rim.size() + k];
-      p = lerp(p, (1.0 / count[k]) * sum[k], sink);
-    }
+  // each new vertex leaves the rim's plane for the vertices of the wall that are opposite, or for those that
+  // have left it: parts of the wall may lie in the plane
+  std::vector<char> left(surface.points.size(), 0);
+  for (int v = 0; v < before; ++v) left[v] = !rim[v];
+  for (bool again = true; again;) {
+    std::vector<Vec3> sum(surface.points.size() - rim.size());
+    std::vector<int> count(sum.size(), 0);
+    for (const Tri& t : surface.tris)
+      for (int v : t)
+        for (int w : t)
+          if (!left[v] && v >= before && left[w]) {
+            sum[v - before] = sum[v - before] + surface.points[w];
+            ++count[v - before];
+          }
+    again = false;
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      if (count[k] > 0) {
+        Vec3& p = surface.points[rim.size() + k];
+        p = lerp(p, (1.0 / count[k]) * sum[k], sink);
+        left[rim.size() + k] = again = true;
+      }
+  }
 }
 
 std::vector<double> flatten_ends(Mesh& mesh, const std::vector<End>& ends,
