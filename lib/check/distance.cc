@@ -209,10 +209,7 @@ std::vector<int> OneSided::doubtful_triangles() {
 }
 
 double OneSided::from_triangle(Vec3 p, int face) const {
-  const Tri& v = to_.mesh.tris[face];
-  const Vec3 a = to_.point(v[0]), b = to_.point(v[1]), c = to_.point(v[2]);
-  const auto w = closest_on_triangle(p, a, b, c);
-  return norm(w[0] * a + w[1] * b + w[2] * c - p);
+  return norm(closest_point(to_.mesh, face, p) - p);
 }
 
 /// The largest distance of the corners from one triangle of the other surface.

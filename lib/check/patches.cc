@@ -83,6 +83,26 @@ std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector
   return borders;
 }
 
+namespace {
+
+/// Returns the component of a normal along that of the nearest part of the reference. Where sheets touch,
+/// back to back, either is as near: then the largest.
+double towards_nearest(Vec3 normal, Vec3 p, double edge, const Mesh& reference, const Bvh& tree) {
+  constexpr double as_near = 0.1;  // of an edge
+  const auto hit = tree.nearest(p);
+  auto along = [&](int t) { return dot(normal, normalized(area_vector(reference, t))); };
+  double most = along(hit.place.face);
+  if (most >= 0) return most;
+  const double reach = hit.distance + as_near * edge;
+  const Vec3 r{reach, reach, reach};
+  tree.overlapping({p - r, p + r}, [&](int t) {
+    if (along(t) > most && norm(closest_point(reference, t, p) - p) <= reach) most = along(t);
+  });
+  return most;
+}
+
+}  // namespace
+
 std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh& tree) {
   std::vector<int> component, reversed;
   constexpr double majority = 0.5;  // less is undecided: between sheets closer than the result is rough
@@ -94,9 +114,8 @@ std::vector<int> reversed_components(const Connectivity& result, const Mesh& ref
   for (int t = 0; t < faces; ++t) {
     const int c = component[t];
     if (seen[c]++ % (1 + count[c] / voters)) continue;
-    const Vec3 normal = result.area_vector(t);
-    const auto hit = tree.nearest(centroid(result.mesh, t));
-    vote[c] += dot(normal, normalized(area_vector(reference, hit.place.face)));
+    const Vec3 normal = result.area_vector(t), p = centroid(result.mesh, t);
+    vote[c] += towards_nearest(normal, p, result.length(3 * t), reference, tree);
     all[c] += norm(normal);
   }
   for (int c = 0; c < n; ++c)

@@ -84,6 +84,12 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return {va / area, vb / area, vc / area};
 }
 
+Vec3 closest_point(const Mesh& mesh, int t, Vec3 p) {
+  const auto& [a, b, c] = mesh.tris[t];
+  const auto w = closest_on_triangle(p, mesh.points[a], mesh.points[b], mesh.points[c]);
+  return w[0] * mesh.points[a] + w[1] * mesh.points[b] + w[2] * mesh.points[c];
+}
+
 /// A triangle and its center in own units.
 struct Bvh::Item {
   std::array<float, 3> center;

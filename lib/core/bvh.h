@@ -12,6 +12,8 @@ namespace meshpipe {
 /// Closest point of triangle abc to p, as barycentric coordinates (the regions of Ericson, Real-Time
 /// Collision Detection, 5.1.5). A triangle without area counts as its three edges.
 std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
+/// The same for triangle t of a mesh, as a point.
+Vec3 closest_point(const Mesh& mesh, int t, Vec3 p);
 
 /// A box with sides along the axes.
 struct Box {

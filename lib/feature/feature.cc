@@ -27,6 +27,7 @@ constexpr double spacing = 1.5;      ///< target lengths between creases, on ave
 constexpr double sliver = 0.02;      ///< target lengths: thinner triangles do not show which way they face
 constexpr double slender = 0.05;     ///< height over length: other triangles have normals of their own
 constexpr double widest_band = 1.5;  ///< times `sliver`, to either side: what mfeature removes unasked
+constexpr double far_turn = 4;       ///< times further across an edge, for each 1 - cosine of its angle
 constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
 constexpr double long_chain = 5;     ///< mean edges of the input
 constexpr double short_chain = 3;    ///< target lengths, or mean edges of the input
@@ -389,32 +390,40 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
     has_none[t] = norm(a) < least_height * length;
     is_thin[t] = has_none[t] || norm(a) < std::min(thin, slender * length) * length;
   }
-  // from center to center, across the edges
+  // from center to center, across the edges: sharp ones are far, since there one side ends
   auto half_way = [&](int h) {
     return norm(surface.area_vector(h / 3)) / std::max(surface.length(h), 1e-300) / 3;
   };
-  std::vector<int> from(n, -1), order, seeds;  // the triangle through which the nearest side is reached
-  std::vector<double> way(n, std::numeric_limits<double>::infinity()), whole(n, 0);
+  auto farther = [&](int h) {
+    const int t = h / 3, o = surface.opposite[h] / 3;
+    return has_none[t] || has_none[o] ? 1 : 1 + far_turn * (1 - dot(normal[t], normal[o]));
+  };
+  std::vector<int> out(n, -1), order, seeds;  // the half-edge through which the nearest side is reached
+  std::vector<double> way(n, std::numeric_limits<double>::infinity()), width(n, 0);
   for (int h = 0; h < 3 * n; ++h) {
     const int t = h / 3, o = surface.opposite[h];
-    if (!is_thin[t] || o < 0 || is_thin[o / 3] || !(half_way(h) < way[t])) continue;
-    if (from[t] < 0) seeds.push_back(t);
-    way[t] = half_way(h);
-    from[t] = o / 3;
+    if (!is_thin[t] || o < 0 || is_thin[o / 3] || !(farther(h) * half_way(h) < way[t])) continue;
+    if (out[t] < 0) seeds.push_back(t);
+    way[t] = farther(h) * half_way(h);
+    out[t] = h;
   }
   shortest_paths(seeds, way, [&](int t, auto reach) {
     order.push_back(t);
     for (int h = 3 * t; h < 3 * t + 3; ++h)
       if (const int o = surface.opposite[h];
-          o >= 0 && is_thin[o / 3] && reach(o / 3, way[t] + half_way(h) + half_way(o)))
-        from[o / 3] = t;
+          o >= 0 && is_thin[o / 3] && reach(o / 3, way[t] + farther(h) * (half_way(h) + half_way(o))))
+        out[o / 3] = o;
   });
-  for (auto t = order.rbegin(); t != order.rend(); ++t) {
-    whole[*t] = std::max(whole[*t], way[*t]);
-    whole[from[*t]] = std::max(whole[from[*t]], whole[*t]);
+  auto from = [&](int t) { return surface.opposite[out[t]] / 3; };
+  for (int t : order) {
+    const int o = surface.opposite[out[t]];
+    width[t] = half_way(out[t]) + (is_thin[o / 3] ? half_way(o) + width[o / 3] : 0);
   }
+  std::vector<double> whole = width;  // of the widest branch through t
+  for (auto t = order.rbegin(); t != order.rend(); ++t)
+    whole[from(*t)] = std::max(whole[from(*t)], whole[*t]);
   for (int t : order)
-    if (has_none[t] || whole[t] <= widest_band * thin) normal[t] = normal[from[t]];
+    if (has_none[t] || whole[t] <= widest_band * thin) normal[t] = normal[from(t)];
   return normal;
 }
 

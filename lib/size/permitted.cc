@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
@@ -19,12 +20,15 @@ constexpr double most_sag =
 constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
 constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
 constexpr double lowered = 0.62;          ///< of the size asked for: sheets that permit more have not failed
+constexpr double needle = 0.1;            ///< height of a triangle over the width of its strip
+constexpr int most_needles = 8;           ///< side by side along a line
 constexpr double opposed = 0.5;           ///< least cosine between the way across and the sides that face it
-constexpr double sharp_turn = 2.6;        ///< radians: a line that turns back by more ends in a sharp corner
-constexpr double least_bend = 1e-3;       ///< radians: edges across flatter ones hardly sag
-constexpr double flat_triangle = 1e-7;    ///< height over length, below which rounding decides on the normal
-constexpr int most_looks = 1000;          ///< at triangles, for each half-edge in the mean
-constexpr int most_pieces = 1000;         ///< of an edge that are measured
+constexpr double sharp_corner = 0.54;     ///< radians between lines that taper to a sharp corner
+constexpr double most_opening = 2;   ///< of the width over the way to the corner: more is the end of a strip
+constexpr double least_bend = 1e-3;  ///< radians: edges across flatter ones hardly sag
+constexpr double flat_triangle = 1e-7;  ///< height over length, below which rounding decides on the normal
+constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
+constexpr int most_pieces = 1000;       ///< of an edge that are measured
 
 double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
 
@@ -33,12 +37,6 @@ Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 d = b - a;
   const double l = dot(d, d);
   return l > 0 ? lerp(a, b, clamp01(dot(p - a, d) / l)) : a;
-}
-
-double distance_to(const Mesh& mesh, int t, Vec3 p) {
-  const auto& [i, j, k] = mesh.tris[t];
-  const auto w = closest_on_triangle(p, mesh.points[i], mesh.points[j], mesh.points[k]);
-  return norm(w[0] * mesh.points[i] + w[1] * mesh.points[j] + w[2] * mesh.points[k] - p);
 }
 
 /// Visits the triangles around a point that are connected within a distance.
@@ -62,7 +60,7 @@ class Search {
         const int u = surface_.opposite[h] / 3;
         if (seen_[u] == turn_) continue;
         seen_[u] = turn_;
-        if (distance_to(surface_.mesh, u, p) < reach()) queue_.push_back(u);
+        if (norm(closest_point(surface_.mesh, u, p) - p) < reach()) queue_.push_back(u);
       }
     }
   }
@@ -104,6 +102,7 @@ class Measure {
  private:
   SizeBound strip(int h, Vec3 p, Search& search) const;
   SizeBound sheet(int h, Vec3 p, Search& search) const;
+  Vec3 inward(int h, double width) const;
   bool adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const;
   double until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const;
 
@@ -151,8 +150,10 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
         break;
       }
       const int w = forward ? surface_.to(then) : surface_.from(then);
-      sharp = sharp || angle(x - surface_.point(forward ? surface_.from(g) : surface_.to(g)),
-                             surface_.point(w) - x) > sharp_turn;
+      const double opening =
+          std::numbers::pi -
+          angle(x - surface_.point(forward ? surface_.from(g) : surface_.to(g)), surface_.point(w) - x);
+      sharp = sharp || (opening < sharp_corner && opening * way < most_opening * width);
       g = then;
       if (g == h) {
         way = infinite;
@@ -165,14 +166,24 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
   return false;
 }
 
+/// Returns the unit vector from a line into the region of h, across it. Needles far narrower than the strip
+/// may be folded along it: the next triangle tells.
+Vec3 Measure::inward(int h, double width) const {
+  int g = h;
+  for (int i = 0; i < most_needles && norm(surface_.area_vector(g / 3)) < needle * width * surface_.length(g);
+       ++i) {
+    const int a = next(g), b = next(a);
+    int across = surface_.length(a) > surface_.length(b) ? a : b;
+    if (is_line(across)) across = across == a ? b : a;
+    if (is_line(across)) break;
+    g = surface_.opposite[across];
+  }
+  return normalized(cross(normal_[g / 3], surface_.point(surface_.to(h)) - surface_.point(surface_.from(h))));
+}
+
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
   double width = asked(h) / per_width;
   const double least = surface_.length(h) < asked(h) ? least_width_ : 0;
-  auto inward = [&](int g) {
-    return normalized(
-        cross(normal_[g / 3], surface_.point(surface_.to(g)) - surface_.point(surface_.from(g))));
-  };
-  const Vec3 in = inward(h);
   SizeBound found{h, p, infinite, 0};
   search.flood(
       {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
@@ -182,8 +193,8 @@ SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
           const Vec3 q =
               nearest_on_segment(p, surface_.point(surface_.from(g)), surface_.point(surface_.to(g)));
           const double d = norm(q - p);
-          if (!(d < width) || d <= least || dot(q - p, in) < opposed * d ||
-              dot(p - q, inward(g)) < opposed * d || adjacent_along(h, p, g, q, d))
+          if (!(d < width) || d <= least || dot(q - p, inward(h, d)) < opposed * d ||
+              dot(p - q, inward(g, d)) < opposed * d || adjacent_along(h, p, g, q, d))
             continue;
           width = d;
           found.size = per_width * d;
@@ -235,8 +246,7 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
     const auto& [i, j, k] = surface_.mesh.tris[u];
     auto rises = [&](int v) { return dot(surface_.point(v) - p, up) > 0; };
     if (!rises(i) && !rises(j) && !rises(k)) return gap;
-    const auto w = closest_on_triangle(p, surface_.point(i), surface_.point(j), surface_.point(k));
-    const Vec3 d = w[0] * surface_.point(i) + w[1] * surface_.point(j) + w[2] * surface_.point(k) - p;
+    const Vec3 d = closest_point(surface_.mesh, u, p) - p;
     const double l = norm(d);
     if (l > gap || dot(d, up) < opposed * l || l == 0) return gap;
     if (l < gap || u < other) other = u;
@@ -314,6 +324,8 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           for (int i = 0; i < pieces; ++i)
             measure_along(measure, h, (double)i / pieces, (i + 1.0) / pieces, length, search, found[c]);
         }
+      std::stable_sort(found[c].begin(), found[c].end(),
+                       [](const SizeBound& x, const SizeBound& y) { return x.half_edge < y.half_edge; });
     }
   }
   std::vector<SizeBound> all;

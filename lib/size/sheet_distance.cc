@@ -203,10 +203,7 @@ double SheetDistance::ball_on_sides(int face, Vec3 p) const {
   double least = ball_on_face(face, p).radius;
   const Vec3 r = on_surface * none_ * Vec3{1, 1, 1};
   tree_.overlapping({p - r, p + r}, [&](int t) {
-    const auto& [a, b, c] = mesh_.tris[t];
-    const auto w = closest_on_triangle(p, mesh_.points[a], mesh_.points[b], mesh_.points[c]);
-    const Vec3 q = w[0] * mesh_.points[a] + w[1] * mesh_.points[b] + w[2] * mesh_.points[c];
-    if (norm(q - p) > r.x || sides == most_sides) return;
+    if (norm(closest_point(mesh_, t, p) - p) > r.x || sides == most_sides) return;
     for (int s = 0; s < sides; ++s)
       if (dot(done[s], face_[t]) > same_side) return;
     done[sides++] = face_[t];
