@@ -140,11 +140,14 @@ double sheet_height(const Connectivity& surface, int face, const std::array<Vec3
 double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec3, 3>& c, double enough) {
   const Frame frame(c);
   if (!(frame.area > 0)) return infinity;
+  constexpr int most = 512;  // faces: beyond it the halves of the triangle are the faster way
+  int seen = 0;
   double covered = 0, highest = 0;
   Polygon polygons[2];
   const Vec3 z = frame.z, margin{enough * std::abs(z.x), enough * std::abs(z.y), enough * std::abs(z.z)};
   tree.overlapping({lower(lower(c[0], c[1]), c[2]) - margin, upper(upper(c[0], c[1]), c[2]) + margin},
                    [&](int t) {
+                     if (++seen > most) return;
                      Polygon *p = &polygons[0], *spare = &polygons[1];
                      for (int k = 0; k < 3; ++k) (*p)[k] = frame(surface.points[surface.tris[t][k]]);
                      if (!(turn((*p)[0], (*p)[1], (*p)[2]) > 0)) return;
@@ -158,7 +161,7 @@ double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec
                      }
                    });
   const double area = frame.area;
-  return std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
+  return seen <= most && std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
 }
 
 }  // namespace meshpipe

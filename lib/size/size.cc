@@ -491,12 +491,18 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     }
   double limit = infinite;  // triangles
   auto follow_field = [&] {
+    bool split_last = false;
     for (int pass = 0;; ++pass) {
       set_wishes(f);
       bound_vertices(f);
-      make_sizes(f);
+      const bool meets = !split_last;  // the count: on the surface as it comes, and again once it is split
+      if (meets)
+        make_sizes(f);
+      else
+        set_sizes(f, f.uniform, f.scale);
       if ((double)(s.points.size() - f.given.points.size()) > limit) break;  // it is refused
-      if (!may_split || pass == most_passes || !split(f, [&](int h) { return bends(f, h); })) break;
+      split_last = may_split && pass < most_passes && split(f, [&](int h) { return bends(f, h); });
+      if (!split_last && meets) break;
     }
   };
   if (bounds.empty()) {
