@@ -28,7 +28,8 @@ constexpr double most_opening = 2;   ///< of the width over the way to the corne
 constexpr double least_bend = 1e-3;  ///< radians: edges across flatter ones hardly sag
 constexpr double flat_triangle = 1e-7;  ///< height over length, below which rounding decides on the normal
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
-constexpr int most_pieces = 1000;       ///< of an edge that are measured
+constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
+constexpr double least_piece = 1e-5;    ///< of an edge
 
 double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
 
@@ -262,19 +263,21 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   return {h, p, size, gap};
 }
 
-/// Measures a half-edge between two parameters at points about as far apart as the sizes they permit.
+/// Measures a half-edge between two parameters at points about as far apart as the sizes they permit, also
+/// where a strip tapers.
 void measure_along(const Measure& measure, int h, double from, double to, double length, Search& search,
-                   std::vector<SizeBound>& found) {
+                   std::vector<SizeBound>& found, double apart = 1) {
   SizeBound x = measure.at(h, 0.5 * (from + to), search);
   if (x.size == infinite) return;
-  x.length = measure.is_line(h) ? (to - from) * length : 0;
-  if ((to - from) * length < x.size) return found.push_back(x);
-  const int pieces = (int)std::min(std::ceil((to - from) * length / x.size), (double)most_pieces);
-  for (int i = 0; i < pieces; ++i) {
-    SizeBound y = measure.at(h, from + (to - from) * (i + 0.5) / pieces, search);
-    y.length = x.length / pieces;
-    if (y.size < infinite) found.push_back(y);
+  const double piece = (to - from) * length;
+  if (piece < apart * x.size || piece < least_piece * length) {
+    x.length = measure.is_line(h) ? piece : 0;
+    return found.push_back(x);
   }
+  const int n = (int)std::min(std::ceil(piece / x.size), (double)most_pieces);
+  for (int i = 0; i < n; ++i)
+    measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, length, search,
+                  found, 2);
 }
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
