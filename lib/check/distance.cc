@@ -208,9 +208,7 @@ std::vector<int> OneSided::doubtful_triangles() {
   return groups;
 }
 
-double OneSided::from_triangle(Vec3 p, int face) const {
-  return norm(closest_point(to_.mesh, face, p) - p);
-}
+double OneSided::from_triangle(Vec3 p, int face) const { return norm(closest_point(to_.mesh, face, p) - p); }
 
 /// The largest distance of the corners from one triangle of the other surface.
 double OneSided::farthest_corner(const Piece& piece, int face) const {

@@ -30,6 +30,12 @@ double corner_angle(const Connectivity& s, int h) {
   return angle(s.point(s.to(h)) - p, s.point(s.apex(h)) - p);
 }
 
+/// Angle at their origin between half-edge h and the third side of the triangle of half-edge g.
+double angle_between(const Connectivity& s, int h, int g) {
+  const Vec3 p = s.point(s.from(h));
+  return angle(s.point(s.to(h)) - p, s.point(s.apex(g)) - p);
+}
+
 double longest_edge(const Mesh& mesh, int t) {
   return std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
 }
@@ -100,14 +106,18 @@ std::vector<Sector> needle_sectors(const Connectivity& surface, double scale) {
     const bool bounded = is_feature(surface, h);
     const double limit = scale * (bounded ? needle_angle : 3 * needle_angle);
     Sector s{h, 1, corner_angle(surface, h), !bounded};
-    int first = h;
+    int first = h, last = h;  // the last half-edge from the vertex
     bool closed = false;
-    for (int g = h; s.angle < limit && !is_feature(surface, prev(g)) && !closed;) {
-      g = surface.opposite[prev(g)];
-      first = std::min(first, g);
-      closed = g == h;
-      if (!closed) s.angle += corner_angle(surface, g), ++s.triangles;
+    for (; s.angle < (bounded ? sharp_angle : limit) && !is_feature(surface, prev(last)) && !closed;) {
+      last = surface.opposite[prev(last)];
+      first = std::min(first, last);
+      closed = last == h;
+      if (!closed) s.angle += corner_angle(surface, last), ++s.triangles;
     }
+    // of a sector that is folded the angle between its edges counts: a triangle that leaves out the fold has
+    // it
+    if (bounded && is_feature(surface, prev(last)))
+      s.angle = std::min(s.angle, angle_between(surface, h, last));
     // a sector is found from its first edge, a whole one from its smallest half-edge
     if (s.angle < limit && (bounded || (closed && first == h))) sectors.push_back(s);
   }

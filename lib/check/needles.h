@@ -12,7 +12,7 @@ namespace meshpipe {
 struct Sector {
   int first;      ///< half-edge from the vertex, the first counter-clockwise
   int triangles;  ///< their number
-  double angle;   ///< radians over the surface
+  double angle;   ///< radians over the surface, or between the two edges if that is less
   bool whole;     ///< the vertex has no feature edges
 
   /// The apex of the isosceles triangle that fills the sector; three of them where it is whole.
