@@ -43,6 +43,15 @@ Mesh regions(const Options& o, int triangles) {
   return brick(counts_in(o.brick.empty() ? "2x1x1" : o.brick), triangles);
 }
 
+/// About ten edges across a region, so that a mesh with as many triangles is one of good triangles.
+int usual_of_regions(const Options& o) {
+  constexpr int per_square = 250, per_region = 1200, per_region_of_image = 2500;
+  if (o.voronoi > 0) return (o.image.empty() ? per_region : per_region_of_image) * o.voronoi;
+  const auto [a, b, c] = counts_in(o.brick.empty() ? "2x1x1" : o.brick);
+  const double squares = (double)a * b * (c + 1) + (double)b * c * (a + 1) + (double)c * a * (b + 1);
+  return (int)std::min(per_square * squares, 1e7);
+}
+
 /// Returns the number of vertices around a tube of about n triangles.
 int around(double aspect, bool closed, int n) {
   const double pi = std::numbers::pi, per_square = 4 * aspect / (std::sqrt(3) * pi) + (closed ? 1 / pi : 0);
@@ -73,7 +82,7 @@ Body make(const Options& o) {
     const int outlets = o.outlets == 0 && o.generations == 0 ? 13 : o.outlets;
     mesh = branching_tree(o.generations, outlets, ratio(0.8), triangles(25000), o.seed, o.aspect);
   }
-  if (o.kind == "regions") mesh = regions(o, triangles(10000));
+  if (o.kind == "regions") mesh = regions(o, triangles(std::max(10000, usual_of_regions(o))));
   body.patch.assign(mesh.tris.size(), 0);
   return body;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Surfaces that divide space into many regions: bricks, nested spheres, and Voronoi diagrams as labeled
-// images have them. A grid's cubes are cut into tetrahedra as in march.cc; one with corners of two to four
-// labels holds pieces of sheets, which meet along lines and in points where the labels' distances are equal.
+// images have them, as the sides of voxels or as surface nets: Gibson, "Constrained elastic surface nets",
+// 1998. These have the vertices of the former, moved so that sheets and lines are smooth.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,11 +10,10 @@
 #include "lib/core/random.h"
 #include "lib/core/weld.h"
 #include "lib/shape/shape.h"
+#include "lib/smooth/smooth.h"
 
 namespace meshpipe {
 namespace {
-
-constexpr double inset = 0.02;  // of an edge: vertices keep off its ends
 
 /// Appends a triangle on points of its own, with its normal along `up`; nothing if it has no area.
 void add_triangle(Mesh& mesh, std::array<Vec3, 3> p, Vec3 up) {
@@ -53,15 +52,10 @@ class Image {
   }
   int label_at(Vec3 p) const;
   void spread(int n_seeds, int seed);
-  /// Negative where label a is nearer than b.
-  double difference(int a, int b, Vec3 p) const {
-    if (b == 0) return norm(p) - 1;
-    if (a == 0) return 1 - norm(p);
-    return dot(p - seeds_[a - 1], p - seeds_[a - 1]) - dot(p - seeds_[b - 1], p - seeds_[b - 1]);
+  bool inside(int x) const { return x >= 0 && x <= n_; }
+  int label(int i, int j, int k) const {
+    return inside(i) && inside(j) && inside(k) ? label_[at(i, j, k)] : 0;
   }
-  Vec3 equal_point(std::vector<int> corners) const;
-  void cut(Mesh& mesh, std::array<int, 4> corner) const;
-  void cut_side(Mesh& mesh, std::array<int, 3> corner, Vec3 up) const;
 
   bool ball_;
   int n_;
@@ -104,124 +98,9 @@ void Image::spread(int n_seeds, int seed) {
   }
 }
 
-/// The point between two to four grid points of as many labels where all of these are equally near, by linear
-/// interpolation, kept off the rim.
-Vec3 Image::equal_point(std::vector<int> corners) const {
-  std::sort(corners.begin(), corners.end());  // rounds alike wherever it is needed
-  const int n = (int)corners.size();
-  std::vector<int> labels;
-  for (int c : corners) labels.push_back(label_[c]);
-  std::sort(labels.begin(), labels.end());
-  double m[4][5];
-  for (int row = 0; row < n; ++row) {
-    for (int c = 0; c < n; ++c)
-      m[row][c] = row ? difference(labels.back(), labels[row - 1], point(corners[c])) : 1;
-    m[row][n] = row == 0;
-  }
-  for (int c = 0; c < n; ++c) {
-    int pivot = c;
-    for (int row = c + 1; row < n; ++row)
-      if (std::abs(m[row][c]) > std::abs(m[pivot][c])) pivot = row;
-    std::swap(m[c], m[pivot]);
-    for (int row = 0; row < n; ++row)
-      if (row != c)
-        for (int k = n; k >= c; --k) m[row][k] -= m[row][c] / m[c][c] * m[c][k];
-  }
-  double weight[4], sum = 0;
-  for (int c = 0; c < n; ++c) {
-    const double w = m[c][n] / m[c][c];
-    sum += weight[c] = std::isfinite(w) ? std::clamp(w, inset, 1.0) : 1;
-  }
-  Vec3 p;
-  for (int c = 0; c < n; ++c) p = p + weight[c] / sum * point(corners[c]);
-  return p;
-}
-
-/// Adds the pieces of sheets in a tetrahedron: cones of one of its points over lines in its faces, so that
-/// they do not intersect.
-void Image::cut(Mesh& mesh, std::array<int, 4> c) const {
-  std::sort(c.begin(), c.end(),
-            [&](int p, int q) { return label_[p] != label_[q] ? label_[p] < label_[q] : p < q; });
-  const int l[4] = {label_[c[0]], label_[c[1]], label_[c[2]], label_[c[3]]};
-  auto at = [&](auto... i) { return equal_point({c[i]...}); };
-  auto up = [&](int low, int high) { return point(c[low]) - point(c[high]); };
-  const int distinct = 1 + (l[0] != l[1]) + (l[1] != l[2]) + (l[2] != l[3]);
-  if (distinct == 2 && l[1] == l[2]) {
-    const int alone = l[0] != l[1] ? 0 : 3, a = alone ? 0 : 1;
-    add_triangle(mesh, {at(alone, a), at(alone, a + 1), at(alone, a + 2)}, alone ? up(0, 3) : up(0, 3));
-  } else if (distinct == 2) {
-    add_quad(mesh, at(0, 2), at(0, 3), at(1, 3), at(1, 2), up(0, 2) + up(1, 3));
-  } else if (distinct == 3) {
-    const int a = l[0] == l[1] ? 0 : l[1] == l[2] ? 1 : 2;  // a and a + 1 have one label
-    const int b = a == 0 ? 2 : 0, d = a == 2 ? 1 : 3;
-    const Vec3 p = at(a, b, d), q = at(a + 1, b, d);
-    for (int other : {b, d})
-      add_quad(mesh, p, at(a, other), at(a + 1, other), q, other < a ? up(other, a) : up(a, other));
-    add_triangle(mesh, {at(b, d), p, q}, up(b, d));
-  } else if (distinct == 4) {
-    const Vec3 middle = at(0, 1, 2, 3);
-    for (int i = 0; i < 4; ++i)
-      for (int j = i + 1; j < 4; ++j) {
-        int k = 0;
-        while (k == i || k == j) ++k;
-        const int rest = 6 - i - j - k;
-        add_quad(mesh, at(i, j), at(i, j, k), middle, at(i, j, rest), up(i, j));
-      }
-  }
-}
-
-/// Adds a triangle of the box's side, cut where sheets end at it.
-void Image::cut_side(Mesh& mesh, std::array<int, 3> c, Vec3 up) const {
-  std::sort(c.begin(), c.end(),
-            [&](int p, int q) { return label_[p] != label_[q] ? label_[p] < label_[q] : p < q; });
-  const int l[3] = {label_[c[0]], label_[c[1]], label_[c[2]]};
-  const Vec3 p[3] = {point(c[0]), point(c[1]), point(c[2])};
-  auto at = [&](auto... i) { return equal_point({c[i]...}); };
-  if (l[0] == l[2]) return add_triangle(mesh, {p[0], p[1], p[2]}, up);
-  if (l[0] != l[1] && l[1] != l[2]) {
-    const Vec3 middle = at(0, 1, 2);
-    for (int i = 0; i < 3; ++i) add_quad(mesh, p[i], at(i, (i + 1) % 3), middle, at(i, (i + 2) % 3), up);
-    return;
-  }
-  const int alone = l[0] != l[1] ? 0 : 2, a = alone ? 0 : 1;
-  add_triangle(mesh, {p[alone], at(alone, a), at(alone, a + 1)}, up);
-  add_quad(mesh, at(alone, a), at(alone, a + 1), p[a + 1], p[a], up);
-}
-
-Mesh Image::smooth() const {
-  constexpr int paths[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};  // from corner 0 to 7 (Kuhn)
-  Mesh mesh;
-  auto corner = [&](int i, int j, int k, int c) { return at(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)); };
-  for (int k = 0; k < n_; ++k)
-    for (int j = 0; j < n_; ++j)
-      for (int i = 0; i < n_; ++i) {
-        for (const auto& [a, b] : paths)
-          cut(mesh, {corner(i, j, k, 0), corner(i, j, k, a), corner(i, j, k, b), corner(i, j, k, 7)});
-        const int place[3] = {i, j, k};
-        for (int axis = 0; axis < 3 && !ball_; ++axis)
-          for (int far : {0, 1}) {
-            if (place[axis] != far * (n_ - 1)) continue;
-            const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, first = far << axis;
-            Vec3 up;
-            (axis == 0 ? up.x : axis == 1 ? up.y : up.z) = far ? 1 : -1;
-            for (int side : {u, v})
-              cut_side(
-                  mesh,
-                  {corner(i, j, k, first), corner(i, j, k, first | side), corner(i, j, k, first | u | v)},
-                  up);
-          }
-      }
-  weld(mesh);
-  return mesh;
-}
-
 /// The squares between voxels of different labels, around the grid's points.
 Mesh Image::blocks() const {
   Mesh mesh;
-  auto label = [&](int i, int j, int k) {
-    const bool within = i >= 0 && j >= 0 && k >= 0 && i <= n_ && j <= n_ && k <= n_;
-    return within ? label_[at(i, j, k)] : 0;
-  };
   for (int k = -1; k <= n_; ++k)
     for (int j = -1; j <= n_; ++j)
       for (int i = -1; i <= n_; ++i)
@@ -243,6 +122,12 @@ Mesh Image::blocks() const {
         }
   weld(mesh);
   return mesh;
+}
+
+Mesh Image::smooth() const {
+  Surface nets = surface_of(blocks());
+  for (int i = 0; i < 2; ++i) smooth_sheets(nets, {});  // once leaves waves where sheets are along the grid
+  return nets;
 }
 
 }  // namespace
@@ -289,10 +174,9 @@ Mesh nested_spheres(int count, int n) {
 }
 
 Mesh labeled_image(int seeds, bool ball, bool blocks, int n, int seed) {
-  // a region of volume v has about 5.4 v^(2/3) of surface, half of it shared; a square of the grid that is
-  // crossed has about 12 triangles, a voxel's side 2
+  // a region of volume v has about 5.4 v^(2/3) of surface, half of it shared; a voxel's side has 2 triangles
   const double unit = ball ? 2.6 : 1, area = unit * (5 + 2.7 * std::cbrt(seeds));
-  const Image image(seeds, ball, std::sqrt((blocks ? 2.2 : 12) * area / n), seed);
+  const Image image(seeds, ball, std::sqrt(2.2 * area / n), seed);
   return blocks ? image.blocks() : image.smooth();
 }
 

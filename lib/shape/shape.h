@@ -59,8 +59,8 @@ Mesh nested_spheres(int count, int n);
 /// The Voronoi diagram of seeds in the unit cube, spread by Lloyd's method, about n triangles; for `ball`, in
 /// a polyhedron of up to 1000 facets around the unit ball.
 Mesh voronoi(int seeds, bool ball, int n, int seed);
-/// A Voronoi diagram in the unit cube or the unit ball as a labeled image shows it: interpolated between
-/// voxels, or with `blocks` their sides. About n triangles.
+/// A Voronoi diagram in the unit cube or the unit ball as a labeled image shows it: smoothed surface nets, or
+/// with `blocks` the sides of voxels. About n triangles.
 Mesh labeled_image(int seeds, bool ball, bool blocks, int n, int seed);
 
 /// Moves every vertex by a random vector of length up to amount times the mean edge length.

@@ -8,6 +8,7 @@
 #include "lib/core/error.h"
 #include "lib/core/junctions.h"
 #include "lib/core/normals.h"
+#include "lib/core/union_find.h"
 #include "lib/smooth/separate.h"
 #include "lib/smooth/smooth.h"
 #include "lib/solids/solids.h"
@@ -26,13 +27,44 @@ struct Net {
   std::vector<char> held;
   double edge = 0;                          ///< mean length
   std::vector<std::pair<int, int>> smooth;  ///< triangles that are adjacent within a sheet
+  std::vector<std::vector<int>> rigid;      ///< vertices of lines of one or two edges, which would vanish
 };
+
+struct Edge {
+  int a, b, uses;
+};
+
+/// The vertices of lines of one or two edges that join ends of lines. `on_line` is per vertex, edges of lines
+/// there.
+std::vector<std::vector<int>> joined_ends(const std::vector<Edge>& edges, const std::vector<int>& on_line) {
+  auto is_end = [&](int v) { return on_line[v] != 0 && on_line[v] != 2; };
+  std::vector<int> near(on_line.size(), 0);  // ends next to a vertex
+  for (const Edge& e : edges)
+    if (e.uses > 2) near[e.b] += is_end(e.a), near[e.a] += is_end(e.b);
+  auto joins = [&](int v) { return is_end(v) || near[v] == 2; };
+  UnionFind ends(on_line.size());
+  std::vector<int> found;
+  for (const Edge& e : edges)
+    if (e.uses > 2 && joins(e.a) && joins(e.b)) {
+      ends.join(e.a, e.b);
+      found.insert(found.end(), {e.a, e.b});
+    }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  std::sort(found.begin(), found.end(), [&](int a, int b) {
+    const int i = ends.find(a), j = ends.find(b);
+    return i != j ? i < j : a < b;
+  });
+  std::vector<std::vector<int>> groups;
+  for (int v : found) {
+    if (groups.empty() || ends.find(groups.back()[0]) != ends.find(v)) groups.emplace_back();
+    groups.back().push_back(v);
+  }
+  return groups;
+}
 
 Net make_net(const Mesh& mesh) {
   const int n = (int)mesh.points.size();
-  struct Edge {
-    int a, b, uses;
-  };
   std::vector<Edge> edges;
   std::vector<int> on_line(n, 0);
   Net net;
@@ -46,6 +78,7 @@ Net make_net(const Mesh& mesh) {
     if (uses.size() > 2) ++on_line[a], ++on_line[b];
   });
   net.edge /= (double)edges.size();
+  net.rigid = joined_ends(edges, on_line);
   auto each = [&](auto f) {
     for (const auto& [a, b, uses] : edges) {
       if (on_line[a] < 2 || uses > 2) f(a, b);
@@ -71,6 +104,12 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
     for (int k = net.start[v]; k < net.start[v + 1]; ++k) mean = mean + 1.0 / n * p[net.vertex[k]];
     const Vec3 d = p[v] + share * (mean - p[v]) - start[v];
     to[v] = start[v] + std::min(1.0, within / std::max(norm(d), 1e-300)) * d;
+  }
+  for (const std::vector<int>& group : net.rigid) {
+    Vec3 mean;
+    for (int v : group) mean = mean + 1.0 / (double)group.size() * (to[v] - start[v]);
+    for (int v : group)
+      if (!net.held[v]) to[v] = start[v] + mean;
   }
   p = std::move(to);
 }

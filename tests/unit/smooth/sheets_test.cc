@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "lib/clean/clean.h"
+#include "lib/core/connectivity.h"
+#include "lib/core/edges.h"
 #include "lib/core/junctions.h"
 #include "lib/shape/shape.h"
 #include "lib/smooth/smooth.h"
@@ -24,4 +26,28 @@ TEST(SmoothSheets, StaysConformingWithinTheBound) {
   for (std::size_t v = 0; v < before.size(); ++v)
     EXPECT_LE(norm(s.points[v] - before[v]), r.within * (1 + 1e-12));
   EXPECT_LT(r.region_change, 1e-3);
+}
+
+TEST(SmoothSheets, KeepsShortLines) {
+  Surface s = surface_of(labeled_image(8, false, true, 10000, 1));
+  const std::vector<Vec3> before = s.points;
+  struct Short {
+    int a, b;
+  };
+  std::vector<int> lines(s.points.size(), 0);
+  std::vector<Short> edges;
+  for_each_edge(s.tris, (int)s.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() < 3) return;
+    const int h = half_edge(uses[0]);
+    edges.push_back({origin(s.tris, h), target(s.tris, h)});
+    ++lines[edges.back().a], ++lines[edges.back().b];
+  });
+  smooth_sheets(s, {});
+  int found = 0;
+  for (const Short& e : edges) {
+    if (lines[e.a] == 2 || lines[e.b] == 2) continue;
+    ++found;
+    EXPECT_GT(norm(s.points[e.a] - s.points[e.b]), 0.5 * norm(before[e.a] - before[e.b]));
+  }
+  EXPECT_GT(found, 0);
 }
