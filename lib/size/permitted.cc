@@ -282,15 +282,24 @@ void measure_along(const Measure& measure, int h, double from, double to, double
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
 void drop_intersecting(const Measure& measure, const Connectivity& surface, std::vector<SizeBound>& bounds) {
-  auto is_sheet = [&](const SizeBound& x) { return !measure.is_line(x.half_edge); };
-  if (std::none_of(bounds.begin(), bounds.end(), is_sheet)) return;
-  std::vector<char> marked(surface.n_tris(), 0);
-  for (const auto& [s, t] : self_intersections(surface.mesh, measure.tree())) marked[s] = marked[t] = 1;
+  const Mesh& mesh = surface.mesh;
+  enum : char { unknown, no, yes };
+  std::vector<char> known(bounds.empty() ? 0 : surface.n_tris(), unknown);
+  auto intersects = [&](int t) {
+    if (known[t] != unknown) return known[t] == yes;
+    known[t] = no;
+    const Box box = box_of(mesh, t);
+    measure.tree().overlapping(box, [&](int u) {
+      if (u != t && known[t] == no && overlap(box, box_of(mesh, u)) &&
+          triangles_intersect(mesh, std::min(t, u), std::max(t, u)) && has_area(mesh, t) && has_area(mesh, u))
+        known[t] = yes;
+    });
+    return known[t] == yes;
+  };
   Search search(surface);
   std::erase_if(bounds, [&](const SizeBound& x) {
-    return is_sheet(x) && measure.joins(
-                              x.half_edge, x.place, 0.5 * measure.asked(x.half_edge),
-                              [&](int t) { return marked[t]; }, search);
+    return !measure.is_line(x.half_edge) &&
+           measure.joins(x.half_edge, x.place, 0.5 * measure.asked(x.half_edge), intersects, search);
   });
 }
 
@@ -309,8 +318,9 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
 
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked) {
   const Measure measure(surface, asked);
-  constexpr int chunk = 1024;
-  const int n = surface.n_half_edges();
+  constexpr int chunk = 340;  // triangles, neighbors in space
+  const std::vector<int>& order = measure.tree().order();
+  const int n = surface.n_tris();
   std::vector<std::vector<SizeBound>> found((n + chunk - 1) / chunk);
 #pragma omp parallel
   {
@@ -318,14 +328,15 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
 #pragma omp for schedule(dynamic)
     for (int c = 0; c < (int)found.size(); ++c) {
       // fans of needles, of which each point sees all: strips are measured first, and sheets as time permits
-      const long long most = search.work + (long long)chunk * most_looks;
+      const long long most = search.work + 3LL * chunk * most_looks;
       for (bool line : {true, false})
-        for (int h = c * chunk; h < std::min(n, (c + 1) * chunk) && search.work < most; ++h) {
+        for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
+          const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           const double length = surface.length(h);
           const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
-          for (int i = 0; i < pieces; ++i)
-            measure_along(measure, h, (double)i / pieces, (i + 1.0) / pieces, length, search, found[c]);
+          for (int k = 0; k < pieces; ++k)
+            measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, length, search, found[c]);
         }
       std::stable_sort(found[c].begin(), found[c].end(),
                        [](const SizeBound& x, const SizeBound& y) { return x.half_edge < y.half_edge; });
@@ -333,6 +344,8 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
   }
   std::vector<SizeBound> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const SizeBound& a, const SizeBound& b) { return a.half_edge < b.half_edge; });
   drop_intersecting(measure, surface, all);
   return all;
 }
