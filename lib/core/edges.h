@@ -15,23 +15,23 @@ using EdgeUse = std::uint64_t;
 inline int half_edge(EdgeUse e) { return (int)(std::uint32_t)e; }
 
 /// Calls visit(std::span<const EdgeUse>) once for every edge, with its half-edges of either direction in
-/// ascending order; edges come by smaller, then by larger vertex. Linear: half-edges go into the bucket of
-/// their smaller vertex, of about three.
+/// ascending order; edges come by smaller, then by larger vertex. Only those whose smaller vertex is at least
+/// `first` and below `last`. Linear: half-edges go into the bucket of their smaller vertex, of about three.
 template <class Visit>
-void for_each_edge(const std::vector<Tri>& tris, int n_vertices, Visit visit) {
-  const int n = (int)tris.size();
+void for_each_edge(const std::vector<Tri>& tris, int first, int last, Visit visit) {
+  const int n = (int)tris.size(), n_vertices = last - first;
   std::vector<int> end(n_vertices + 1, 0);
-  for (const auto& [a, b, c] : tris) {
-    ++end[std::min(a, b) + 1];
-    ++end[std::min(b, c) + 1];
-    ++end[std::min(c, a) + 1];
-  }
+  auto in_range = [&](int v) { return (unsigned)(v - first) < (unsigned)n_vertices; };
+  for (const auto& t : tris)
+    for (int v : {std::min(t[0], t[1]), std::min(t[1], t[2]), std::min(t[2], t[0])})
+      if (in_range(v)) ++end[v - first + 1];
   for (int v = 0; v < n_vertices; ++v) end[v + 1] += end[v];
-  std::vector<EdgeUse> use(3 * (std::size_t)n);
+  std::vector<EdgeUse> use(end[n_vertices]);
   for (int t = 0; t < n; ++t) {
     const auto& [a, b, c] = tris[t];
     auto put = [&](int p, int q, int h) {
-      use[end[std::min(p, q)]++] = (EdgeUse)std::max(p, q) << 32 | (std::uint32_t)h;
+      if (const int v = std::min(p, q); in_range(v))
+        use[end[v - first]++] = (EdgeUse)std::max(p, q) << 32 | (std::uint32_t)h;
     };
     put(a, b, 3 * t);
     put(b, c, 3 * t + 1);
@@ -57,6 +57,11 @@ void for_each_edge(const std::vector<Tri>& tris, int n_vertices, Visit visit) {
       e = f;
     }
   }
+}
+/// The same for all edges.
+template <class Visit>
+void for_each_edge(const std::vector<Tri>& tris, int n_vertices, Visit visit) {
+  for_each_edge(tris, 0, n_vertices, visit);
 }
 
 }  // namespace meshpipe

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/topology.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <limits>
 #include <numbers>
@@ -18,12 +20,20 @@ static std::string edge_name(const std::vector<Tri>& tris, int h) {
 }
 
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices) {
-  for (std::size_t t = 0; t < tris.size(); ++t)
-    if (const auto& [a, b, c] = tris[t]; a == b || b == c || c == a)
-      throw NotAdmissible("triangle " + std::to_string(t) + " has vertex " + std::to_string(b == c ? b : a) +
-                          " twice; run mclean first");
-  std::vector<int> opposite(3 * tris.size(), -1);
-  for_each_edge(tris, n_vertices, [&](std::span<const EdgeUse> uses) {
+  constexpr std::size_t worth_threads = 30000;  // triangles
+  const std::size_t n = tris.size();
+  std::size_t repeated = n;
+#pragma omp parallel for schedule(static) reduction(min : repeated) if (n > worth_threads)
+  for (std::size_t t = 0; t < n; ++t)
+    if (const Tri& v = tris[t]; v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+      repeated = std::min(repeated, t);
+  if (repeated < n) {
+    const Tri& v = tris[repeated];
+    throw NotAdmissible("triangle " + std::to_string(repeated) + " has vertex " +
+                        std::to_string(v[1] == v[2] ? v[1] : v[0]) + " twice; run mclean first");
+  }
+  std::vector<int> opposite(3 * n, -1);
+  auto match = [&](std::span<const EdgeUse> uses) {
     int h = half_edge(uses[0]);
     if (uses.size() > 2)
       throw NotAdmissible(edge_name(tris, h) + " of triangle " + std::to_string(h / 3) + " has " +
@@ -35,7 +45,11 @@ std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices
                           " and " + std::to_string(g / 3) + "; run mclean first");
     opposite[h] = g;
     opposite[g] = h;
-  });
+  };
+  // each of the ranges of vertices looks at all triangles: no more of them than threads
+  const int ranges = n > worth_threads ? std::min(omp_get_max_threads(), 16) : 1;
+  auto from = [&](int i) { return (int)((std::int64_t)n_vertices * i / ranges); };
+  parallel_for(ranges, [&](int i) { for_each_edge(tris, from(i), from(i + 1), match); });
   return opposite;
 }
 

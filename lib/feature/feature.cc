@@ -19,6 +19,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
+constexpr double near_cosine = 0.8;            ///< of normals that do not turn by as much
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
@@ -102,12 +103,19 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
   const int n = (int)net.opposite.size();
   net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
   const std::vector<Vec3> normal = side_normals({s, net.opposite}, sliver * net.size);
-  for (std::size_t t = 0; t < s.tris.size(); ++t) {
+  int thin = 0;
+#pragma omp parallel for schedule(static) reduction(+ : thin)
+  for (int t = 0; t < n / 3; ++t) {
     const Tri& v = s.tris[t];
     const Vec3 own = area_vector(s.points[v[0]], s.points[v[1]], s.points[v[2]]);
-    slivers += angle(own, normal[t]) > continue_turn;
+    if (!(dot(own, normal[t]) > near_cosine * norm(own))) thin += angle(own, normal[t]) > continue_turn;
   }
+  slivers += thin;
   net.angle.assign(n, 0);
+#pragma omp parallel for schedule(static)
+  for (int h = 0; h < n; ++h)
+    if (const int o = net.opposite[h]; o > h)
+      net.angle[h] = net.angle[o] = angle(normal[h / 3], normal[o / 3]);
   for (auto* flags : {&net.on, &net.patch, &net.given, &net.cap, &net.merged}) flags->assign(n, 0);
   auto caps = [&](int label) { return options.first_cap <= label && label <= options.last_cap; };
   net.spoke.assign(s.points.size(), -1);
@@ -119,7 +127,6 @@ Network find_edges(const Surface& s, const FeatureOptions& options, const std::v
     const int o = net.opposite[h], v = net.from(h);
     if (net.spoke[v] < 0 || o < 0) net.spoke[v] = h;
     sum += net.length(h);
-    if (o >= 0) net.angle[h] = angle(normal[h / 3], normal[o / 3]);
     const bool border = o >= 0 && patch && (*patch)[h / 3] != (*patch)[o / 3];
     const bool merged = o >= 0 && !border && before && (*before)[h / 3] != (*before)[o / 3];
     net.given[h] = o >= 0 && !merged && given && (*given)[h] >= 0;
@@ -382,6 +389,7 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   const int n = surface.n_tris();
   std::vector<Vec3> normal(n);
   std::vector<char> is_thin(n), has_none(n);
+#pragma omp parallel for schedule(static)
   for (int t = 0; t < n; ++t) {
     const Vec3 a = surface.area_vector(t);
     const double length =
