@@ -91,6 +91,41 @@ TEST(Topology, RefusesWhatIsNoOrientedManifoldAndNamesIt) {
   EXPECT_NE(message({{0, 1, 2}, {3, 4, 3}}).find("triangle 1 has vertex 3 twice"), std::string::npos);
 }
 
+TEST(Topology, LargeMeshesAreMatchedAsSmallOnesAre) {
+  // in ranges of vertices, on several threads: a grid of 40,000 triangles with two faults
+  constexpr int n = 142;
+  std::vector<Tri> tris;
+  for (int j = 0; j < n - 1; ++j)
+    for (int i = 0; i < n - 1; ++i) {
+      const int v = n * j + i;
+      tris.push_back({v, v + 1, v + n});
+      tris.push_back({v + n + 1, v + n, v + 1});
+    }
+  const std::vector<int> opposite = opposite_halfedges(tris, n * n);
+  int border = 0;
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    const int o = opposite[h];
+    border += o < 0;
+    if (o < 0) continue;
+    EXPECT_EQ(opposite[o], h);
+    EXPECT_EQ(origin(tris, o), target(tris, h));
+  }
+  EXPECT_EQ(border, 4 * (n - 1));
+  auto message = [&] {
+    try {
+      opposite_halfedges(tris, n * n);
+    } catch (const NotAdmissible& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  std::swap(tris[39000][0], tris[39000][1]);
+  std::swap(tris[300][0], tris[300][1]);
+  EXPECT_NE(message().find("and 300;"), std::string::npos) << message();
+  tris[39500][2] = tris[39500][0];
+  EXPECT_NE(message().find("triangle 39500 "), std::string::npos) << message();
+}
+
 TEST(Topology, PartsHaveOppositesOfTheirOwn) {
   Mesh m = grid(2, 1);
   auto o = opposite_halfedges(m.tris, 6);
