@@ -4,6 +4,7 @@
 
 #include "formats/stream/model_edges.h"
 #include "formats/stream/region_tables.h"
+#include "lib/cap/cap.h"
 #include "lib/clean/clean.h"
 #include "lib/core/number.h"
 #include "lib/size/size.h"
@@ -204,6 +205,10 @@ int main(int argc, char** argv) {
         }
         report_faults();
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
+        // that of a vessel with caps stands for its size, and not for the many triangles of the caps
+        const bool counted = report.nothing && stream.input_triangles > 0 && !stream.find("ref_vertex") &&
+                             std::any_of(stream.remarks.begin(), stream.remarks.end(),
+                                         [](const std::string& r) { return parse_caps(r).last > 0; });
         // whatever was found out about another surface, or by another program, does not hold for this one
         if (stream.input_triangles == 0 || !report.nothing || stream.find("ref_vertex")) {
           stream.tables.clear();
@@ -219,7 +224,7 @@ int main(int argc, char** argv) {
           remark_on_spikes(io, stream);
         }
         name_patches(stream, report);
-        stream.input_triangles = (int)s.tris.size();
+        if (!counted) stream.input_triangles = (int)s.tris.size();
         say(io, report, o, s);
         io.write(stream);
       },
