@@ -47,7 +47,7 @@ std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices
     opposite[g] = h;
   };
   // each of the ranges of vertices looks at all triangles: no more of them than threads
-  const int ranges = n > worth_threads ? std::min(omp_get_max_threads(), 16) : 1;
+  const int ranges = n > worth_threads && !omp_in_parallel() ? std::min(omp_get_max_threads(), 16) : 1;
   auto from = [&](int i) { return (int)((std::int64_t)n_vertices * i / ranges); };
   parallel_for(ranges, [&](int i) { for_each_edge(tris, from(i), from(i + 1), match); });
   return opposite;
