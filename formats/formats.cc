@@ -74,6 +74,7 @@ const std::vector<Writer>& writers() {
       {".nas", write_nastran, named},
       {".inp", write_abaqus, patches | names},
       {".poly", write_poly, patches | labels},
+      {".smesh", write_smesh, patches | labels},
       {".geo", write_geo,
        holds::all},  // volumes between the surfaces of a .msh file: nobody expects a mesh in it
   };

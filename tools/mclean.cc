@@ -52,9 +52,39 @@ void drop_labels(Surface& surface) {
     surface.face.erase(column);
 }
 
+/// The label of the region of a patch: N if its name is region-N, as mconvert --regions writes it, else its
+/// number.
+int label_of(const Stream& stream, int patch) {
+  const std::string prefix = "region-", name = stream.name_of(2, patch);
+  int label = patch;
+  if (name.starts_with(prefix)) {
+    const char* end = name.data() + name.size();
+    const auto [at, error] = meshpipe::from_chars(name.data() + prefix.size(), end, label);
+    if (error != std::errc() || at != end || label <= 0) label = patch;
+  }
+  return label;
+}
+
+/// Takes kept sheets apart, with the labels of both sides that the file has; or where each solid that touches
+/// others is one patch, with theirs.
+RegionReport take_apart_labeled(Stream& stream, const SheetCounts& sheets) {
+  const std::vector<std::array<int, 2>> given = side_labels(stream.surface);
+  if (given.empty() && !sheets.solids.empty()) {
+    std::vector<std::array<int, 2>> labels = sheets.solids;
+    for (auto& pair : labels)
+      for (int& patch : pair)
+        if (patch > 0) patch = label_of(stream, patch);
+    try {
+      return take_apart(stream.surface, labels);
+    } catch (const NotAdmissible&) {  // patches are not solids, as of a design whose faces they are
+    }
+  }
+  return take_apart(stream.surface, given);
+}
+
 /// Takes kept sheets apart, and reports the regions between them.
 void divide(Io& io, Stream& stream, CleanReport& report) {
-  const RegionReport regions = take_apart(stream.surface, side_labels(stream.surface));
+  const RegionReport regions = take_apart_labeled(stream, report.sheets);
   drop_labels(stream.surface);  // tables hold them now
   report.sheets.patches.insert(report.sheets.patches.end(), regions.added.begin(), regions.added.end());
   write_regions(stream, regions.sheets, regions.label, regions.volume);

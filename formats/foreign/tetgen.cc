@@ -28,9 +28,10 @@ static void append_seeds(std::string& out, const RegionSeeds& seeds, bool outsid
   out += '\n' + rows;
 }
 
-std::string write_poly(const Stream& stream, bool) {
+/// The points, then the facets, each by write_facet(text, triangle), then holes and regions.
+template <class F>
+static std::string write_facets(const Stream& stream, F&& write_facet) {
   const Surface& s = stream.surface;
-  const std::vector<int> patch = patches_of(stream);
   std::string out;
   out.reserve(s.points.size() * 70 + s.tris.size() * 40);
   append(out, static_cast<long long>(s.points.size()));
@@ -41,21 +42,41 @@ std::string write_poly(const Stream& stream, bool) {
   }
   append(out, static_cast<long long>(s.tris.size()));
   out += " 1\n";
-  for (std::size_t t = 0; t < s.tris.size(); ++t) {
-    out += "1 0 ";
-    append(out, static_cast<long long>(patch[t]));
-    out += "\n3";
-    for (int v : s.tris[t]) {
-      out += ' ';
-      append(out, static_cast<long long>(v) + 1);
-    }
-    out += '\n';
-  }
+  for (std::size_t t = 0; t < s.tris.size(); ++t) write_facet(out, t);
   if (!has_sheets(stream)) return out + "0\n0\n";
   const RegionSeeds seeds = region_seeds(s);
   append_seeds(out, seeds, true);
   append_seeds(out, seeds, false);
   return out;
+}
+
+static void append_corners(std::string& out, const Tri& t) {
+  out += '3';
+  for (int v : t) {
+    out += ' ';
+    append(out, static_cast<long long>(v) + 1);
+  }
+}
+
+std::string write_poly(const Stream& stream, bool) {
+  const std::vector<int> patch = patches_of(stream);
+  return write_facets(stream, [&](std::string& out, std::size_t t) {
+    out += "1 0 ";
+    append(out, static_cast<long long>(patch[t]));
+    out += '\n';
+    append_corners(out, stream.surface.tris[t]);
+    out += '\n';
+  });
+}
+
+std::string write_smesh(const Stream& stream, bool) {
+  const std::vector<int> patch = patches_of(stream);
+  return write_facets(stream, [&](std::string& out, std::size_t t) {
+    append_corners(out, stream.surface.tris[t]);
+    out += ' ';
+    append(out, static_cast<long long>(patch[t]));
+    out += '\n';
+  });
 }
 
 }  // namespace meshpipe

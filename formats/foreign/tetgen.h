@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TetGen's .poly: the surface as facets with boundary markers.
+// TetGen's .poly and .smesh: the surface as facets with boundary markers.
 #pragma once
 #include "formats/stream.h"
 
@@ -8,5 +8,7 @@ namespace meshpipe {
 /// Writes text with patches as markers of facets, and a point in each region between sheets, whose label is
 /// its attribute (tetgen -A). Output only.
 std::string write_poly(const Stream& stream, bool ascii);
+/// The same with a line per facet.
+std::string write_smesh(const Stream& stream, bool ascii);
 
 }  // namespace meshpipe

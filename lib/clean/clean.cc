@@ -305,6 +305,7 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   if (report.sheets.kept) {
     unite(r);
     report.copies = report.opened_edges = 0;
+    report.sheets.solids = solids_of_patches(r, surface, report.sheets.doubles);
   }
   take_over(r, surface, options, report);
   label_caps(surface, cap, report);

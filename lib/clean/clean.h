@@ -54,6 +54,10 @@ struct SheetCounts {
   bool kept = false;                        ///< sheets share their vertices where they meet
   bool nested = false;                      ///< closed components are within others, and all face outward
   std::vector<std::array<int, 2>> patches;  ///< then: the new patch, and the one it was
+  std::vector<std::array<int, 2>> doubles;  ///< triangles of the input: one that stays, one dropped for it
+  /// Where solids that touch have different patches: those on both sides of each triangle of the result, 0
+  /// where there is one.
+  std::vector<std::array<int, 2>> solids;
 };
 
 /// Counts of repairs. Triangles are numbered as in the input.

@@ -48,6 +48,9 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
     if (same.empty() && edges == 0) break;
     gone.assign(r.tris.size(), 0);
     const int contacts = drop_doubles(r, points, same, options.sheets, gone);
+    for (const auto& [t, u] : same)
+      if (gone[u] && !gone[t] && r.face[t] >= 0 && r.face[u] >= 0)
+        report.sheets.doubles.push_back({r.face[t], r.face[u]});
     for (std::size_t t = 0; t < gone.size(); ++t)
       if (gone[t]) {
         report.duplicate += r.face[t] >= 0;

@@ -33,6 +33,11 @@ inline void record(CleanReport& report, int triangle, Fault fault) {
   if (triangle >= 0) report.offending.push_back({triangle, fault});
 }
 
+/// Returns SheetCounts::solids from `doubles`; empty if a patch is on both sides of a triangle, or not
+/// positive.
+std::vector<std::array<int, 2>> solids_of_patches(const Repair& r, const Surface& input,
+                                                  const std::vector<std::array<int, 2>>& doubles);
+
 /// Returns the distance that rounding may leave between copies of a point, from the largest coordinate and
 /// whether all have single precision.
 double coordinate_noise(const Mesh& mesh, const std::vector<char>& used);

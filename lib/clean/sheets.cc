@@ -50,4 +50,21 @@ bool mark_sheets(Surface& surface, const Repair& apart, CleanReport& report) {
   return true;
 }
 
+std::vector<std::array<int, 2>> solids_of_patches(const Repair& r, const Surface& input,
+                                                  const std::vector<std::array<int, 2>>& doubles) {
+  std::vector<std::array<int, 2>> sides;
+  if (doubles.empty() || !input.face.has("patch")) return sides;
+  const std::vector<int>& patch = input.face.get<int>("patch");
+  std::vector<int> other(patch.size(), 0);
+  for (const auto& [kept, gone] : doubles) {
+    if (patch[kept] == patch[gone]) return sides;
+    other[kept] = patch[gone];
+  }
+  for (int t : r.face) sides.push_back({patch[t], other[t]});
+  const bool positive =
+      std::all_of(r.face.begin(), r.face.end(), [&](int t) { return patch[t] > 0 && other[t] >= 0; });
+  if (!positive) sides.clear();
+  return sides;
+}
+
 }  // namespace meshpipe

@@ -188,14 +188,10 @@ int match_borders(Surface& surface, Table* chart) {
   }
 }
 
-std::vector<int> join_borders(Mesh& mesh) {
+/// Makes one vertex of those of the candidates that are at the same place; returns per vertex what it was.
+static std::vector<int> join_equal(Mesh& mesh, const std::vector<char>& candidates) {
   const int n = (int)mesh.points.size();
-  std::vector<char> border(n, 0);
-  for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
-    if (const int h = half_edge(uses[0]); uses.size() == 1)
-      border[origin(mesh.tris, h)] = border[target(mesh.tris, h)] = 1;
-  });
-  std::vector<int> number = first_equal(mesh.points, border), vertex;
+  std::vector<int> number = first_equal(mesh.points, candidates), vertex;
   for (int v = 0; v < n; ++v)
     if (number[v] == v) {
       number[v] = (int)vertex.size();
@@ -210,10 +206,19 @@ std::vector<int> join_borders(Mesh& mesh) {
   return vertex;
 }
 
+std::vector<int> join_borders(Mesh& mesh) {
+  std::vector<char> border(mesh.points.size(), 0);
+  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (const int h = half_edge(uses[0]); uses.size() == 1)
+      border[origin(mesh.tris, h)] = border[target(mesh.tris, h)] = 1;
+  });
+  return join_equal(mesh, border);
+}
+
 std::vector<std::pair<int, int>> sheet_intersections(Mesh& mesh, const Bvh& tree) {
   const std::vector<Tri> apart = mesh.tris;
   const std::size_t vertices = mesh.points.size();
-  join_borders(mesh);
+  join_equal(mesh, std::vector<char>(vertices, 1));
   std::vector<std::pair<int, int>> pairs = self_intersections(mesh, tree);
   if (mesh.points.size() == vertices) return pairs;
   auto neighbors = [&](int h, int g) {

@@ -16,8 +16,9 @@ std::vector<int> first_at_border(const Connectivity& c);
 /// that edges may have more than two. Returns per vertex the one that it was.
 std::vector<int> join_borders(Mesh& mesh);
 
-/// Joins borders, and returns the pairs of triangles that intersect then (self_intersections), or have an
-/// edge in common that is inside the sheet of one of them: sheets may meet in their borders only.
+/// Joins vertices at the same place, and returns the pairs of triangles that intersect then
+/// (self_intersections), or have an edge in common that is inside the sheet of one of them: sheets may meet
+/// along their borders, and touch in vertices.
 std::vector<std::pair<int, int>> sheet_intersections(Mesh& mesh, const Bvh& tree);
 
 /// Where border edges between the same two places have been cut differently, splits them until all are cut
