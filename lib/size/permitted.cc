@@ -338,8 +338,6 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           for (int k = 0; k < pieces; ++k)
             measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, length, search, found[c]);
         }
-      std::stable_sort(found[c].begin(), found[c].end(),
-                       [](const SizeBound& x, const SizeBound& y) { return x.half_edge < y.half_edge; });
     }
   }
   std::vector<SizeBound> all;
