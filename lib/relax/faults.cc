@@ -62,11 +62,14 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
-/// Climbs in a triangle from barycentric coordinates `at`, where f is `most`, by ever shorter steps from
-/// `first` on; returns the largest value it comes to, and sets where.
+/// Climbs in a triangle with sides up to `length` from barycentric coordinates `at`, where the distance f is
+/// `most`, by ever shorter steps from `first` on, while it may still come to `limit`; returns the largest
+/// value, and sets where.
 template <class F>
-double climb(std::array<double, 3>& at, double most, double first, F f) {
+double climb(std::array<double, 3>& at, double most, double first, double length, double limit, F f) {
   for (double step = first; step > rules::last_step * first; step /= 2) {
+    if (most > limit || most + 2 * step * length < limit)
+      break;  // f grows by no more than the way that is left
     const std::array<double, 3> from = at;
     for (int i = 0; i < 3; ++i)
       for (int j : {next(i), prev(i)}) {
@@ -94,7 +97,10 @@ double distance_of(const State& s, int t, const Bvh& tree, double limit) {
        {std::array{third, third, third}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}})
     if (const double d = distance(b); d > most) most = d, farthest = b;
   if (most < rules::nearly_far * limit || most > limit) return most;
-  return climb(farthest, most, rules::first_step, distance);
+  const double length =
+      std::max({norm(s.points[v[1]] - s.points[v[0]]), norm(s.points[v[2]] - s.points[v[1]]),
+                norm(s.points[v[0]] - s.points[v[2]])});
+  return climb(farthest, most, rules::first_step, length, limit, distance);
 }
 
 /// Adds samples that are farther from the mesh than `limit` in triangles of the reference where one that was
@@ -120,7 +126,7 @@ void add_far_samples(const State& s, Samples& samples, std::vector<double>& dist
     const std::vector<Vec3>& p = s.reference->surface.points;
     const double length = std::max({norm(p[b] - p[a]), norm(p[c] - p[b]), norm(p[a] - p[c])});
     const double first = std::min(1.0, 2 * s.target(s.mesh.tris[x.near][0]) / length);
-    y.distance = climb(at, y.distance, rules::first_step * first,
+    y.distance = climb(at, y.distance, rules::first_step * first, length, limit,
                        [&](const auto& place) { return nearest(place).distance; });
     y.place = {x.place.face, at[0], at[1], at[2]};
     y.near = nearest(at).place.face;

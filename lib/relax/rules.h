@@ -92,7 +92,7 @@ constexpr double parallel = 0.8;     // cosine: no edge between normals this clo
 constexpr double too_far = 0.475;    // of the size; a half is the limit of mcheck
 constexpr double nearly_far = 0.7;   // of the bearable: from there the farthest place is looked for
 constexpr double first_step = 0.25;  // of an edge, on that way
-constexpr double last_step = 0.2;    // of the first step
+constexpr double last_step = 0.05;   // of the first step
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
