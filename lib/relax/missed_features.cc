@@ -177,14 +177,16 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
   std::erase_if(samples, [](const Sample& s) { return s.place.face < 0; });  // of no triangle
   for (int t = 0; t < (int)surface.tris.size(); ++t) {
     const Tri& v = surface.tris[t];
-    auto bends_at = [&](int w) {
-      const Vec3 n = normalized(area_vector(p[v[0]], p[v[1]], p[v[2]]));
-      return !(dot(n, normalized(reference.normals[w])) > rules::bent);
-    };
+    const Vec3 area = area_vector(p[v[0]], p[v[1]], p[v[2]]);
     for (int i = 0; i < 3; ++i) {
       const int a = v[i], b = v[(i + 1) % 3];
       const double length = norm(p[b] - p[a]) / h;
       if (a > b || rules::samples_per_edge * length <= 1) continue;
+      // where a long edge is one of many across a bend, the bend counts on the scale of the size
+      const double edges = rules::samples_per_flat_edge * length > 1 ? length * h * h / norm(area) : 1;
+      auto bends_at = [&](int w) {
+        return !(angle(area, reference.normals[w]) * std::max(1.0, edges) < rules::bent);
+      };
       const double rate = bends_at(a) || bends_at(b) ? rules::samples_per_edge : rules::samples_per_flat_edge;
       const int pieces = (int)std::min(rules::most_samples, std::ceil(rate * length));
       for (int k = 1; k < pieces; ++k) {

@@ -102,7 +102,7 @@ constexpr double growth = 1.6,
 constexpr int fault_rounds = 24, useless_rounds = 6;
 
 // missed features (missed_features.cc)
-constexpr double bent = 0.985;                 // cosine: 10 degrees, from where edges have samples
+constexpr double bent = 0.1734;                // radians: from 10 degrees on edges have samples
 constexpr double samples_per_edge = 3;         // of the mesh: one is half way at most
 constexpr double samples_per_flat_edge = 0.5;  // none on edges up to twice as long
 constexpr double most_samples = 50;            // of an edge
