@@ -68,8 +68,7 @@ void find_intersections(const State& s, Known& known, Fault& found) {
 template <class F>
 double climb(std::array<double, 3>& at, double most, double first, double length, double limit, F f) {
   for (double step = first; step > rules::last_step * first; step /= 2) {
-    if (most > limit || most + 2 * step * length < limit)
-      break;  // f grows by no more than the way that is left
+    if (most + 2 * step * length < limit) break;  // f grows by no more than the way that is left
     const std::array<double, 3> from = at;
     for (int i = 0; i < 3; ++i)
       for (int j : {next(i), prev(i)}) {
