@@ -93,6 +93,11 @@ void divide(Io& io, Stream& stream, CleanReport& report) {
     io.detail("region " + std::to_string(regions.label[i]) + " has volume " + shown(regions.volume[i]));
     io.report["regions"].push_back({{"label", regions.label[i]}, {"volume", regions.volume[i]}});
   }
+  io.report["free_edges"] = regions.free_edges;
+  if (regions.free_edges > 0)
+    io.say("sheets end in " + std::to_string(regions.free_edges) +
+           (regions.free_edges == 1 ? " free edge" : " free edges") + ", the first at " +
+           shown(regions.free_at));
   const auto [least, most] = std::minmax_element(regions.volume.begin() + 1, regions.volume.end());
   if (n > 0)
     io.say(std::to_string(n) + (n == 1 ? " region" : " regions") + " between the sheets, of volume " +

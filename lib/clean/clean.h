@@ -121,6 +121,8 @@ struct RegionReport {
   std::vector<int> label;                 ///< per region; the first is the outside
   std::vector<double> volume;             ///< per region
   std::vector<std::array<int, 2>> added;  ///< patches: the new one, and the one it was
+  int free_edges = 0;                     ///< of one triangle: a sheet ends there
+  Vec3 free_at{};                         ///< middle of the first
 };
 
 /// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with

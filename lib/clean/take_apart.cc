@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "lib/clean/clean.h"
+#include "lib/core/edges.h"
 #include "lib/core/error.h"
 #include "lib/core/topology.h"
 
@@ -41,6 +42,12 @@ RegionReport take_apart(Surface& surface, const std::vector<std::array<int, 2>>&
   report.label.resize(solids.volume.size());
   std::iota(report.label.begin(), report.label.end(), 0);
   if (!given.empty()) report.label = labels_of(solids, given);
+  for_each_edge(surface.tris, (int)surface.points.size(), [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]);
+    if (uses.size() == 1 && report.free_edges++ == 0)
+      report.free_at =
+          lerp(surface.points[origin(surface.tris, h)], surface.points[target(surface.tris, h)], 0.5);
+  });
   surface.face.erase("model");
   split(surface);
   face_outside(surface, solids);
