@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "lib/core/connectivity.h"
+#include "lib/core/parallel.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
@@ -12,6 +13,7 @@ namespace meshpipe {
 namespace {
 
 constexpr double unreached = 1e300;
+constexpr int many = 16;  // handles: loops around the next are looked for from fewer places
 
 /// The surface with what has been cut so far.
 struct Work {
@@ -24,14 +26,14 @@ struct Work {
 };
 
 Work make_work(const Connectivity& view) {
-  const Mesh& mesh = view.mesh;
-  const std::vector<int>& opposite = view.opposite;
-  const std::size_t n = mesh.points.size();
-  Work w{mesh, opposite, std::vector<int>(n, -1), std::vector<char>(n, 0), {}, 0};
-  w.cap.assign(opposite.size(), -1);
-  for (int h = 0; h < (int)opposite.size(); ++h) w.leaving[origin(mesh.tris, h)] = h;
-  for (const std::vector<int>& loop : boundary_loops(opposite)) {
-    for (int h : loop) w.cap[h] = w.n_caps;
+  const std::vector<Tri>& tris = view.mesh.tris;
+  const std::size_t n = view.mesh.points.size(), n_half_edges = view.opposite.size();
+  Work w{view.mesh, view.opposite, std::vector<int>(n, -1), std::vector<char>(n, 0),
+         std::vector<int>(n_half_edges, -1)};
+  for (int h = 0; h < (int)n_half_edges; ++h) w.leaving[origin(tris, h)] = h;
+  for (const std::vector<int>& loop : boundary_loops(view.opposite)) {
+    // a loop along a border would leave a part of no width
+    for (int h : loop) w.cap[h] = w.n_caps, w.blocked[origin(tris, h)] = 1;
     ++w.n_caps;
   }
   return w;
@@ -123,44 +125,53 @@ Loop shortest_from(const Work& w, int root) {
   return loop;
 }
 
+/// The shortest that is found by moving on: a loop through one of the vertices of the last may be shorter.
+Loop shortest_near(const Work& w, int root) {
+  Loop best;
+  for (int move = 0; move < 3; ++move) {
+    Loop loop = shortest_from(w, root);
+    if (loop.length >= best.length) break;
+    root = origin(w.mesh.tris, loop.half_edges[loop.half_edges.size() / 2]);
+    best = std::move(loop);
+  }
+  return best;
+}
+
+/// Up to n vertices that are not blocked, each the farthest from those before.
+std::vector<int> far_apart(const Work& w, int n) {
+  const std::vector<Vec3>& points = w.mesh.points;
+  std::vector<int> found;
+  std::vector<double> nearest(points.size());  // to those found
+  for (std::size_t v = 0; v < points.size(); ++v)
+    nearest[v] = w.blocked[v] || w.leaving[v] < 0 ? -1 : unreached;
+  for (int i = 0; i < n; ++i) {
+    const auto v = std::max_element(nearest.begin(), nearest.end()) - nearest.begin();
+    if (nearest[v] < 0) break;
+    for (std::size_t u = 0; u < points.size(); ++u)
+      nearest[u] = std::min(nearest[u], norm(points[u] - points[v]));
+    found.push_back((int)v);
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> handle_loops(const Connectivity& view, int genus) {
-  const std::vector<int>& opposite = view.opposite;
-  const Mesh& mesh = view.mesh;
-  constexpr int roots = 4, moves = 3;
   Work w = make_work(view);
-  for (int h = 0; h < (int)opposite.size(); ++h)  // a loop along a border would leave a part of no width
-    if (opposite[h] < 0) w.blocked[origin(mesh.tris, h)] = 1;
   std::vector<std::vector<int>> loops;
   while ((int)loops.size() < genus) {
-    Loop best;
-    std::vector<double> nearest(mesh.points.size(), unreached);  // to the roots so far
-    for (int i = 0; i < roots; ++i) {
-      int root = -1;
-      for (int v = 0; v < (int)nearest.size(); ++v)
-        if (!w.blocked[v] && w.leaving[v] >= 0 && (root < 0 || nearest[v] > nearest[root])) root = v;
-      if (root < 0) break;
-      for (int v = 0; v < (int)nearest.size(); ++v)
-        nearest[v] = std::min(nearest[v], norm(mesh.points[v] - mesh.points[root]));
-      // a loop through one of its own vertices may be shorter
-      double before = unreached;
-      for (int move = 0; move < moves; ++move) {
-        Loop loop = shortest_from(w, root);
-        if (loop.length >= before) break;
-        before = loop.length;
-        root = origin(mesh.tris, loop.half_edges[loop.half_edges.size() / 2]);
-        if (loop.length < best.length) best = std::move(loop);
-      }
-    }
+    const std::vector<int> roots = far_apart(w, genus > many ? 2 : 4);
+    std::vector<Loop> found(roots.size() + 1);
+    parallel_for((int)roots.size(), [&](int i) { found[i] = shortest_near(w, roots[i]); });
+    const Loop& best = *std::min_element(found.begin(), found.end(),
+                                         [](const Loop& a, const Loop& b) { return a.length < b.length; });
     if (best.half_edges.empty()) break;
     for (int h : best.half_edges) {
-      w.blocked[origin(mesh.tris, h)] = 1;
-      w.cap[h] = w.n_caps;
-      w.cap[opposite[h]] = w.n_caps + 1;
+      w.blocked[origin(view.mesh.tris, h)] = 1;
+      w.cap[h] = w.n_caps, w.cap[view.opposite[h]] = w.n_caps + 1;
     }
     w.n_caps += 2;
-    loops.push_back(std::move(best.half_edges));
+    loops.push_back(best.half_edges);
   }
   return loops;
 }

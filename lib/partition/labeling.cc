@@ -304,10 +304,7 @@ Labeling search(const Component& c, bool homology, int seed) {
                      : n > 20000   ? std::max(2, genus + 1)
                                    : 2;
   std::vector<int> ks{genus + 2};
-  for (int d = 1; genus > 0 && d <= genus && d <= 6; ++d) {
-    ks.push_back(genus + 2 + d);
-    ks.push_back(genus + 2 - d);
-  }
+  for (int d = 1; d <= genus && d <= 6; ++d) ks.insert(ks.end(), {genus + 2 + d, genus + 2 - d});
   const double balances[] = {0.3, 0.1, 0.5};
   const DistortionModel model({c.mesh, c.opposite});
   constexpr int worth_threads = 3000;                  // triangles
@@ -325,10 +322,7 @@ Labeling search(const Component& c, bool homology, int seed) {
        tried += batch) {
     Labeling found[batch];
     auto try_one = [&](int i) { found[i] = finish(c, model, candidate(tried + i), seed + tried + i); };
-    if (n > worth_threads)
-      parallel_for(batch, try_one);
-    else
-      for (int i = 0; i < batch; ++i) try_one(i);
+    parallel_for(batch, try_one, n > worth_threads);
     for (Labeling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     add_progress(c.share * batch / (most_trials + sides));
