@@ -12,7 +12,7 @@
 #include <new>
 
 namespace {
-constexpr std::size_t page = std::size_t{1} << 21;
+constexpr std::size_t page = std::size_t{1} << 21;  // bytes, as all here
 
 /// Lets the heap grow by a piece at a time, which takes no memory before it is used, and puts the first on
 /// large pages.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "formats/stream/model_edges.h"
 #include "formats/stream/region_tables.h"
@@ -70,10 +72,17 @@ int label_of(const Stream& stream, int patch) {
 RegionReport take_apart_labeled(Stream& stream, const SheetCounts& sheets) {
   const std::vector<std::array<int, 2>> given = side_labels(stream.surface);
   if (given.empty() && !sheets.solids.empty()) {
+    // their numbers where names would give two solids one label
+    std::map<int, int> label;
+    for (const auto& pair : sheets.solids)
+      for (int patch : pair)
+        if (patch > 0) label[patch] = label_of(stream, patch);
+    std::set<int> different;
+    for (const auto& [patch, l] : label) different.insert(l);
     std::vector<std::array<int, 2>> labels = sheets.solids;
     for (auto& pair : labels)
-      for (int& patch : pair)
-        if (patch > 0) patch = label_of(stream, patch);
+      for (int& side : pair)
+        if (side > 0 && different.size() == label.size()) side = label.at(side);
     try {
       return take_apart(stream.surface, labels);
     } catch (const NotAdmissible&) {  // patches are not solids, as of a design whose faces they are
@@ -240,7 +249,7 @@ int main(int argc, char** argv) {
         }
         report_faults();
         if (!s.face.has("patch")) s.face.set("patch", std::vector<int>(s.tris.size(), 1));
-        // that of a vessel with caps stands for its size, and not for the many triangles of the caps
+        // a vessel with caps keeps the count that mcap scaled from the open one: caps are meshed more finely
         const bool counted = report.nothing && stream.input_triangles > 0 && !stream.find("ref_vertex") &&
                              std::any_of(stream.remarks.begin(), stream.remarks.end(),
                                          [](const std::string& r) { return parse_caps(r).last > 0; });

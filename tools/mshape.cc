@@ -43,7 +43,8 @@ Mesh regions(const Options& o, int triangles) {
   return brick(counts_in(o.brick.empty() ? "2x1x1" : o.brick), triangles);
 }
 
-/// About ten edges across a region, so that a mesh with as many triangles is one of good triangles.
+/// Returns the number of triangles with which a region is about ten edges across: with fewer, corners force
+/// most of them to be bad.
 int usual_of_regions(const Options& o) {
   constexpr int per_square = 250, per_region = 1200, per_region_of_image = 2500;
   if (o.voronoi > 0) return (o.image.empty() ? per_region : per_region_of_image) * o.voronoi;

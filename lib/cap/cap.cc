@@ -14,7 +14,8 @@ namespace {
 
 /// Share of the diagonal by which a plane rim is off for the single precision of a file: caps make it plane.
 constexpr double rounding = 1e-6;
-/// And share of its radius: less is not meant.
+/// Share of its radius by which a rim may be off its plane and is made plane all the same: the wobble of an
+/// extraction, not a shape that is meant.
 constexpr double almost_plane = 1e-3;
 /// Radii below the lowest vertex of a rim at which it is cut, if moving it would fold the wall.
 constexpr double below_rim = 0.1;
@@ -108,7 +109,12 @@ struct Treatment {
       else if (!why[i].empty())
         why[i] = "its rim, which is " + shown(ends[i].planarity) +
                  " out of its plane, cannot be made plane: " + why[i];
-    refuse_all(ends, why, options.cap ? fill_holes : "try --cap, which closes it by a cap that is not plane",
+    const auto first = std::find_if(why.begin(), why.end(), [](auto& w) { return !w.empty(); });
+    const bool extended = first != why.end() && extends((int)(first - why.begin()));
+    refuse_all(ends, why,
+               extended      ? "try --trim, or do not extend it"
+               : options.cap ? fill_holes
+                             : "try --cap, which closes it by a cap that is not plane",
                options.cap ? &options.kept : nullptr);
     for (int i = 0; i < n(); ++i)
       if (planes[i]) reports[i].trimmed = depth[i];

@@ -15,7 +15,7 @@ namespace {
 /// Cosine between the normals of two loops from which they may be the two borders of a wall.
 constexpr double opposite_normals = -0.8;
 
-/// Share of the diagonal within which a cap is plane: that of rounding.
+/// Share of the diagonal by which vertices of a plane cap may be off its plane: the rounding of doubles.
 constexpr double plane_share = 1e-9;
 
 /// Sums over the segments of a loop, relative to `origin`.

@@ -114,8 +114,7 @@ std::vector<Sector> needle_sectors(const Connectivity& surface, double scale) {
       closed = last == h;
       if (!closed) s.angle += corner_angle(surface, last), ++s.triangles;
     }
-    // of a sector that is folded the angle between its edges counts: a triangle that leaves out the fold has
-    // it
+    // between the edges of a folded sector: a result without the fold has this angle there
     if (bounded && is_feature(surface, prev(last)))
       s.angle = std::min(s.angle, angle_between(surface, h, last));
     // a sector is found from its first edge, a whole one from its smallest half-edge

@@ -85,8 +85,8 @@ std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector
 
 namespace {
 
-/// Returns the component of a normal along that of the nearest part of the reference. Where sheets touch,
-/// back to back, either is as near: then the largest.
+/// Returns the component of `normal` along the normal of the nearest triangle of the reference; where sheets
+/// touch back to back, the largest among those almost as near.
 double towards_nearest(Vec3 normal, Vec3 p, double edge, const Mesh& reference, const Bvh& tree) {
   constexpr double as_near = 0.1;  // of an edge
   const auto hit = tree.nearest(p);

@@ -19,7 +19,8 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
-constexpr double near_cosine = 0.8;            ///< of normals that do not turn by as much
+constexpr double near_cosine =
+    0.8;  ///< of normals that turn by less than continue_turn, whose cosine is 0.71
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains

@@ -182,10 +182,10 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
       const int a = v[i], b = v[(i + 1) % 3];
       const double length = norm(p[b] - p[a]) / h;
       if (a > b || rules::samples_per_edge * length <= 1) continue;
-      // where a long edge is one of many across a bend, the bend counts on the scale of the size
-      const double edges = rules::samples_per_flat_edge * length > 1 ? length * h * h / norm(area) : 1;
+      // triangles of this height per size, where edges are long: a bend spread over them counts as one
+      const double across = rules::samples_per_flat_edge * length > 1 ? length * h * h / norm(area) : 1;
       auto bends_at = [&](int w) {
-        return !(angle(area, reference.normals[w]) * std::max(1.0, edges) < rules::bent);
+        return !(angle(area, reference.normals[w]) * std::max(1.0, across) < rules::bent);
       };
       const double rate = bends_at(a) || bends_at(b) ? rules::samples_per_edge : rules::samples_per_flat_edge;
       const int pieces = (int)std::min(rules::most_samples, std::ceil(rate * length));

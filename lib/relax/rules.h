@@ -3,6 +3,7 @@
 // field, shapes are shape energies (state.h: 1 is equilateral, 4 has kappa 0.6 or so), cosines compare
 // normals.
 #pragma once
+#include <numbers>
 
 namespace meshpipe::rules {
 
@@ -91,7 +92,7 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;     // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;    // of the size; a half is the limit of mcheck
 constexpr double nearly_far = 0.7;   // of the bearable: from there the farthest place is looked for
-constexpr double first_step = 0.25;  // of an edge, on that way
+constexpr double first_step = 0.25;  // of the longest edge: of the climb to it
 constexpr double last_step = 0.05;   // of the first step
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double refinement = 0.8;                          // of the size, each round
@@ -102,16 +103,16 @@ constexpr double growth = 1.6,
 constexpr int fault_rounds = 24, useless_rounds = 6;
 
 // missed features (missed_features.cc)
-constexpr double bent = 0.1734;                // radians: from 10 degrees on edges have samples
-constexpr double samples_per_edge = 3;         // of the mesh: one is half way at most
-constexpr double samples_per_flat_edge = 0.5;  // none on edges up to twice as long
-constexpr double most_samples = 50;            // of an edge
-constexpr int guess_rounds = 4;                // sweeps over the reference, to guess which triangles are near
-constexpr double missed = 0.1;                 // length: the distance from which features are reached
-constexpr double farthest_share = 0.7;         // of the largest distance: those are reached first
-constexpr double larger_size = 1.2;            // over the mean: from here the distance is seen against it
-constexpr double retry = 1.2;                  // of the wanted distance: from where half way is worth it
-constexpr double along_border = 0.1;           // of the distance: a sample that slides less is on no border
+constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples
+constexpr double samples_per_edge = 3;                // of the mesh: one is half way at most
+constexpr double samples_per_flat_edge = 0.5;         // none on edges up to twice as long
+constexpr double most_samples = 50;                   // of an edge
+constexpr int guess_rounds = 4;         // sweeps over the reference, to guess which triangles are near
+constexpr double missed = 0.1;          // length: the distance from which features are reached
+constexpr double farthest_share = 0.7;  // of the largest distance: those are reached first
+constexpr double larger_size = 1.2;     // over the mean: from here the distance is seen against it
+constexpr double retry = 1.2;           // of the wanted distance: from where half way is worth it
+constexpr double along_border = 0.1;    // of the distance: a sample that slides less is on no border
 constexpr int features = 4, triangles_per_feature = 800;  // the larger: more cost the mesh its regularity
 constexpr double spoils = 1.8e-3;      // of the objective: one triangle with 0.9 of the quality wanted
 constexpr double spoils_farther = 5;   // of `missed`: up to where distance excuses more

@@ -29,7 +29,7 @@ constexpr double least_bend = 1e-3;  ///< radians: edges across flatter ones har
 constexpr double flat_triangle = 1e-7;  ///< height over length, below which rounding decides on the normal
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
 constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
-constexpr double least_piece = 1e-5;    ///< of an edge
+constexpr double least_piece = 1e-4;    ///< of an edge: bounds the measurements of one
 
 double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
 
@@ -168,7 +168,8 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
 }
 
 /// Returns the unit vector from a line into the region of h, across it. Needles far narrower than the strip
-/// may be folded along it: the next triangle tells.
+/// may be folded along it: then the next
+/// triangle that is wide enough gives the direction.
 Vec3 Measure::inward(int h, double width) const {
   int g = h;
   for (int i = 0; i < most_needles && norm(surface_.area_vector(g / 3)) < needle * width * surface_.length(g);

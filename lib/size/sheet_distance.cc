@@ -24,8 +24,8 @@ constexpr int least_hits = 5;  ///< of 13 rays: with fewer nothing faces the poi
 constexpr double rank = 0.25;
 const double opposed =
     std::cos(120 * degree);  ///< largest cosine between the normals of sheets that face each other
-/// Between those of sheets that are parallel. Others meet somewhere: if the ball between them is smaller than
-/// this share of the edges at a crease, or of a rim's radius, that is a fold which no single edge shows.
+/// Largest cosine between normals of parallel sheets. Others meet: where the ball between them is below
+/// `least_slanted` of the longest edge or of the rim's radius, it lies in a fold that no single edge shows.
 const double parallel = std::cos(150 * degree);
 constexpr double least_slanted = 0.5;
 const double smooth = std::cos(40 * degree);  ///< least cosine between normals of one smooth surface
@@ -175,8 +175,10 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
     std::nth_element(found, at, found + n);
     return *at;
   };
-  const double radius = nth(rank).first, cosine = nth(rank).second, third = nth(1 - rank).first;
-  return {std::min(radius, none_), n > per_ring && third<consensus * radius, cosine> parallel};
+  const auto [radius, cosine] = nth(rank);
+  const bool agree = n > per_ring && nth(1 - rank).first < consensus * radius;
+  const bool slanted = cosine > parallel;
+  return {std::min(radius, none_), agree, slanted};
 }
 
 SheetDistance::Ball SheetDistance::ball_on_face(int t, Vec3 p) const {
@@ -238,7 +240,8 @@ void SheetDistance::measure() {
     }
 }
 
-/// Next to open ends rays find nothing, or too little: what is measured behind them holds up to the rim.
+/// In components with open ends, gives vertices at which rays find nothing the radius of the nearest that has
+/// one, up to `opening` radii away: rays leave through the opening.
 void SheetDistance::close_openings(const Connectivity& c) {
   std::vector<int> component;
   std::vector<char> open(components(c.opposite, component), 0);
@@ -300,7 +303,8 @@ double SheetDistance::angle_on_side(const Connectivity& c, int h) const {
   return (side_ == inside) != inverted ? behind : 360 - behind;
 }
 
-/// Flags the vertices within an edge of a fold at which the ball touches the other side of the fold.
+/// Flags the vertices within `reach` of a fold (its longest edge, or the radius of its rim) at which the ball
+/// touches the other side of the fold.
 void SheetDistance::leave_sides(const Connectivity& c, const std::vector<char>& fold,
                                 std::vector<double> reach) {
   std::vector<double> way(c.n_vertices(), std::numeric_limits<double>::infinity());
@@ -318,8 +322,8 @@ void SheetDistance::leave_sides(const Connectivity& c, const std::vector<char>& 
   });
 }
 
-/// Replaces what is measured on folds, and next to them what is below half an edge: the mean of the neighbors
-/// farther away, or `none` where there are none.
+/// Replaces the radii on folds, and those next to them that leave_sides flags, by the mean of the neighbors
+/// farther away, or by `none` where there are none.
 void SheetDistance::leave_folds(const Connectivity& c) {
   std::vector<char> fold(c.n_vertices(), 0);
   for (int h = 0; h < c.n_half_edges(); ++h) {

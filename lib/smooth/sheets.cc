@@ -161,8 +161,9 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   const Solids before = find_solids(joined);
   for (int i = 0; i < steps; ++i)
     for (double share : {forward, backward}) step(net, start, r.within, share, joined.points);
-  for (int i = 0, moved = 1; i < rounds && moved > 0;
-       ++i) {  // what is moved back is volume that others have to give
+  // moving vertices back takes volume again, which others then have to give
+  int moved = 1;
+  for (int i = 0; i < rounds && moved > 0; ++i) {
     keep_volumes(joined, before, start, net.held, r.within);
     r.moved_back += moved = separate(joined, start, net.held);
   }

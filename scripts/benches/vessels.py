@@ -21,7 +21,6 @@ name is missing, a flat cap is farther from its plane than 1e-9, or kappa at a r
   --json FILE              the same figures as JSON
 """
 import json
-import json
 import math
 import os
 import subprocess
@@ -102,13 +101,13 @@ def caps_of(path, flat):
         for i in range(3):
             patches_at.setdefault(t[i], set()).add(t[3])
             uses.setdefault(tuple(sorted((t[i], t[(i + 1) % 3]))), []).append(names.get(t[3], ""))
-    due = {"wall", *flat} | {name for name in of if name.endswith("_extension") and name[:-10] in flat}
+    expected = {"wall", *flat} | {name for name in of if name.endswith("_extension") and name[:-10] in flat}
     at_rims = [t for t in triangles if any(len(patches_at[v]) > 1 for v in t[:3])]
     around = {name: sum(name in u and u != [name, name] for u in uses.values()) for name in flat if name in of}
     lo, hi = ([f(p[k] for p in points) for k in range(3)] for f in (min, max))
     return {
         "triangles": len(triangles), "patches": len(of),
-        "names": set(of) == due and all(len(u) == 2 for u in uses.values()),
+        "names": set(of) == expected and all(len(u) == 2 for u in uses.values()),
         "planarity": max((planarity(points, of[n]) for n in flat if flat[n] and n in of), default=0) / math.dist(lo, hi),
         "kappa": min((kappa(*(points[v] for v in t[:3])) for t in at_rims), default=1),
         "around": min(around.values(), default=0),

@@ -155,7 +155,7 @@ TEST(sheet_distance, RadiusOfTubesAlsoWhereTheyMeet) {
   }
 }
 
-//    Tubes of three to six sides, as thin branches of coarse trees are: no fold is their radius, no opening
+//    Tubes of a few sides, as thin branches of coarse trees are: no fold is their radius, no opening
 //    their end. The branches' radii are 0.095 to 0.5; the circle in a triangle has half of that around it.
 TEST(sheet_distance, RadiusOfCoarseTubesIsThatOfASection) {
   for (int around : {4, 5, 6, 8}) {
