@@ -64,12 +64,15 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
                                  {"moved", r.moved},
                                  {"extended", r.extended},
                                  {"cap_triangles", r.cap},
-                                 {"flat", r.flat}});
+                                 {"flat", r.flat},
+                                 {"why_not", r.why_not}});
     std::string line = e.name + ": at " + shown(e.center) + ", radius " + shown(e.radius);
     if (r.trimmed > 0) line += ", cut back by " + shown(r.trimmed);
     if (r.moved > 0) line += ", moved by " + shown(r.moved);
     if (r.extended > 0) line += ", extended by " + shown(r.extended);
+    if (r.stub > 0) line += ", stub of " + std::to_string(r.stub) + " triangles";
     if (r.cap > 0) line += r.flat ? ", flat cap" : ", cap out of plane by " + shown(e.planarity);
+    if (!r.why_not.empty()) line += ": " + r.why_not;
     if (r.cap > 0 && !r.flat)
       io.say(line);
     else

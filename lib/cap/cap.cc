@@ -31,14 +31,6 @@ constexpr const char* fill_holes = "close it with mclean --fill-holes";
 
 using Planes = std::vector<std::optional<Plane>>;
 
-/// Says where the rim of an end crosses itself as seen along its normal; empty if it does not.
-std::string crossing_at(const Mesh& mesh, const End& end) {
-  const std::optional<Vec3> place = crossing_of(mesh, end);
-  if (!place) return "";
-  return std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
-         ", seen along its normal, near " + shown(*place);
-}
-
 /// Runs the steps of treat_ends on one surface.
 struct Treatment {
   Surface& surface;
@@ -88,7 +80,7 @@ struct Treatment {
   }
 
   /// Cuts off what of the ends flagged is not below all of their rims, and makes them plane. Where that would
-  /// remove a branch they stay as they are, for a cap that is not plane.
+  /// remove a branch they stay as they are.
   void cut_level(const std::vector<char>& flagged) {
     Planes planes(n());
     std::vector<double> depth(n(), 0);
@@ -103,21 +95,10 @@ struct Treatment {
     }
     std::vector<std::string> why(n());
     cut_possible_ends(surface, ends, planes, why);
-    for (int i = 0; i < n(); ++i)
-      if (options.cap && !extends(i))
-        why[i].clear();
-      else if (!why[i].empty())
-        why[i] = "its rim, which is " + shown(ends[i].planarity) +
-                 " out of its plane, cannot be made plane: " + why[i];
-    const auto first = std::find_if(why.begin(), why.end(), [](auto& w) { return !w.empty(); });
-    const bool extended = first != why.end() && extends((int)(first - why.begin()));
-    refuse_all(ends, why,
-               extended      ? "try --trim, or do not extend it"
-               : options.cap ? fill_holes
-                             : "try --cap, which closes it by a cap that is not plane",
-               options.cap ? &options.kept : nullptr);
-    for (int i = 0; i < n(); ++i)
+    for (int i = 0; i < n(); ++i) {
+      reports[i].why_not = why[i];
       if (planes[i]) reports[i].trimmed = depth[i];
+    }
     split_chords(surface, ends);
     const std::vector<char> failed = flatten(planes);
     for (int i = 0; i < n(); ++i)
@@ -173,6 +154,33 @@ struct Treatment {
     for (int i = 0; i < n(); ++i) like[i] = at[ends[i].rims[0][0]];
   }
 
+  /// Ends the rims that are not plane yet by stubs. Those for which there is no space stay as they are, for a
+  /// cap that is not plane; that is refused where they are to be extended, or are not to be capped.
+  void raise() {
+    std::vector<char> flagged(n());
+    for (int i = 0; i < n(); ++i) flagged[i] = !reports[i].why_not.empty();
+    const std::vector<std::string> obstacle = raise_ends(surface, ends, flagged, growth, owner);
+    for (std::size_t t = 0; t < owner.size(); ++t)
+      if (owner[t] >= 0) ++reports[owner[t]].stub;
+    std::vector<std::string> why(n());
+    for (int i = 0; i < n(); ++i) {
+      if (!flagged[i]) continue;
+      if (obstacle[i].empty()) {
+        reports[i].why_not.clear();
+        continue;
+      }
+      reports[i].why_not += ", and " + obstacle[i];
+      if (!options.cap || extends(i))
+        why[i] = "its rim, which is " + shown(ends[i].planarity) +
+                 " out of its plane, cannot be made plane: " + reports[i].why_not;
+    }
+    refuse_all(ends, why,
+               options.cap ? "try --trim, or do not extend it"
+                           : "try --cap, which closes it by a cap that is not plane",
+               options.cap ? &options.kept : nullptr);
+    measure_all();
+  }
+
   void extend() {
     for (int i = 0; i < n(); ++i) {
       if (!extends(i)) continue;
@@ -180,10 +188,8 @@ struct Treatment {
       reports[i].extension = extend_end(surface, ends[i], reports[i].extended, growth);
       owner.resize(surface.tris.size(), i);
     }
-    std::vector<char> flagged(surface.tris.size(), 0);
-    for (std::size_t t = 0; t < owner.size(); ++t) flagged[t] = owner[t] >= 0;
     std::vector<std::string> why(n());
-    for (const Collision& c : collisions(surface, flagged)) {
+    for (const Collision& c : collisions_of_new(surface, owner)) {
       const int i = owner[c.triangle], j = owner[c.other];
       if (why[i].empty())
         why[i] = "its extension meets " +
@@ -261,6 +267,7 @@ struct Treatment {
     for (EndReport& r : reports)
       if (r.extension) r.extension_patch = next++;
     std::size_t t = before;
+    for (const EndReport& r : reports) t += (std::size_t)r.stub;  // their patch is the wall's
     for (const EndReport& r : reports)
       for (int k = 0; k < r.extension; ++k) patch[t++] = r.extension_patch;
     for (const EndReport& r : reports)
@@ -272,7 +279,8 @@ struct Treatment {
   void mark_borders(int first) {
     const auto& patch = surface.face.get<int>("patch");
     auto& model = surface.face.get<std::uint8_t>("model");
-    for (std::size_t t = owner.size() - added(); t < owner.size(); ++t) model[t] = 0;
+    for (std::size_t t = 0; t < owner.size(); ++t)
+      if (owner[t] >= 0) model[t] = 0;
     const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
     for (int h = 0; h < (int)opposite.size(); ++h) {
       const int g = opposite[h];
@@ -280,11 +288,6 @@ struct Treatment {
       model[h / 3] |= (std::uint8_t)(1 << h % 3);
       model[g / 3] |= (std::uint8_t)(1 << g % 3);
     }
-  }
-  std::size_t added() const {
-    std::size_t sum = 0;
-    for (const EndReport& r : reports) sum += (std::size_t)(r.extension + r.cap);
-    return sum;
   }
 };
 
@@ -298,6 +301,8 @@ std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, cons
   work.make_plane(work.trim());
   work.find_faces_like();
   work.owner.assign(surface.tris.size(), -1);
+  work.growth.first = surface.points.size();
+  work.raise();
   if (options.extend > 0) work.extend();
   if (options.cap) work.cap();
   work.finish();

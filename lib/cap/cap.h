@@ -70,16 +70,18 @@ struct EndReport {
   double trimmed = 0;                      ///< length cut off along its axis
   double moved = 0;                        ///< farthest that a vertex was moved to make the rim planar
   double extended = 0;                     ///< length of the extension
-  int extension = 0, cap = 0;              ///< triangles
+  int stub = 0, extension = 0, cap = 0;    ///< triangles
   int extension_patch = 0, cap_patch = 0;  ///< new patches; 0: none
   bool flat = false;                       ///< whether the cap is plane
+  std::string why_not;                     ///< why the rim could not be made plane, if that was asked for
 };
 
-/// Trims, flattens, extends and caps the ends, as far as asked. Extensions and caps are new patches; their
-/// borders are model edges (face column `model`). Measures of the ends follow. Face column `patch` is added
-/// if missing. Throws: NotAdmissible naming the end and the place where a rim crosses itself, where trimming
-/// would remove a branch, and where an extension or a cap would meet the surface; with all ends that cannot
-/// be trimmed or extended.
+/// Trims, flattens, extends and caps the ends, as far as asked; rims that can be neither moved into a plane
+/// nor cut become stubs of the wall. Extensions and caps are new patches; their borders are model edges (face
+/// column `model`). Measures of the ends follow. Face column `patch` is added if missing. Throws:
+/// NotAdmissible naming the end and the place where a rim crosses itself, where trimming would remove a
+/// branch, and where an extension or a cap would meet the surface; with all ends that cannot be trimmed or
+/// extended.
 std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, const CapOptions& options);
 
 }  // namespace meshpipe

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 #include "lib/cap/steps.h"
 #include "lib/core/cdt.h"
@@ -13,6 +14,9 @@ namespace {
 constexpr double share_of_transition = 0.5, longest_transition = 2;
 /// Rings of an extension at most.
 constexpr int most_rings = 1000;
+/// Radii that a stub is high at least; and rounds of smoothing of its border.
+constexpr double least_stub = 0.25;
+constexpr int smoothings = 10;
 
 double smoothstep(double x) { return x >= 1 ? 1 : x * x * (3 - 2 * x); }
 
@@ -73,6 +77,50 @@ void join_rings(Mesh& mesh, const std::vector<int>& from, const std::vector<doub
   }
 }
 
+/// Adds rings to a rim, the r-th with its vertices at place(k, r) for each of the sections. The last one is
+/// the rim then.
+template <class Place>
+void add_rings(Mesh& mesh, std::vector<int>& rim, const Sections& s, int rings, Growth& growth, Place place) {
+  const int m = (int)s.rim.size();
+  std::vector<double> share = s.share;
+  for (int r = 1; r <= rings; ++r) {
+    std::vector<int> ring;
+    for (int k = 0; k < m; ++k) {
+      ring.push_back((int)mesh.points.size());
+      growth.add_like(s.before[k]);
+      mesh.points.push_back(place(k, r));
+    }
+    join_rings(mesh, rim, share, ring);
+    share.resize(m + 1);
+    for (int k = 0; k <= m; ++k) share[k] = (double)k / m;
+    rim = std::move(ring);
+  }
+}
+
+/// Averages the points of a ring with their neighbors, its area kept.
+void smooth_ring(std::vector<Vec3>& ring) {
+  const std::size_t n = ring.size();
+  const Vec3 middle = (1.0 / n) * std::accumulate(ring.begin(), ring.end(), Vec3{});
+  auto area = [&] {
+    Vec3 sum;
+    for (std::size_t k = 0; k < n; ++k) sum = sum + cross(ring[k] - middle, ring[(k + 1) % n] - middle);
+    return norm(sum);
+  };
+  const double before = area();
+  for (int round = 0; round < smoothings; ++round) {
+    std::vector<Vec3> to;
+    for (std::size_t k = 0; k < n; ++k)
+      to.push_back(0.5 * ring[k] + 0.25 * (ring[(k + n - 1) % n] + ring[(k + 1) % n]));
+    ring = std::move(to);
+  }
+  const double grow = std::sqrt(before / area());
+  for (Vec3& p : ring) p = middle + grow * (p - middle);
+}
+
+int rings_of(double length, double edge) {
+  return std::clamp((int)std::lround(length / edge), 2, most_rings);
+}
+
 /// Distance from an edge of a rim, in lengths of it, of the vertex inside the cap opposite the edge, and the
 /// least one from anything else. Without such vertices a cap would have triangles as thin as the arc over a
 /// few edges of the rim is high, which are features to be removed.
@@ -120,7 +168,7 @@ void add_plane_triangles(Mesh& mesh, const End& end, Growth& growth) {
     const Vec3 a = mesh.points[vertex[e.a]], b = mesh.points[vertex[e.b]];
     const Vec2 p = cdt.points[v];
     vertex.push_back((int)mesh.points.size());
-    growth.vertex_like.push_back(vertex[e.a]);
+    growth.add_like(vertex[e.a]);
     mesh.points.push_back(flat.origin + p.x * flat.right + p.y * flat.up +
                           0.5 * (plane.height(a) + plane.height(b)) * plane.normal);
   }
@@ -134,23 +182,36 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth) {
   const double transition = std::min(share_of_transition * length, longest_transition * end.radius);
   for (std::vector<int>& rim : end.rims) {
     const Sections s = sections_of(mesh, rim, end.center, end.normal);
-    const int m = (int)s.rim.size();
-    const double edge = norm(s.circle[1] - s.circle[0]);
-    const int rings = std::clamp((int)std::lround(length / edge), 2, most_rings);
-    std::vector<double> share = s.share;
-    for (int r = 1; r <= rings; ++r) {
-      const double z = length * r / rings, round = smoothstep(z / transition);
-      std::vector<int> ring;
-      for (int k = 0; k < m; ++k) {
-        ring.push_back((int)mesh.points.size());
-        growth.vertex_like.push_back(s.before[k]);
-        mesh.points.push_back(lerp(s.rim[k], s.circle[k], round) + z * end.normal);
-      }
-      join_rings(mesh, rim, share, ring);
-      share.resize(m + 1);
-      for (int k = 0; k <= m; ++k) share[k] = (double)k / m;
-      rim = std::move(ring);
+    const int rings = rings_of(length, norm(s.circle[1] - s.circle[0]));
+    add_rings(mesh, rim, s, rings, growth, [&](int k, int r) {
+      const double z = length * r / rings;
+      return lerp(s.rim[k], s.circle[k], smoothstep(z / transition)) + z * end.normal;
+    });
+  }
+  return (int)(mesh.tris.size() - before);
+}
+
+int raise_end(Mesh& mesh, End& end, Growth& growth) {
+  const std::size_t before = mesh.tris.size();
+  Plane plane{end.center, end.normal};
+  double low = 0, high = 0;
+  for (const std::vector<int>& rim : end.rims)
+    for (int v : rim) {
+      low = std::min(low, plane.height(mesh.points[v]));
+      high = std::max(high, plane.height(mesh.points[v]));
     }
+  high += least_stub * end.radius;
+  plane.point = plane.point + high * plane.normal;
+  for (std::vector<int>& rim : end.rims) {
+    const Sections s = sections_of(mesh, rim, end.center, end.normal);
+    std::vector<Vec3> last;
+    for (Vec3 p : s.rim) last.push_back(p - plane.height(p) * plane.normal);
+    smooth_ring(last);
+    for (Vec3& p : last) p = p - plane.height(p) * plane.normal;  // against rounding
+    const int rings = rings_of(high - low, norm(s.circle[1] - s.circle[0]));
+    add_rings(mesh, rim, s, rings, growth, [&](int k, int r) {
+      return r == rings ? last[k] : lerp(s.rim[k], last[k], (double)r / rings);
+    });
   }
   return (int)(mesh.tris.size() - before);
 }

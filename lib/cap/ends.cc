@@ -276,4 +276,11 @@ std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end) {
   return lerp(mesh.points[s.from], mesh.points[s.to], 0.5);
 }
 
+std::string crossing_at(const Mesh& mesh, const End& end) {
+  const std::optional<Vec3> place = crossing_of(mesh, end);
+  if (!place) return "";
+  return std::string(end.rims.size() > 1 ? "its rims cross" : "its rim crosses itself") +
+         ", seen along its normal, near " + shown(*place);
+}
+
 }  // namespace meshpipe

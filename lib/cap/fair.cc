@@ -75,7 +75,7 @@ int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth) {
   const int first = (int)mesh.points.size() - n;
   for (std::size_t v = rim.size(); v < cap.points.size(); ++v) {
     mesh.points.push_back(cap.points[v]);
-    growth.vertex_like.push_back(rim[0]);
+    growth.add_like(rim[0]);
   }
   for (const Tri& t : cap.tris) {
     Tri added = t;

@@ -196,6 +196,12 @@ std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& fla
   return found;
 }
 
+std::vector<Collision> collisions_of_new(const Mesh& mesh, const std::vector<int>& owner) {
+  std::vector<char> flagged;
+  for (int i : owner) flagged.push_back(i >= 0);
+  return collisions(mesh, flagged);
+}
+
 void split_chords(Surface& surface, const std::vector<End>& ends) {
   std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
   std::vector<char> rim(surface.points.size(), 0), mark(3 * surface.tris.size(), 0);

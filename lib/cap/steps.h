@@ -35,6 +35,8 @@ void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& wh
 
 /// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end);
+/// Says so; empty if they do not.
+std::string crossing_at(const Mesh& mesh, const End& end);
 
 /// A triangle of interest that meets another one, and where.
 struct Collision {
@@ -43,6 +45,9 @@ struct Collision {
 };
 /// Returns the pairs of intersecting triangles at least one of which is flagged.
 std::vector<Collision> collisions(const Mesh& mesh, const std::vector<char>& flagged);
+
+/// The same for the triangles that were made for an end: owner >= 0.
+std::vector<Collision> collisions_of_new(const Mesh& mesh, const std::vector<int>& owner);
 
 /// Splits the edges inside the surface that join two vertices of rims, and moves their middles towards the
 /// wall: what lies behind such an edge would be flat in a plane rim, and a cap would touch it or have it too.
@@ -71,8 +76,17 @@ std::vector<double> flatten_ends(Mesh& mesh, const std::vector<End>& ends,
 
 /// What has been added to a mesh, for its columns.
 struct Growth {
-  std::vector<int> vertex_like;  ///< per new vertex: the one whose data it copies
+  std::size_t first = 0;         ///< vertices before
+  std::vector<int> vertex_like;  ///< per new vertex: the earlier one whose data it copies
+  void add_like(int v) { vertex_like.push_back((std::size_t)v < first ? v : vertex_like[v - first]); }
 };
+/// Raises the rims of an end to a plane above them, by walls on which their notches are smoothed: a stub,
+/// such as is left of a branch. The rims are then the borders of that. Returns the number of triangles.
+int raise_end(Mesh& mesh, End& end, Growth& growth);
+/// The same for the ends flagged, along their normals or a little off. Returns what is in the way where that
+/// is impossible. Triangles get `owner`, their end.
+std::vector<std::string> raise_ends(Mesh& mesh, std::vector<End>& ends, const std::vector<char>& flagged,
+                                    Growth& growth, std::vector<int>& owner);
 /// Extends the rims of an end by tubes that become circular; the rims are then the circles. Returns the
 /// number of triangles.
 int extend_end(Mesh& mesh, End& end, double length, Growth& growth);

@@ -150,20 +150,64 @@ TEST(cap, caps_a_wavy_rim_without_moving_it) {
   for (std::size_t v = 0; v < before.size(); ++v) EXPECT_TRUE(s.points[v] == before[v]);
 }
 
-TEST(cap, caps_a_hole_in_a_side_that_no_plane_closes) {
+// a tube with a hole in its side, half of the way around
+Surface pierced_tube() {
   Surface s = open_tube(4, 24);
-  std::erase_if(s.tris, [&](const Tri& t) {  // half of the way around
-    const Vec3 p = (1.0 / 3) * (s.points[t[0]] + s.points[t[1]] + s.points[t[2]]);
+  std::erase_if(s.tris, [&](const Tri& t) {
+    const Vec3 p = centroid(s, (int)(&t - s.tris.data()));
     return p.x > -0.05 && std::abs(p.z - 2) < 0.3 + 0.3 * p.x;
   });
   s.face.rows = s.tris.size();
+  return s;
+}
+
+TEST(cap, ends_a_hole_in_a_side_by_a_stub) {
+  for (const double extend : {0.0, 1.0}) {
+    Surface s = pierced_tube();
+    std::vector<double> height;
+    for (const Vec3& p : s.points) height.push_back(p.z);
+    s.vertex.set("height", height);
+    std::vector<End> ends = find_ends(s);
+    ASSERT_EQ(ends.size(), 3u);
+    CapOptions o;
+    o.flatten = o.cap = true;
+    o.extend = extend;
+    const std::vector<EndReport> r = treat_ends(s, ends, o);
+    expect_sound(s);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_TRUE(r[i].flat && r[i].why_not.empty());
+      EXPECT_LT(height_of_patch(s, r[i].cap_patch, ends[i].center, ends[i].normal), 1e-12);
+      EXPECT_EQ(r[i].stub > 0, std::abs(ends[i].normal.z) < 0.9);
+    }
+    // vertices of all that was added have data of the rim
+    for (const double h : s.vertex.get<double>("height")) EXPECT_TRUE(h >= 0 && h <= 4);
+  }
+}
+
+TEST(cap, caps_a_hole_without_space_for_a_stub) {
+  Surface s = pierced_tube();
+  const int n = (int)s.points.size(), m = (int)s.tris.size();
+  for (int v = 0; v < n; ++v) s.points.push_back(s.points[v] + Vec3{1.02, 0, 0});  // next to it
+  for (int t = 0; t < m; ++t) {
+    const auto [a, b, c] = s.tris[t];
+    s.tris.push_back({a + n, b + n, c + n});
+  }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
   std::vector<End> ends = find_ends(s);
-  ASSERT_EQ(ends.size(), 3u);
   CapOptions o;
   o.flatten = o.cap = true;
+  CapOptions without = o;
+  without.cap = false;
+  EXPECT_NE(why(s, without).find("cannot be made plane"), std::string::npos);
   const std::vector<EndReport> r = treat_ends(s, ends, o);
   expect_sound(s);
-  EXPECT_EQ(r[0].flat + r[1].flat + r[2].flat, 2);
+  int flat = 0;
+  for (const EndReport& e : r) {
+    flat += e.flat;
+    EXPECT_EQ(e.flat, e.why_not.empty()) << e.why_not;
+    EXPECT_EQ(e.flat, e.why_not.find("a stub there would meet the surface near") == std::string::npos);
+  }
+  EXPECT_EQ(flat, 5);
 }
 
 TEST(cap, trims_by_a_length) {
