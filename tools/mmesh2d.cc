@@ -7,10 +7,10 @@
 
 #include "formats/stream/line_tables.h"
 #include "formats/stream/plane_tables.h"
+#include "formats/stream/shards.h"
 #include "lib/core/number.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
-#include "lib/core/topology.h"
 #include "lib/size/size.h"
 #include "tools/common.h"
 #include "tools/report/chart_svg.h"
@@ -25,14 +25,6 @@ static std::vector<double> sizes_of(const Chart& chart, const std::vector<double
     h.push_back(size[v]);
   }
   return h;
-}
-
-// The vertices that the mesh has too, although they are on no line.
-static std::vector<char> kept_vertices(const Surface& surface, const std::vector<double>& size) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
-  std::vector<char> keep(surface.points.size(), 0);
-  for (const Peak& p : sharp_peaks({surface, opposite, model_of(surface)}, size)) keep[p.vertex] = 1;
-  return keep;
 }
 
 // A picture of each chart in a directory, which is made if it is not there.
@@ -76,7 +68,7 @@ int main(int argc, char** argv) {
     const int n = static_cast<int>(charts.size());
     std::vector<PlaneMesh> meshes(n);
     const PartLines parts(lines, n);
-    const std::vector<char> keep = kept_vertices(stream.surface, size);
+    const std::vector<char> keep = kept_vertices(stream);
     parallel_for(n, [&](int part) {
       index_chart(charts[part]);
       meshes[part] =

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formats/stream/line_tables.h"
+#include "formats/stream/shards.h"
 #include "formats/stream/stages.h"
 #include "lib/core/topology.h"
 #include "lib/plan/plan.h"
@@ -40,7 +41,30 @@ void report_charts(Io& io, const ParamOptions& options, const std::vector<Chart>
                 "sigma1/sigma2 median %.3f, "
                 "p99 %.3f, smallest area %.2e",
                 n_parts, n_parts - n_before, repaired, other, median, p99, smallest);
-  io.say(text);
+  std::string line = text;
+  const auto left = std::count_if(charts.begin(), charts.end(), [](const Chart& c) { return c.uv.empty(); });
+  if (left > 0) line += "; " + std::to_string(left) + " left to --resume";
+  io.say(line);
+}
+
+/// Returns the maps that the stream has, as map_surface takes them, and forgets who made them.
+/// Throws: NotAdmissible if that was not this program with these options.
+std::vector<Chart> known_charts(const Io& io, Stream& stream, int n_parts) {
+  const Table& rows = stream.need("chart_vertex", "mparam");
+  const Provenance made = stream.history.empty() ? Provenance{} : stream.history.back();
+  if (made.program != io.program || made.arguments != io.arguments)
+    throw NotAdmissible("--resume: the maps were made with options '" + made.arguments + "', not '" +
+                        io.arguments + "'");
+  stream.history.pop_back();
+  std::vector<Chart> charts(n_parts);
+  const auto &part = rows.get<int>("part"), &vertex = rows.get<int>("vertex");
+  const auto &u = rows.get<double>("u"), &v = rows.get<double>("v");
+  for (std::size_t i = 0; i < rows.rows; ++i) {
+    if (part[i] < 0 || part[i] >= n_parts) continue;  // of other parts than there are
+    charts[part[i]].mesh.vertex.push_back(vertex[i]);
+    charts[part[i]].uv.push_back({u[i], v[i]});
+  }
+  return charts;
 }
 
 }  // namespace
@@ -48,6 +72,7 @@ void report_charts(Io& io, const ParamOptions& options, const std::vector<Chart>
 int main(int argc, char** argv) {
   ParamOptions options;
   std::string svg;
+  bool resume = false;
   auto add_options = [&](CLI::App& app) {
     auto name = [&]<class T>(const char* option, T& value, std::map<std::string, T> names, const char* help) {
       std::vector<std::string> words;
@@ -72,6 +97,9 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app.add_flag("--strict", options.strict,
                  "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
+    app.add_flag("--resume", resume,
+                 "keep the maps that mshard --join has added, and make only those that are missing")
+        ->group("Reports");
     app.add_option("--svg", svg, "draw the charts, colored by area scale")
         ->type_name("FILE")
         ->group("Reports");
@@ -79,13 +107,25 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     if (!svg.empty()) io.expect_report("--svg", svg);
     Stream& stream = io.read();
+    if (is_shard(stream)) {
+      if (!svg.empty()) throw BadUsage("--svg draws all charts, but this is a shard");
+      if (options.map != MapKind::conformal && !options.strict)
+        throw NotAdmissible(
+            "before maps to the circle triangles are split, in the whole, but this is a shard");
+    }
     Surface& surface = stream.surface;
     if (!surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     const int n_before = count_parts(surface);
     std::size_t faces_before = surface.tris.size();
 
     std::vector<ParamReport> reports;
-    std::vector<Chart> charts = map_surface(surface, n_before, options, reports);
+    std::vector<Chart> made;
+    if (resume) {
+      reports = read_chart_columns(stream.need("part", "mpartition"));
+      made = known_charts(io, stream, n_before);
+    }
+    std::vector<Chart> charts =
+        map_surface(surface, n_before, options, reports, std::move(made), is_shard(stream));
     int n_parts = (int)charts.size();
     const Table* known = stream.find("part");
     Table parts = known && surface.tris.size() == faces_before && n_parts == n_before

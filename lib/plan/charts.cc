@@ -104,6 +104,17 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   }
 }
 
+/// Takes maps that are known, where they are of the part as it is and one-to-one.
+void take_known(std::vector<Chart> known, const std::vector<ParamReport>& reports, Charts& charts) {
+  for (std::size_t p = 0; p < std::min(known.size(), charts.chart.size()); ++p) {
+    const SubMesh& mesh = charts.chart[p].mesh;
+    if (known[p].mesh.vertex != mesh.vertex || count_inverted(mesh.tris, known[p].uv) > 0) continue;
+    charts.chart[p].uv = std::move(known[p].uv);
+    charts.report[p] = reports[p];
+    charts.waiting[p] = 0;
+  }
+}
+
 /// Maps the parts that wait for it, in parallel.
 void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
   parallel_for((int)charts.chart.size(), [&](int p) {
@@ -152,15 +163,32 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
          (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]));
 }
 
+/// Leaves parts that might be cut, by the reasons of cut_again, without a map.
+void leave_poor(bool strict, Charts& charts) {
+  for (std::size_t p = 0; p < charts.chart.size(); ++p) {
+    const ParamReport& r = charts.report[p];
+    const bool small = charts.chart[p].mesh.tris.size() < limit::limb_triangles;
+    if (charts.failure[p].empty() &&
+        (strict || (r.area_scale <= limit::area_scale && r.anisotropy_mean <= limit::mean_anisotropy &&
+                    (small || r.anisotropy_median <= limit::limb_anisotropy))))
+      continue;
+    charts.chart[p].uv.clear();
+    charts.report[p] = {};
+  }
+}
+
 }  // namespace
 
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
-                               std::vector<ParamReport>& reports) {
+                               std::vector<ParamReport>& reports, std::vector<Chart> known, bool alone) {
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   Charts charts;
   for (int round = 0;; ++round) {
     take_parts(surface, n_parts, charts);
+    if (round == 0) take_known(std::move(known), reports, charts);
     map_waiting(options, round, surface.tris.size(), charts);
+    if (alone) leave_poor(options.strict, charts);
+    if (alone) break;
     const bool may_cut = !options.strict && round < limit::most_rounds;
     bool again = false;
     for (int p = 0, n = n_parts; p < n; ++p) {

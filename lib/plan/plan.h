@@ -62,12 +62,14 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<int>* opposite = nullptr);
 
 /// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane, charts in parallel. A part
-/// whose map fails, or is worse than lib/partition/thresholds.h allows, is cut, and its pieces are mapped in
-/// its place: along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face
-/// column `part`; with options.strict there are none. Before circle maps, triangles with two edges on the
-/// longest loop are split (lib/param/ears.h). Returns the charts, with one row of `reports` per part. Throws
-/// GoalMissed if a part has no one-to-one map.
+/// whose map fails, or is worse than lib/partition/thresholds.h allows, is cut, and its pieces are mapped:
+/// along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face column
+/// `part`; with options.strict there are none. Before circle maps, triangles with two edges on the longest
+/// loop are split (lib/param/ears.h). `alone`: such parts stay without a map; `known`: maps that were made
+/// so, of vertices mesh.vertex, with their rows of `reports`. Returns the charts, with one row of `reports`
+/// per part. Throws GoalMissed if a part has no one-to-one map.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
-                               std::vector<ParamReport>& reports);
+                               std::vector<ParamReport>& reports, std::vector<Chart> known = {},
+                               bool alone = false);
 
 }  // namespace meshpipe

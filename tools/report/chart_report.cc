@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lib/core/error.h"
+
 namespace meshpipe {
 namespace {
 
@@ -51,6 +53,29 @@ void add_chart_columns(Table& parts, const std::vector<ParamReport>& reports) {
   add.template operator()<double>("anisotropy_max", [](auto& r) { return r.anisotropy_max; });
   add.template operator()<double>("area_scale", [](auto& r) { return r.area_scale; });
   add.template operator()<double>("smallest_area", [](auto& r) { return r.smallest_area; });
+}
+
+std::vector<ParamReport> read_chart_columns(const Table& parts) {
+  std::vector<ParamReport> reports(parts.rows);
+  if (!parts.has("map")) return reports;
+  for (std::size_t p = 0; p < parts.rows; ++p) {
+    ParamReport& r = reports[p];
+    const int map = parts.get<int>("map")[p], form = parts.get<int>("form")[p];
+    if (map < 0 || map > 2 || form < 0 || form > 2)
+      throw BadInput("part " + std::to_string(p) + " has map " + std::to_string(map) + " of form " +
+                     std::to_string(form) + ", expected 0 to 2");
+    r.used = static_cast<MapKind>(map);
+    r.form = static_cast<ConformalForm>(form);
+    r.bend = parts.get<double>("bend")[p];
+    r.flips_before = parts.get<int>("flips_before")[p];
+    r.flips_after = parts.get<int>("flips_after")[p];
+    r.anisotropy_median = parts.get<double>("anisotropy_median")[p];
+    r.anisotropy_p99 = parts.get<double>("anisotropy_p99")[p];
+    r.anisotropy_max = parts.get<double>("anisotropy_max")[p];
+    r.area_scale = parts.get<double>("area_scale")[p];
+    r.smallest_area = parts.get<double>("smallest_area")[p];
+  }
+  return reports;
 }
 
 std::string chart_line(const ParamReport& r, std::size_t triangles) {

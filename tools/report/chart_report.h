@@ -19,6 +19,10 @@ const std::map<std::string, ConformalForm>& form_names();
 /// smallest_area: one row per part, in the order of `reports`.
 void add_chart_columns(Table& parts, const std::vector<ParamReport>& reports);
 
+/// Returns what these columns hold; without them, as many empty reports. Throws: BadInput for a map or form
+/// that is none.
+std::vector<ParamReport> read_chart_columns(const Table& parts);
+
 /// Returns one line for -v.
 std::string chart_line(const ParamReport& report, std::size_t triangles);
 

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "formats/stream/shards.h"
+#include "formats/stream/stages.h"
+#include "lib/core/error.h"
+
+namespace meshpipe {
+namespace {
+
+/// What is left of a shard once it has been read.
+struct Taken {
+  ShardNumbers numbers;
+  std::vector<Table> tables;
+  const Table* find(std::string_view name) const {
+    for (const Table& t : tables)
+      if (t.name == name) return &t;
+    return nullptr;
+  }
+  const Table& table(std::string_view name) const {
+    if (const Table* found = find(name)) return *found;
+    throw BadInput("a shard has no table '" + std::string(name) + "', but others do");
+  }
+};
+
+/// The shard that has a part, and the part's number there.
+struct Home {
+  int shard = -1, part = -1;
+};
+
+/// Throws: BadInput if the shard is not what the numbers cut out of the whole.
+void expect_cut_from(const Stream& whole, const Stream& shard, const ShardNumbers& n) {
+  const Mesh &all = whole.surface, &some = shard.surface;
+  auto same = [&] {
+    if (some.tris.size() != n.faces.size() || some.points.size() != n.vertices.size()) return false;
+    for (std::size_t v = 0; v < some.points.size(); ++v)
+      if (norm(some.points[v] - all.points[n.vertices[v]]) != 0) return false;
+    for (std::size_t t = 0; t < some.tris.size(); ++t)
+      for (int i = 0; i < 3; ++i)
+        if (n.vertices[some.tris[t][i]] != all.tris[n.faces[t]][i]) return false;
+    const Table* points = shard.find("line_vertex");
+    return (points ? points->rows : 0) == n.line_points.size();
+  };
+  if (!same()) throw BadInput("the surface or the lines are not those of these parts of the whole");
+}
+
+/// Checks a shard, and takes the tables that its program has made.
+Taken take_shard(const Stream& whole, Stream shard, std::vector<Provenance>& made) {
+  const std::size_t n_parts = whole.need("part", "mpartition").rows, before = whole.history.size();
+  const std::vector<int>& parts = shard.need("shard", "mshard").get<int>("part");
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i] < (i ? parts[i - 1] + 1 : 0) || parts[i] >= static_cast<int>(n_parts))
+      throw BadInput("shard " + std::to_string(i) + " is part " + std::to_string(parts[i]) +
+                     ", but parts ascend and there are " + std::to_string(n_parts));
+  if (const std::size_t rows = shard.need("part", "mpartition").rows; rows != parts.size())
+    throw BadInput("there are " + std::to_string(rows) + " parts, but " + std::to_string(parts.size()) +
+                   " were cut out of the whole");
+  auto text = [](const Provenance& p) {
+    return p.program + ' ' + p.version + (p.arguments.empty() ? "" : ' ' + p.arguments);
+  };
+  std::vector<Provenance> added(
+      shard.history.begin() + static_cast<std::ptrdiff_t>(std::min(before, shard.history.size())),
+      shard.history.end());
+  if (added.empty()) throw BadInput("no program has run on the shard");
+  if (!made.empty() && (added.size() != made.size() || text(added.back()) != text(made.back())))
+    throw BadInput("it was made by '" + text(added.back()) + "', others by '" + text(made.back()) + "'");
+  made = std::move(added);
+  Taken taken{number_shard(whole, parts), {}};
+  expect_cut_from(whole, shard, taken.numbers);
+  for (const char* name : {"part", "chart_vertex", "chart_point", "chart_face"})
+    if (const Table* table = shard.find(name)) taken.tables.push_back(*table);
+  return taken;
+}
+
+/// Returns the first row of each part in a table sorted by part, and one more.
+std::vector<int> first_rows(const Table& table, std::size_t n_parts) {
+  const auto& part = table.get<int>("part");
+  if (!std::is_sorted(part.begin(), part.end()))
+    throw BadInput("rows of " + table.name + " are not in the order of parts");
+  std::vector<int> first;
+  for (int p = 0; p <= static_cast<int>(n_parts); ++p)
+    first.push_back(static_cast<int>(std::lower_bound(part.begin(), part.end(), p) - part.begin()));
+  return first;
+}
+
+/// Puts a table of the shards together, by parts of the whole.
+class Merged {
+ public:
+  Merged(const char* name, const std::vector<Taken>& taken, const std::vector<Home>& homes)
+      : name_(name), taken_(taken), homes_(homes) {
+    for (const Taken& t : taken) rows_.push_back(first_rows(t.table(name), t.numbers.parts.size()));
+    for (const Home& h : homes) first_.push_back(first_.back() + end(h) - begin(h));
+  }
+  int begin(const Home& h) const { return rows_[h.shard][h.part]; }
+  int end(const Home& h) const { return rows_[h.shard][h.part + 1]; }
+  /// Returns the number of a row of a part of the whole, by that in its shard.
+  int number(int part, int row) const { return first_[part] + row - begin(homes_[part]); }
+
+  /// Returns the table; `points`: the table of which columns a, b and c have rows.
+  Table table(const Merged* points = nullptr) const {
+    Table out{name_, 0, {}};
+    for (const Column& like : taken_[0].table(name_).columns)
+      std::visit(
+          [&]<class T>(const std::vector<T>&) {
+            std::vector<T> values;
+            values.reserve(first_.back());
+            for (int p = 0; p < static_cast<int>(homes_.size()); ++p) {
+              const Home& h = homes_[p];
+              const std::vector<T>& from = taken_[h.shard].table(name_).template get<T>(like.name);
+              const std::size_t start = values.size();
+              values.insert(values.end(), from.begin() + begin(h), from.begin() + end(h));
+              if constexpr (std::is_same_v<T, int>)
+                for (std::size_t i = start; i < values.size(); ++i)
+                  values[i] = of_whole(like.name, p, values[i], points);
+            }
+            out.set(like.name, std::move(values));
+          },
+          like.data);
+    return out;
+  }
+
+ private:
+  int of_whole(const std::string& column, int part, int row, const Merged* points) const {
+    const ShardNumbers& n = taken_[homes_[part].shard].numbers;
+    if (column == "part") return part;
+    if (row < 0) return row;
+    if (column == "vertex") return n.vertices[row];
+    if (column == "face") return n.faces[row];
+    if (column == "line_vertex") return n.line_points[row];
+    return points ? points->number(part, row) : row;
+  }
+  const char* name_;
+  const std::vector<Taken>& taken_;
+  const std::vector<Home>& homes_;
+  std::vector<std::vector<int>> rows_;  // per shard
+  std::vector<int> first_{0};           // per part of the whole
+};
+
+/// Returns the rows of table `part` as the shards have them.
+Table joined_parts(const std::vector<Taken>& taken, std::size_t n_parts) {
+  Table out{"part", n_parts, {}};
+  for (const Column& like : taken[0].table("part").columns)
+    std::visit(
+        [&]<class T>(const std::vector<T>&) {
+          std::vector<T> values(n_parts);
+          for (const Taken& t : taken) {
+            const std::vector<T>& from = t.table("part").get<T>(like.name);
+            for (std::size_t p = 0; p < from.size(); ++p) values[t.numbers.parts[p]] = from[p];
+          }
+          out.set(like.name, std::move(values));
+        },
+        like.data);
+  return out;
+}
+
+}  // namespace
+
+int join_shards(Stream& whole, const std::vector<std::string>& names,
+                const std::function<Stream(const std::string&)>& read) {
+  std::vector<Taken> taken;
+  std::vector<Home> homes(whole.need("part", "mpartition").rows);
+  std::vector<Provenance> made;
+  for (const std::string& name : names) {
+    Stream shard = read(name);
+    auto failed = [&](const std::exception& e) { return BadInput(name + ": " + e.what()); };
+    try {
+      taken.push_back(take_shard(whole, std::move(shard), made));
+    } catch (const BadInput& e) {
+      throw failed(e);
+    } catch (const NotAdmissible& e) {
+      throw failed(e);
+    }
+    const std::vector<int>& parts = taken.back().numbers.parts;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (homes[parts[i]].shard >= 0)
+        throw BadInput(name + ": part " + std::to_string(parts[i]) + " is in " +
+                       names[homes[parts[i]].shard] + ", too");
+      homes[parts[i]] = {static_cast<int>(taken.size()) - 1, static_cast<int>(i)};
+    }
+  }
+  for (std::size_t p = 0; p < homes.size(); ++p)
+    if (homes[p].shard < 0)
+      throw BadInput("part " + std::to_string(p) + " of " + std::to_string(homes.size()) + " is in no shard");
+  whole.history.insert(whole.history.end(), made.begin(), made.end());
+  if (taken[0].find("chart_point")) {
+    const Merged points("chart_point", taken, homes), faces("chart_face", taken, homes);
+    whole.set(points.table());
+    whole.set(faces.table(&points));
+    return 0;
+  }
+  const Merged charts("chart_vertex", taken, homes);
+  drop_downstream(whole, Stage::charts);
+  whole.set(joined_parts(taken, homes.size()));
+  whole.set(charts.table());
+  return static_cast<int>(std::count_if(homes.begin(), homes.end(),
+                                        [&](const Home& h) { return charts.begin(h) == charts.end(h); }));
+}
+
+}  // namespace meshpipe

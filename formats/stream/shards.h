@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shards of a stream: streams of some of its parts, on which mparam and mmesh2d work as on the whole.
+#pragma once
+#include "formats/stream.h"
+#include "lib/lines/lines.h"
+
+namespace meshpipe {
+
+/// Rows of the whole, by those of a shard; all but line points ascend. And the shard's lines.
+struct ShardNumbers {
+  std::vector<int> parts, faces, vertices, line_points;
+  Lines lines;
+};
+
+/// Returns whether the stream is a shard: table `shard` has the number in the whole of each of its parts.
+inline bool is_shard(const Stream& stream) { return stream.find("shard") != nullptr; }
+
+/// Flags per vertex those that the mesh has too, although they are on no line (sharp_peaks); in a shard those
+/// of its table `kept_vertex`, which has them from the whole. Requires: vertex column `size`.
+std::vector<char> kept_vertices(const Stream& stream);
+
+/// Distributes the parts to `count` shards (fewer if there are fewer parts), each with almost the same number
+/// of triangles, those of the result included where sizes are known. Returns the parts of each, ascending.
+/// Throws: NotAdmissible for a stream that has no parts, or is a shard.
+std::vector<std::vector<int>> share_out(const Stream& whole, int count);
+
+/// Numbers the faces, vertices and line points of a shard. A line point that stands for another one at its
+/// vertex (PartLines::point) does so in the shard, too: if that is on none of the shard's lines, it gets a
+/// line of its own, which no part uses, with two points there. Requires: parts ascending.
+ShardNumbers number_shard(const Stream& whole, std::vector<int> parts);
+
+/// Returns the shard as a stream: its surface with the rows of its parts in the tables of maps and lines.
+/// `kept`: kept_vertices of the whole; empty if sizes are not known yet.
+Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::vector<char>& kept);
+
+/// Adds to the whole what programs have made of its shards, as they make it of the whole: plane meshes, else
+/// charts. `read` returns a shard by its name. Returns the number of parts without a chart.
+/// Throws: BadInput, with a shard's name, for one that is none of the whole, parts that are missing, doubled
+/// or cut, and shards that were made by different programs or options.
+int join_shards(Stream& whole, const std::vector<std::string>& names,
+                const std::function<Stream(const std::string&)>& read);
+
+}  // namespace meshpipe

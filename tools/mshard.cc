@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join
+// them.
+#include <filesystem>
+
+#include "formats/stream/shards.h"
+#include "tools/common.h"
+#include "tools/files.h"
+
+using namespace meshpipe;
+
+namespace {
+
+/// Writes each shard into a directory, which is made if it is not there, as 1.ply, 2.ply, ... The stream
+/// itself stays as it is.
+void cut(Io& io, int count, const std::string& directory) {
+  const Stream& whole = io.read();
+  const std::vector<std::vector<int>> shares = share_out(whole, count);
+  std::error_code no;
+  std::filesystem::create_directories(directory, no);
+  if (no) throw CannotWrite(directory + ": " + no.message());
+  const std::vector<char> kept =
+      whole.surface.vertex.has("size") ? kept_vertices(whole) : std::vector<char>();
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const Stream shard = cut_shard(whole, number_shard(whole, shares[i]), kept);
+    largest = std::max(largest, shard.surface.tris.size());
+    io.write_to(directory + '/' + std::to_string(i + 1) + ".ply", shard);
+  }
+  io.say(std::to_string(shares.size()) + " shards of " + std::to_string(whole.surface.tris.size()) +
+         " triangles in " + std::to_string(whole.need("part", "mpartition").rows) +
+         " parts, the largest of " + std::to_string(largest));
+  io.report["shards"] = shares.size();
+  io.report["largest"] = largest;
+  io.write_as_it_is(whole);
+}
+
+/// Returns the streams in a directory, 1.ply, 2.ply, ...
+std::vector<std::string> shards_in(const std::string& directory) {
+  std::vector<std::string> names;
+  for (std::error_code no;;) {
+    std::string name = directory + '/' + std::to_string(names.size() + 1) + ".ply";
+    if (!std::filesystem::exists(name, no)) break;
+    names.push_back(std::move(name));
+  }
+  if (names.empty()) throw BadInput(directory + "/1.ply: No such file or directory");
+  return names;
+}
+
+void join(Io& io, const std::string& directory) {
+  const std::vector<std::string> names = shards_in(directory);
+  Stream& whole = io.read();
+  const int open = join_shards(whole, names, [&](const std::string& name) { return io.read(name); });
+  io.say(std::to_string(names.size()) + " shards joined" +
+         (open ? ", " + std::to_string(open) + " parts are left to mparam --resume" : ""));
+  io.report["shards"] = names.size();
+  io.report["parts_left"] = open;
+  io.write_as_it_is(whole);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int count = 0;
+  std::string into, from;
+  auto options = [&](CLI::App& app) {
+    auto* shards =
+        app.add_option("--shards", count, "cut into N shards, of almost the same number of triangles")
+            ->check(CLI::Range(1, 100000))
+            ->type_name("N");
+    auto* directory =
+        app.add_option("--into", into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
+    auto* join = app.add_option("--join", from, "add to FILE what was made of the shards in this directory")
+                     ->type_name("DIR");
+    shards->needs(directory)->excludes(join);
+    directory->needs(shards)->excludes(join);
+  };
+  auto body = [&](Io& io) {
+    if (count == 0 && from.empty()) throw BadUsage("expected --shards N --into DIR, or --join DIR");
+    if (count > 0)
+      cut(io, count, into);
+    else
+      join(io, from);
+  };
+  return run_tool(argc, argv, "mshard",
+                  "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and "
+                  "join what they\n"
+                  "have made.\n\nexamples:\n"
+                  "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mshard --shards 2 --into in "
+                  "stages/08-lines.ply -o all.ply\n"
+                  "  mkdir out; for i in 1 2; do mmesh2d in/$i.ply -o out/$i.ply; done; mshard --join out "
+                  "all.ply | mlift -o lifted.ply",
+                  options, body, {.passes = true, .any_size = true});
+}
