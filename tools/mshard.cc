@@ -82,13 +82,17 @@ int main(int argc, char** argv) {
     else
       join(io, from);
   };
-  return run_tool(argc, argv, "mshard",
-                  "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and "
-                  "join what they\n"
-                  "have made.\n\nexamples:\n"
-                  "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mshard --shards 2 --into in "
-                  "stages/08-lines.ply -o all.ply\n"
-                  "  mkdir out; for i in 1 2; do mmesh2d in/$i.ply -o out/$i.ply; done; mshard --join out "
-                  "all.ply | mlift -o lifted.ply",
-                  options, body, {.passes = true, .any_size = true});
+  return run_tool(
+      argc, argv, "mshard",
+      "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join what "
+      "they "
+      "have made.\n\nexamples:\n"
+      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mshard --shards 2 --into in "
+      "stages/08-lines.ply "
+      "-o all.ply\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply -o all.ply && "
+      "mkdir "
+      "out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && mshard --join out all.ply | "
+      "mlift -o lifted.ply",
+      options, body, {.passes = true, .any_size = true});
 }
