@@ -70,10 +70,6 @@ bool Io::text_for(const Stream& stream) const {
 
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments});
-  write_as_it_is(stream);
-}
-
-void Io::write_as_it_is(const Stream& stream) {
   const bool text = text_for(stream);
   if (output == "-" && !text && ::isatty(STDOUT_FILENO))
     throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");

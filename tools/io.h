@@ -24,8 +24,6 @@ class Io : public CommonOptions {
   static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE or standard output.
   void write(Stream& stream);
-  /// The same for a stream that other programs have made: the history stays.
-  void write_as_it_is(const Stream& stream);
   /// Returns whether -o FILE has to be text; reports what its format cannot hold.
   /// Throws: CannotWrite for --binary STL whose single precision does not hold the surface.
   bool text_for(const Stream& stream) const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join
 // them.
+#include <unistd.h>
+
 #include <filesystem>
 
 #include "formats/stream/shards.h"
@@ -10,6 +12,16 @@
 using namespace meshpipe;
 
 namespace {
+
+/// Writes the stream as other programs have made it: the history stays.
+void write_as_it_is(Io& io, const Stream& stream) {
+  io.ascii |= stream.ascii && !io.binary;
+  if (io.output == "-" && !io.ascii && ::isatty(STDOUT_FILENO))
+    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
+  io.wrote_to_stdout = io.output == "-";
+  io.write_to(io.output, stream);
+  if (io.output != "-") io.finished_file = io.output;
+}
 
 /// Writes each shard into a directory, which is made if it is not there, as 1.ply, 2.ply, ... The stream
 /// itself stays as it is.
@@ -32,7 +44,7 @@ void cut(Io& io, int count, const std::string& directory) {
          " parts, the largest of " + std::to_string(largest));
   io.report["shards"] = shares.size();
   io.report["largest"] = largest;
-  io.write_as_it_is(whole);
+  write_as_it_is(io, whole);
 }
 
 /// Returns the streams in a directory, 1.ply, 2.ply, ...
@@ -55,7 +67,7 @@ void join(Io& io, const std::string& directory) {
          (open ? ", " + std::to_string(open) + " parts are left to mparam --resume" : ""));
   io.report["shards"] = names.size();
   io.report["parts_left"] = open;
-  io.write_as_it_is(whole);
+  write_as_it_is(io, whole);
 }
 
 }  // namespace
