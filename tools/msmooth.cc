@@ -65,8 +65,10 @@ int main(int argc, char** argv) {
           throw NotAdmissible("no face column 'model'; run mfeature first");
         // lines that came with a file, and those of mfeature, by their place
         const ModelSegments lines = stream.history.empty() ? segments_of(stream) : read_model_edges(stream);
+        const bool sheets = has_sheets(stream);
+        if (sheets) flip_ears(s);
         const std::vector<int> under = segments_under(s, lines);
-        const SmoothReport r = has_sheets(stream) ? smooth_sheets(s, o) : smooth(s, o);
+        const SmoothReport r = sheets ? smooth_sheets(s, o) : smooth(s, o);
         drop_stale(stream);
         update_volumes(stream);
         write_model_edges(stream, moved_segments(lines, under, s, under));

@@ -126,6 +126,7 @@ Mesh Image::blocks() const {
 
 Mesh Image::smooth() const {
   Surface nets = surface_of(blocks());
+  flip_ears(nets);
   for (int i = 0; i < 2; ++i) smooth_sheets(nets, {});  // once leaves waves where sheets are along the grid
   return nets;
 }

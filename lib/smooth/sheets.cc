@@ -18,6 +18,7 @@ namespace {
 
 constexpr int steps = 25;                           // of each sign
 constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
+constexpr double least_cosine = 0.9;  // between normals of triangles whose edge is flipped
 constexpr int rounds = 4;  // of volume: what one holds back leaves the rest to others
 
 /// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
@@ -142,7 +143,65 @@ double mean_angle(const Mesh& mesh, const Net& net) {
   return net.smooth.empty() ? 0 : std::sqrt(sum / (double)net.smooth.size()) * 180 / std::numbers::pi;
 }
 
+/// Of half-edges: the other one of an edge of two triangles, else -1, and whether it is on a line where
+/// sheets meet. `edges` are the ends of all edges, in ascending order.
+struct Sides {
+  std::vector<int> opposite;
+  std::vector<char> on_line;
+  std::vector<std::array<int, 2>> edges;
+};
+
+Sides sides_of(const Mesh& mesh) {
+  const std::size_t n = 3 * mesh.tris.size();
+  Sides s{std::vector<int>(n, -1), std::vector<char>(n, 0), {}};
+  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]), g = half_edge(uses.back());
+    const int a = origin(mesh.tris, h), b = target(mesh.tris, h);
+    s.edges.push_back({std::min(a, b), std::max(a, b)});
+    if (uses.size() == 2 && a == target(mesh.tris, g)) s.opposite[h] = g, s.opposite[g] = h;
+    for (EdgeUse e : uses) s.on_line[half_edge(e)] = uses.size() > 2;
+  });
+  return s;
+}
+
 }  // namespace
+
+void flip_ears(Surface& surface) {
+  Mesh joined = surface;
+  join_borders(joined);
+  const Sides sides = sides_of(joined);
+  std::vector<char> stays(surface.tris.size(), 0);
+  if (surface.face.has("model"))
+    for (std::size_t t = 0; t < stays.size(); ++t) stays[t] = surface.face.get<std::uint8_t>("model")[t] != 0;
+  const auto* patch = surface.face.has("patch") ? &surface.face.get<int>("patch") : nullptr;
+  for (int h = 0; h < (int)sides.opposite.size(); ++h) {
+    const int g = sides.opposite[h], t = h / 3, u = g / 3;
+    if (g < 0 || !sides.on_line[next(h)] || !sides.on_line[prev(h)]) continue;
+    if (sides.on_line[next(g)] || sides.on_line[prev(g)] || stays[t] || stays[u]) continue;
+    if (patch && (*patch)[t] != (*patch)[u]) continue;
+    auto flipped = [&](const Mesh& m) {
+      const int a = origin(m.tris, h), b = target(m.tris, h), c = target(m.tris, next(h)),
+                d = target(m.tris, next(g));
+      return std::array{Tri{a, d, c}, Tri{d, b, c}};
+    };
+    const auto [x, y] = flipped(joined);
+    if (std::binary_search(sides.edges.begin(), sides.edges.end(),
+                           std::array{std::min(x[1], x[2]), std::max(x[1], x[2])}))
+      continue;
+    const std::vector<Vec3>& p = joined.points;
+    const Vec3 normal = area_vector(joined, t) + area_vector(joined, u);
+    auto flat = [&](Vec3 n) { return dot(n, normal) > least_cosine * norm(n) * norm(normal); };
+    if (!flat(area_vector(joined, t)) || !flat(area_vector(p[x[0]], p[x[1]], p[x[2]])) ||
+        !flat(area_vector(p[y[0]], p[y[1]], p[y[2]])))
+      continue;
+    for (Mesh* m : {&joined, static_cast<Mesh*>(&surface)}) {
+      const auto both = flipped(*m);
+      m->tris[t] = both[0];
+      m->tris[u] = both[1];
+    }
+    stays[t] = stays[u] = 1;
+  }
+}
 
 SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   if (surface.tris.empty()) throw NotAdmissible("the surface has no triangles");

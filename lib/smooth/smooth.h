@@ -33,6 +33,10 @@ struct SmoothReport {
 /// normal displacement, averaged, in place of his negative steps.
 SmoothReport smooth(Surface& surface, const SmoothOptions& options);
 
+/// Flips the third edge of triangles that have two on a line where sheets meet, unless they are of a model edge
+/// or not flat: smoothing would fold them over their neighbors as it straightens the line.
+void flip_ears(Surface& surface);
+
 /// Smooths sheets that meet, whose border vertices at the same place are one. Lines where they meet are
 /// smoothed as lines; free borders stay. Volumes are kept, region by region, as far as the bound permits.
 /// Throws: NotAdmissible if there are no triangles. Source: Taubin as above, with his negative steps.
