@@ -128,6 +128,9 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
     std::snprintf(line, sizeof line, "%9d %s%s", count, what.c_str(), r.nothing ? " (so in the input)" : "");
     if (count) io.say(line);
   }
+  if (r.opened_edges > 0)  // not to go unseen
+    io.warn("warning: sheets are split at " + std::to_string(r.opened_edges) +
+            " edges where they met: the parts will not fit together there any more");
   for (const Nonorientable& c : r.nonorientable) io.say("dropped: " + describe(c));
 }
 

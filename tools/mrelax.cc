@@ -52,6 +52,7 @@ void put(Io& io, const RelaxReport& r, std::size_t triangles) {
   io.report["kappa_mean"] = r.kappa_mean;
   io.report["kappa_min"] = r.kappa_min;
   io.report["tries"] = r.tries;
+  io.report["volume_error"] = r.volume_error;
   io.report["splits"] = r.splits;
   io.report["collapses"] = r.collapses;
   io.report["flips"] = r.flips;

@@ -46,11 +46,16 @@ Mesh regions(const Options& o, int triangles) {
 /// Returns the number of triangles with which a region is about ten edges across: with fewer, corners force
 /// most of them to be bad.
 int usual_of_regions(const Options& o) {
-  constexpr int per_square = 250, per_region = 1200, per_region_of_image = 2500;
+  constexpr int per_square = 250, per_region = 1200, per_region_of_image = 2500, per_smallest = 200;
+  constexpr double most = 1e7;
+  if (o.nested > 0) {
+    const double n = o.nested, squares = n * (n + 1) * (2 * n + 1) / 6;  // areas relative to the smallest
+    return (int)std::min(per_smallest * squares, most);
+  }
   if (o.voronoi > 0) return (o.image.empty() ? per_region : per_region_of_image) * o.voronoi;
   const auto [a, b, c] = counts_in(o.brick.empty() ? "2x1x1" : o.brick);
   const double squares = (double)a * b * (c + 1) + (double)b * c * (a + 1) + (double)c * a * (b + 1);
-  return (int)std::min(per_square * squares, 1e7);
+  return (int)std::min(per_square * squares, most);
 }
 
 /// Returns the number of vertices around a tube of about n triangles.

@@ -17,6 +17,7 @@ void report(Io& io, const SmoothReport& r) {
                {"farthest_at", {r.farthest_at.x, r.farthest_at.y, r.farthest_at.z}},
                {"volume", r.volume},
                {"volume_change", r.volume_change},
+               {"region_change", r.region_change},
                {"angle_before", r.angle_before},
                {"angle_after", r.angle_after},
                {"bounded_vertices", r.bounded},

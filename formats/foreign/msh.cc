@@ -56,11 +56,11 @@ long long number(NumberSource& in, const char* what, bool is_wide) {
 class Entities {
  public:
   void read(NumberSource& in, double version);
-  /// Returns the first physical tag of an entity of dimension 1 or 2, or 0.
-  int physical_of(int dim, int tag) const;
+  /// Returns the physical tags of an entity of dimension 1 or 2; only 0 if it has none.
+  std::vector<int> physical_of(int dim, int tag) const;
 
  private:
-  std::vector<std::pair<int, int>> tags_[3];  ///< by dimension: tag of the entity, its physical tag; sorted
+  std::vector<std::pair<int, int>> tags_[3];  ///< by dimension: tag of the entity, a physical tag; sorted
 };
 
 void Entities::read(NumberSource& in, double version) {
@@ -74,12 +74,12 @@ void Entities::read(NumberSource& in, double version) {
       const int tag = in.integer("the tag of an entity");
       for (int k = 0; k < (dim == 0 && version > 4 ? 3 : 6); ++k) in.real("a bound");
       const int n = in.count("the count of physical tags", true, 4, 2);
-      int physical = 0;
-      for (int k = 0; k < n; ++k)
-        if (const int p = in.integer("a physical tag"); k == 0) physical = p;
-      // a negative tag says that the elements have the opposite orientation
-      if ((dim == 1 || dim == 2) && physical != std::numeric_limits<int>::min())
-        tags_[dim].push_back({tag, std::abs(physical)});
+      for (int k = 0; k < n; ++k) {
+        const int physical = in.integer("a physical tag");
+        // a negative tag says that the elements have the opposite orientation
+        if ((dim == 1 || dim == 2) && physical != std::numeric_limits<int>::min())
+          tags_[dim].push_back({tag, std::abs(physical)});
+      }
       if (in.binary && dim > 0)
         in.skip(4 * static_cast<std::size_t>(in.count("the count of bounding entities", true, 4, 2)),
                 "a bounding entity");
@@ -88,11 +88,14 @@ void Entities::read(NumberSource& in, double version) {
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
-int Entities::physical_of(int dim, int tag) const {
+std::vector<int> Entities::physical_of(int dim, int tag) const {
   const auto& all = tags_[dim];
-  const auto at = std::lower_bound(all.begin(), all.end(), tag,
-                                   [](const auto& entity, int t) { return entity.first < t; });
-  return at != all.end() && at->first == tag ? at->second : 0;
+  auto at = std::lower_bound(all.begin(), all.end(), tag,
+                             [](const auto& entity, int t) { return entity.first < t; });
+  std::vector<int> tags;
+  for (; at != all.end() && at->first == tag; ++at) tags.push_back(at->second);
+  if (tags.empty()) tags.push_back(0);
+  return tags;
 }
 
 /// The values with which the row of an element begins.
@@ -105,8 +108,8 @@ struct Element {
 /// The lines and surface elements of a file, with their tags and data.
 class Elements {
  public:
-  /// Adds an element by the rows of its nodes.
-  void add(const Element& element, const std::vector<int>& nodes);
+  /// Adds an element by the rows of its nodes; `again`: the one before, in another physical group.
+  void add(const Element& element, const std::vector<int>& nodes, bool again);
   /// Returns the physical tags of the lines (dim 1) or surface elements (2), sorted.
   std::vector<int> physical_tags(int dim) const;
   /// Names the next element for a message.
@@ -125,7 +128,7 @@ class Elements {
 
   Polygons polygons_;
   std::vector<Tags> surfaces_, lines_;  ///< tags by surface element, and by edge of a line
-  std::vector<int> element_;            ///< surface element of each polygon
+  std::vector<int> element_, row_;      ///< of each polygon: surface element, and row of its data
   std::vector<LineEdge> line_edges_;
 };
 
@@ -142,11 +145,12 @@ std::string Elements::next_name(const Element& element) const {
                                    : "surface element " + std::to_string(surfaces_.size());
 }
 
-void Elements::add(const Element& element, const std::vector<int>& nodes) {
+void Elements::add(const Element& element, const std::vector<int>& nodes, bool again) {
   if (element.kind.corners != 2) {
     const int added = add_element(polygons_, nodes.data(), element.kind.corners, element.kind.nodes);
+    if (!again) numbers.add(element.number);
     element_.insert(element_.end(), added, static_cast<int>(surfaces_.size()));
-    numbers.add(element.number);
+    row_.insert(row_.end(), added, static_cast<int>(numbers.size()) - 1);
     surfaces_.push_back({element.physical, element.elementary});
     return;
   }
@@ -183,7 +187,7 @@ void Elements::finish(Stream& stream, const NumberSource& in) {
     std::visit(
         [&](auto& v) {
           polygons_.columns.set(
-              c.name, std::get<std::decay_t<decltype(v)>>(gather({"", 1, std::move(v)}, element_).data));
+              c.name, std::get<std::decay_t<decltype(v)>>(gather({"", 1, std::move(v)}, row_).data));
         },
         c.data);
   set_faces(stream, polygons_);
@@ -370,7 +374,8 @@ class MshReader {
   }
 
   /// Adds an element whose nodes come next.
-  void element(const Element& e, bool is_wide) {
+  /// Reads an element of these physical groups: lines are of the first one only.
+  void element(Element e, const std::vector<int>& groups, bool is_wide) {
     nodes_.clear();
     for (int k = 0; k < e.kind.nodes; ++k) {
       const long long node = number(in_, "a node number", is_wide);
@@ -381,7 +386,10 @@ class MshReader {
     }
     if (!in_.binary && !in_.text.line_ends())
       in_.fail(elements_.next_name(e) + " has more than its " + std::to_string(e.kind.nodes) + " nodes");
-    elements_.add(e, nodes_);
+    for (std::size_t k = 0; k < (e.kind.corners == 2 ? 1 : groups.size()); ++k) {
+      e.physical = groups[k];
+      elements_.add(e, nodes_, k > 0);
+    }
   }
 
   void elements_text() {
@@ -404,7 +412,7 @@ class MshReader {
         if (const int nodes = text.integer("the number of nodes"); nodes != kind.nodes)
           text.fail("element " + std::to_string(i) + " has " + std::to_string(nodes) + " nodes, expected " +
                     std::to_string(kind.nodes));
-      element({number, kind, tag[0], tag[1]}, false);
+      element({number, kind, 0, tag[1]}, {tag[0]}, false);
     }
   }
 
@@ -427,7 +435,7 @@ class MshReader {
                   elementary = tags > 1 ? in_.integer("a tag") : 0;
         in_.skip(4 * static_cast<std::size_t>(std::max(tags - 2, 0)), "a tag");
         if (kind.corners)
-          element({number, kind, physical, elementary}, false);
+          element({number, kind, 0, elementary}, {physical}, false);
         else
           in_.skip(4 * static_cast<std::size_t>(kind.nodes), "a node number");
       }
@@ -447,7 +455,7 @@ class MshReader {
       if (!is_wide) std::swap(dim, tag);
       const int type = in_.integer("an element type");
       const Kind kind = kind_of(type);
-      const int physical = kind.corners ? entities_.physical_of(kind.corners == 2 ? 1 : 2, tag) : 0;
+      const std::vector<int> groups = entities_.physical_of(kind.corners == 2 ? 1 : 2, tag);
       const int in_block = in_.count("the count of elements", true, 8, 4);
       if (in_block > left)
         in_.fail("a block of " + std::to_string(in_block) + " elements, but " + std::to_string(left) +
@@ -462,7 +470,7 @@ class MshReader {
         next_row(in_, "element", i, in_block);
         if (kind.corners == 0) continue;
         const long long number_of_element = number(in_, "an element number", is_wide);
-        element({number_of_element, kind, physical, tag}, is_wide);
+        element({number_of_element, kind, 0, tag}, groups, is_wide);
       }
     }
     if (left)

@@ -39,10 +39,6 @@ bool doubles_edges(const State& s, int h, int gone);
 /// Flips or splits edges between the same vertices as one of another sheet.
 void part_double_edges(State& s);
 
-/// Moves vertices inside of sheets, by at most 0.08 edges, to bring the volumes of regions near to those of
-/// the reference. Leaves all where they are if triangles still intersect after a few tries.
-void keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<SheetPatch>& sheets);
-
 /// Sets the copies of a patch with these vertices of s. Where some are outside of it, all are frozen.
 void extract_copies(const State& s, const std::vector<int>& vertices, State& patch);
 

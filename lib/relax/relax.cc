@@ -12,6 +12,7 @@
 #include "lib/core/weld.h"
 #include "lib/relax/junctions.h"
 #include "lib/relax/repair.h"
+#include "lib/relax/volumes.h"
 
 namespace meshpipe {
 namespace {
@@ -175,7 +176,7 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<i
   RelaxReport report{s.counts, left.pairs, left.of_reference};
   report.tries = tries;
   const std::vector<int> left_at = finish(s, mesh);
-  if (!options.sheets.empty()) keep_volumes(mesh, original, options.sheets);
+  if (!options.sheets.empty()) report.volume_error = keep_volumes(mesh, original, options.sheets);
   for (auto& [a, b] : report.intersections) a = left_at[a], b = left_at[b];
   report.kappa_min = 1;
   for (const auto& [a, b, c] : mesh.tris) {

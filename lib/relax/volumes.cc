@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Volumes of regions: vertices on a curved reference have chords between them that cut off some of each.
+#include "lib/relax/volumes.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/connectivity.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"
-#include "lib/relax/junctions.h"
 
 namespace meshpipe {
 namespace {
@@ -61,7 +61,7 @@ Compliance compliance_of(const LiftedMesh& mesh) {
 
 }  // namespace
 
-void keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<SheetPatch>& sheets) {
+double keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<SheetPatch>& sheets) {
   std::vector<RegionMeasure> regions = measure_regions(reference, sheets);
   std::erase_if(regions, [](const RegionMeasure& r) { return r.label <= 0; });
   const std::vector<std::array<int, 2>> sides = sides_of(mesh.patch, sheets, regions);
@@ -79,7 +79,7 @@ void keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<
   std::vector<std::pair<int, int>> before;
   for (int i = 0; i < tries; ++i) {
     joined.points = start.points;
-    match_volumes(joined, sides, volume, compliance);
+    const double left = match_volumes(joined, sides, volume, compliance);
     if (i == 0) before = self_intersections(start);
     bool moved_back = false;
     for (const std::pair<int, int>& pair : self_intersections(joined)) {
@@ -91,8 +91,10 @@ void keep_volumes(LiftedMesh& mesh, const Surface& reference, const std::vector<
     if (moved_back) continue;
     for (std::size_t t = 0; t < mesh.tris.size(); ++t)
       for (int k : {0, 1, 2}) mesh.points[mesh.tris[t][k]] = joined.points[joined.tris[t][k]];
-    return;
+    return left;
   }
+  for (double& share : compliance.share) share = 0;
+  return match_volumes(joined = start, sides, volume, compliance);
 }
 
 }  // namespace meshpipe

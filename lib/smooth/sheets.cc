@@ -116,8 +116,8 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
 }
 
 /// Gives the regions their volumes again, no vertex farther than `within` from where it was.
-void keep_volumes(Mesh& mesh, const Solids& regions, const std::vector<Vec3>& start,
-                  const std::vector<char>& held, double within) {
+void restore_volumes(Mesh& mesh, const Solids& regions, const std::vector<Vec3>& start,
+                     const std::vector<char>& held, double within) {
   Compliance compliance{std::vector<double>(start.size(), 1), std::vector<double>(start.size(), within)};
   for (std::size_t v = 0; v < held.size(); ++v)
     if (held[v]) compliance.share[v] = 0;
@@ -223,7 +223,7 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   // moving vertices back takes volume again, which others then have to give
   int moved = 1;
   for (int i = 0; i < rounds && moved > 0; ++i) {
-    keep_volumes(joined, before, start, net.held, r.within);
+    restore_volumes(joined, before, start, net.held, r.within);
     r.moved_back += moved = separate(joined, start, net.held);
   }
   r.angle_after = mean_angle(joined, net);
@@ -232,9 +232,9 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
     r.angle_after = r.angle_before;
     r.moved_back = 0;
   }
-  const Solids after = find_solids(joined);
-  for (int i = 1; i <= before.count() && before.count() == after.count(); ++i) {
-    const double change = after.volume[i] - before.volume[i];
+  const std::vector<double> after = region_volumes(joined, before.sides, before.volume.size());
+  for (int i = 1; i <= before.count(); ++i) {
+    const double change = after[i] - before.volume[i];
     r.volume += before.volume[i];
     r.volume_change += change;
     if (before.volume[i] > 0)

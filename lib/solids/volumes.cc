@@ -46,19 +46,6 @@ std::vector<Gradient> gradients(const Mesh& mesh, const std::vector<std::array<i
   return rows;
 }
 
-std::vector<double> volumes_of(const Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
-                               std::size_t n) {
-  std::vector<double> volume(n, 0);
-  const Vec3 from = mesh.points[0];
-  for (std::size_t t = 0; t < sides.size(); ++t) {
-    const auto& [a, b, c] = mesh.tris[t];
-    const double v = dot(mesh.points[a] - from, cross(mesh.points[b] - from, mesh.points[c] - from)) / 6;
-    volume[sides[t][0]] -= v;
-    volume[sides[t][1]] += v;
-  }
-  return volume;
-}
-
 /// The pressure in each region that makes its volume grow by `growth`; `ease` is per vertex, its share over
 /// the area around it.
 std::vector<double> pressures(const std::vector<Gradient>& rows, const std::vector<double>& ease,
@@ -84,11 +71,24 @@ std::vector<double> pressures(const std::vector<Gradient>& rows, const std::vect
 
 }  // namespace
 
+std::vector<double> region_volumes(const Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
+                                   std::size_t n) {
+  std::vector<double> volume(n, 0);
+  const Vec3 from = mesh.points[0];
+  for (std::size_t t = 0; t < sides.size(); ++t) {
+    const auto& [a, b, c] = mesh.tris[t];
+    const double v = dot(mesh.points[a] - from, cross(mesh.points[b] - from, mesh.points[c] - from)) / 6;
+    volume[sides[t][0]] -= v;
+    volume[sides[t][1]] += v;
+  }
+  return volume;
+}
+
 double match_volumes(Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
                      const std::vector<double>& volume, const Compliance& compliance) {
   const std::vector<Vec3> start = mesh.points;
   for (int step = 0;; ++step) {
-    std::vector<double> growth = volumes_of(mesh, sides, volume.size());
+    std::vector<double> growth = region_volumes(mesh, sides, volume.size());
     double most = 0;
     for (std::size_t r = 1; r < growth.size(); ++r) {
       growth[r] = volume[r] - growth[r];
