@@ -154,7 +154,7 @@ def meshio_checks(path):
     kind = path.rsplit(".", 1)[1]
     if kind == "mply" or (kind == "ply" and "binary" in path):
         return  # meshio takes no further elements, and no column after the list in binary
-    if kind in ("vtp", "gts", "poly", "sol", "solb"):
+    if kind in ("vtp", "gts", "poly", "smesh", "sol", "solb"):
         return
     by_name = {"msh4": "gmsh", "msh2": "gmsh"}
     mesh = meshio.read(path, file_format=by_name.get(kind))
@@ -282,19 +282,21 @@ def region_checks(programs, scratch):
     for shape in (["--brick", "2x2x1"], ["--nested", "2"]):
         run(mshape, "regions", *shape, "--triangles", "400", "-o", "r.off")
         run(mclean, "--sheets", "keep", "r.off", "-o", "r.mply")
-        for kind in ("poly", "msh", "geo"):
+        for kind in ("poly", "smesh", "msh", "geo"):
             run(mconvert, "--ascii", "r.mply", "-o", f"r.{kind}")
         text = subprocess.run([mconvert, "--ascii", os.path.join(scratch, "r.mply")], stdout=subprocess.PIPE, check=True, text=True).stdout
         table = text.splitlines()[-int(text.split("element region ")[1].split()[0]):]
         expected = {int(row.split()[0]): round(float(row.split()[1]), 9) for row in table}
         if shutil.which("tetgen"):
-            run("tetgen", "-pAQ", "r.poly")
-            rows = {}
-            for kind in ("node", "ele"):
-                with open(os.path.join(scratch, f"r.1.{kind}")) as file:
-                    rows[kind] = [line.split() for line in file if not line.startswith("#")][1:]
-            points = {row[0]: [float(x) for x in row[1:4]] for row in rows["node"]}
-            check(f"TetGen, regions {shape}", volumes(points, [(int(row[5]), row[1:5]) for row in rows["ele"]]), expected)
+            for facets in ("r.poly", "r.smesh"):
+                run("tetgen", "-pAQ", facets)
+                rows = {}
+                for kind in ("node", "ele"):
+                    with open(os.path.join(scratch, f"r.1.{kind}")) as file:
+                        rows[kind] = [line.split() for line in file if not line.startswith("#")][1:]
+                    os.remove(os.path.join(scratch, f"r.1.{kind}"))
+                points = {row[0]: [float(x) for x in row[1:4]] for row in rows["node"]}
+                check(f"TetGen, regions {shape}, {facets}", volumes(points, [(int(row[5]), row[1:5]) for row in rows["ele"]]), expected)
         if shutil.which("gmsh"):
             run("gmsh", "-3", "-format", "msh2", "r.msh", "r.geo", "-o", "volume.msh")
             with open(os.path.join(scratch, "volume.msh")) as file:
@@ -417,7 +419,7 @@ def main():
             file.write(SAMPLE)
         for encoding in ("ascii", "binary"):
             for kind in ("mply", "ply", "stl", "obj", "off", "msh", "msh2", "msh4", "vtu", "vtp", "vtk", "mesh", "meshb", "sol",
-                         "solb", "gts", "bdf", "inp", "poly"):
+                         "solb", "gts", "bdf", "inp", "poly", "smesh"):
                 path = os.path.join(scratch, f"{encoding}.{kind}")
                 subprocess.run([mconvert, f"--{encoding}", sample, "-o", path], check=True)
                 if vtk:

@@ -64,16 +64,10 @@ void update_volumes(Stream& stream) {
   auto& volume = table.get<double>("volume");
   const std::vector<RegionMeasure> measured = measure_regions(stream.surface, read_sheets(stream));
   std::vector<double> before(measured.size(), 0);
-  auto row = [&](int of) {
-    return std::lower_bound(measured.begin(), measured.end(), of,
-                            [](const RegionMeasure& r, int l) { return r.label < l; }) -
-           measured.begin();
-  };
-  auto known = [&](std::size_t r, int of) { return r < measured.size() && measured[r].label == of; };
   for (std::size_t i = 0; i < label.size(); ++i)
-    if (const std::size_t r = row(label[i]); known(r, label[i])) before[r] += volume[i];
+    if (const int r = row_of(measured, label[i]); r >= 0) before[r] += volume[i];
   for (std::size_t i = 0; i < label.size(); ++i)
-    if (const std::size_t r = row(label[i]); known(r, label[i]) && before[r] != 0)
+    if (const int r = row_of(measured, label[i]); r >= 0 && before[r] != 0)
       volume[i] *= measured[r].volume / before[r];
   stream.set(std::move(table));
 }
@@ -106,11 +100,9 @@ Stream with_sheets_joined(const Stream& stream) {
   if (s.face.has("patch")) {
     std::vector<int> front, back;
     for (int patch : s.face.get<int>("patch")) {
-      const auto row = std::lower_bound(sheets.begin(), sheets.end(), patch,
-                                        [](const SheetPatch& r, int p) { return r.patch < p; });
-      const bool known = row != sheets.end() && row->patch == patch;
-      front.push_back(known ? row->front : 0);
-      back.push_back(known ? row->back : 0);
+      const SheetPatch* sheet = find_sheet(sheets, patch);
+      front.push_back(sheet ? sheet->front : 0);
+      back.push_back(sheet ? sheet->back : 0);
     }
     for (const char* name : {"BoundaryLabels.0", "BoundaryLabels.1"}) s.face.erase(name);
     s.face.set("boundary_labels.0", std::move(front));

@@ -85,20 +85,29 @@ std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector
 
 namespace {
 
-/// Returns the component of `normal` along the normal of the nearest triangle of the reference; where sheets
-/// touch back to back, the largest among those almost as near.
-double towards_nearest(Vec3 normal, Vec3 p, double edge, const Mesh& reference, const Bvh& tree) {
-  constexpr double as_near = 0.1;  // of an edge
-  const auto hit = tree.nearest(p);
-  auto along = [&](int t) { return dot(normal, normalized(area_vector(reference, t))); };
+/// Returns the component of the normal of triangle t along that of the nearest triangle of the reference.
+/// Where sheets are back to back, the corners of t say which one it is on: they are nearer to it.
+double towards_nearest(const Mesh& mesh, int t, const Mesh& reference, const Bvh& tree) {
+  constexpr double around = 0.1, as_near = 1e-3;  // of an edge
+  const Vec3 normal = area_vector(mesh, t);
+  const double edge = edge_length(mesh, 3 * t);
+  const auto hit = tree.nearest(centroid(mesh, t));
+  auto along = [&](int u) { return dot(normal, normalized(area_vector(reference, u))); };
   double most = along(hit.place.face);
-  if (most >= 0) return most;
-  const double reach = hit.distance + as_near * edge;
-  const Vec3 r{reach, reach, reach};
-  tree.overlapping({p - r, p + r}, [&](int t) {
-    if (along(t) > most && norm(closest_point(reference, t, p) - p) <= reach) most = along(t);
-  });
-  return most;
+  const double reach = hit.distance + around * edge, least = most;
+  double to[2] = {0, 0};  // sums of the distances from triangles that face as t does, and from others
+  for (int v : mesh.tris[t]) {
+    if (least >= 0) break;
+    const Vec3 p = mesh.points[v], r{reach, reach, reach};
+    double nearest[2] = {reach, reach};
+    tree.overlapping({p - r, p + r}, [&](int u) {
+      const double d = norm(closest_point(reference, u, p) - p);
+      nearest[along(u) < 0] = std::min(d, nearest[along(u) < 0]);
+      if (d <= reach) most = std::max(most, along(u));
+    });
+    for (int i : {0, 1}) to[i] += nearest[i];
+  }
+  return to[0] <= to[1] + as_near * edge ? most : least;
 }
 
 }  // namespace
@@ -114,9 +123,8 @@ std::vector<int> reversed_components(const Connectivity& result, const Mesh& ref
   for (int t = 0; t < faces; ++t) {
     const int c = component[t];
     if (seen[c]++ % (1 + count[c] / voters)) continue;
-    const Vec3 normal = result.area_vector(t), p = centroid(result.mesh, t);
-    vote[c] += towards_nearest(normal, p, result.length(3 * t), reference, tree);
-    all[c] += norm(normal);
+    vote[c] += towards_nearest(result.mesh, t, reference, tree);
+    all[c] += norm(result.area_vector(t));
   }
   for (int c = 0; c < n; ++c)
     if (vote[c] < -majority * all[c]) reversed.push_back(first[c]);

@@ -118,9 +118,8 @@ void compare_labels(const Solids& solids, const std::vector<int>& patch,
   constexpr int unknown = -1;
   std::vector<int> triangle(solids.volume.size(), unknown), label(solids.volume.size(), 0);
   for (int t = 0; t < (int)patch.size(); ++t) {
-    const auto s = std::lower_bound(sheets.begin(), sheets.end(), patch[t],
-                                    [](const SheetPatch& row, int p) { return row.patch < p; });
-    if (s == sheets.end() || s->patch != patch[t]) continue;
+    const SheetPatch* s = find_sheet(sheets, patch[t]);
+    if (!s) continue;
     for (int i : {0, 1}) {
       const int region = solids.sides[t][i], here = i ? s->back : s->front;
       if (triangle[region] == unknown) triangle[region] = t, label[region] = here;

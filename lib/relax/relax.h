@@ -31,7 +31,7 @@ struct RelaxReport : RelaxCounts {
   int intersections_of_reference = 0;  ///< pairs of the result that intersect where the reference does, too
   double kappa_min = 0, kappa_mean = 0;
   double volume_error = 0;  ///< of regions between sheets: the largest relative difference of a volume
-  int tries = 1;  ///< optimizations that it took to meet the target count, at most 4
+  int tries = 1;            ///< optimizations that it took to meet the target count, at most 4
 };
 
 /// Flips, collapses, splits and moves until the mesh is regular, judged in space. Vertices stay on the

@@ -20,17 +20,11 @@ constexpr int tries = 4;                // to move back what intersects
 /// The regions on both sides of each triangle by their row among `regions`, 0 of what is not in a region.
 std::vector<std::array<int, 2>> sides_of(const std::vector<int>& patch, const std::vector<SheetPatch>& sheets,
                                          const std::vector<RegionMeasure>& regions) {
-  auto row = [&](int label) {
-    const auto r = std::lower_bound(regions.begin(), regions.end(), label,
-                                    [](const RegionMeasure& a, int l) { return a.label < l; });
-    return label > 0 ? (int)(r - regions.begin()) + 1 : 0;
-  };
   std::vector<std::array<int, 2>> sides;
   for (int p : patch) {
-    const auto s = std::lower_bound(sheets.begin(), sheets.end(), p,
-                                    [](const SheetPatch& a, int of) { return a.patch < of; });
-    const bool known = s != sheets.end() && s->patch == p;
-    sides.push_back(known ? std::array{row(s->front), row(s->back)} : std::array{0, 0});
+    const SheetPatch* s = find_sheet(sheets, p);
+    sides.push_back(s ? std::array{row_of(regions, s->front) + 1, row_of(regions, s->back) + 1}
+                      : std::array{0, 0});
   }
   return sides;
 }

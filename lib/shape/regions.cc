@@ -15,20 +15,19 @@
 namespace meshpipe {
 namespace {
 
-/// Appends a triangle on points of its own, with its normal along `up`; nothing if it has no area.
-void add_triangle(Mesh& mesh, std::array<Vec3, 3> p, Vec3 up) {
-  const Vec3 n = area_vector(p[0], p[1], p[2]);
-  if (!(norm(n) > 0)) return;
-  if (dot(n, up) < 0) std::swap(p[1], p[2]);
+/// Appends the square across an axis whose lowest corner is this one of a grid, as two triangles on points of
+/// their own; `up`: its normal is along the axis.
+template <class Point>
+void add_square(Mesh& mesh, const std::array<int, 3>& lowest, int axis, bool up, const Point& point) {
+  constexpr int order[2][6] = {{0, 2, 1, 0, 3, 2}, {0, 1, 2, 0, 2, 3}};
   const int first = (int)mesh.points.size();
-  mesh.points.insert(mesh.points.end(), p.begin(), p.end());
-  mesh.tris.push_back({first, first + 1, first + 2});
-}
-
-/// Divides along a c.
-void add_quad(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 up) {
-  add_triangle(mesh, {a, b, c}, up);
-  add_triangle(mesh, {a, c, d}, up);
+  for (int corner : order[up]) {
+    std::array<int, 3> x = lowest;
+    x[(axis + 1) % 3] += corner == 1 || corner == 2;
+    x[(axis + 2) % 3] += corner >= 2;
+    mesh.points.push_back(point(x));
+  }
+  for (int v : {first, first + 3}) mesh.tris.push_back({v, v + 1, v + 2});
 }
 
 /// A grid of labels, and what decides between them: the nearest seed; 0 outside the unit ball.
@@ -107,18 +106,11 @@ Mesh Image::blocks() const {
         for (int axis = 0; axis < 3; ++axis) {
           const int a = label(i, j, k), b = label(i + (axis == 0), j + (axis == 1), k + (axis == 2));
           if (a == b) continue;
-          int p[3] = {i, j, k};
+          std::array<int, 3> p{i, j, k};
           ++p[axis];
-          std::array<Vec3, 4> q;
-          for (int c = 0; c < 4; ++c) {
-            int x[3] = {p[0], p[1], p[2]};
-            x[(axis + 1) % 3] += c == 1 || c == 2;
-            x[(axis + 2) % 3] += c >= 2;
-            q[c] = {lo_ + h_ * (x[0] - 0.5), lo_ + h_ * (x[1] - 0.5), lo_ + h_ * (x[2] - 0.5)};
-          }
-          Vec3 up;
-          (axis == 0 ? up.x : axis == 1 ? up.y : up.z) = a < b ? -1 : 1;
-          add_quad(mesh, q[0], q[1], q[2], q[3], up);
+          add_square(mesh, p, axis, a > b, [&](const std::array<int, 3>& x) {
+            return Vec3{lo_ + h_ * (x[0] - 0.5), lo_ + h_ * (x[1] - 0.5), lo_ + h_ * (x[2] - 0.5)};
+          });
         }
   weld(mesh);
   return mesh;
@@ -143,18 +135,11 @@ Mesh brick(std::array<int, 3> count, int n) {
     for (int layer = 0; layer <= count[axis]; ++layer)
       for (int j = 0; j < q * count[v]; ++j)
         for (int i = 0; i < q * count[u]; ++i) {
-          std::array<Vec3, 4> p;
-          for (int k = 0; k < 4; ++k) {
-            double x[3];
-            x[axis] = layer;
-            x[u] = (double)(i + (k == 1 || k == 2)) / q;
-            x[v] = (double)(j + (k >= 2)) / q;
-            p[k] = {x[0], x[1], x[2]};
-          }
-          Vec3 up;
-          (axis == 0 ? up.x : axis == 1 ? up.y : up.z) = layer ? 1 : -1;
-          add_triangle(mesh, {p[0], p[1], p[2]}, up);
-          add_triangle(mesh, {p[0], p[2], p[3]}, up);
+          std::array<int, 3> p;
+          p[axis] = q * layer, p[u] = i, p[v] = j;
+          add_square(mesh, p, axis, layer > 0, [&](const std::array<int, 3>& x) {
+            return Vec3{(double)x[0] / q, (double)x[1] / q, (double)x[2] / q};
+          });
         }
   }
   weld(mesh);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int steps = 25;                           // of each sign
 constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
-constexpr double least_cosine = 0.9;  // between normals of triangles whose edge is flipped
+constexpr double least_cosine = 0.9;                // between normals of triangles whose edge is flipped
 constexpr int rounds = 4;  // of volume: what one holds back leaves the rest to others
 
 /// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
@@ -115,26 +115,6 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
   p = std::move(to);
 }
 
-/// Gives the regions their volumes again, no vertex farther than `within` from where it was.
-void restore_volumes(Mesh& mesh, const Solids& regions, const std::vector<Vec3>& start,
-                     const std::vector<char>& held, double within) {
-  Compliance compliance{std::vector<double>(start.size(), 1), std::vector<double>(start.size(), within)};
-  for (std::size_t v = 0; v < held.size(); ++v)
-    if (held[v]) compliance.share[v] = 0;
-  for (int i = 0; i < rounds; ++i) {
-    match_volumes(mesh, regions.sides, regions.volume, compliance);
-    bool bounded = false;
-    for (std::size_t v = 0; v < start.size(); ++v) {
-      const Vec3 way = mesh.points[v] - start[v];
-      if (!(norm(way) > within)) continue;
-      mesh.points[v] = start[v] + within / norm(way) * way;
-      compliance.share[v] = 0;
-      bounded = true;
-    }
-    if (!bounded) return;
-  }
-}
-
 /// Root mean square of the angles between triangles, each oriented as it is, in degrees.
 double mean_angle(const Mesh& mesh, const Net& net) {
   const std::vector<Vec3> normal = face_normals(mesh);
@@ -223,7 +203,9 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   // moving vertices back takes volume again, which others then have to give
   int moved = 1;
   for (int i = 0; i < rounds && moved > 0; ++i) {
-    restore_volumes(joined, before, start, net.held, r.within);
+    Compliance compliance{{}, std::vector<double>(start.size(), r.within), start};
+    for (char held : net.held) compliance.share.push_back(!held);
+    match_volumes(joined, before.sides, before.volume, std::move(compliance));
     r.moved_back += moved = separate(joined, start, net.held);
   }
   r.angle_after = mean_angle(joined, net);

@@ -33,8 +33,8 @@ struct SmoothReport {
 /// normal displacement, averaged, in place of his negative steps.
 SmoothReport smooth(Surface& surface, const SmoothOptions& options);
 
-/// Flips the third edge of triangles that have two on a line where sheets meet, unless they are of a model edge
-/// or not flat: smoothing would fold them over their neighbors as it straightens the line.
+/// Flips the third edge of triangles that have two on a line where sheets meet, unless they are of a model
+/// edge or not flat: smoothing would fold them over their neighbors as it straightens the line.
 void flip_ears(Surface& surface);
 
 /// Smooths sheets that meet, whose border vertices at the same place are one. Lines where they meet are

@@ -206,26 +206,33 @@ std::vector<SheetPatch> sheet_patches(Surface& surface, const Solids& solids, co
   return sheets;
 }
 
+const SheetPatch* find_sheet(const std::vector<SheetPatch>& sheets, int patch) {
+  const auto s = std::lower_bound(sheets.begin(), sheets.end(), patch,
+                                  [](const SheetPatch& row, int p) { return row.patch < p; });
+  return s != sheets.end() && s->patch == patch ? &*s : nullptr;
+}
+
+int row_of(const std::vector<RegionMeasure>& regions, int label) {
+  const auto r = std::lower_bound(regions.begin(), regions.end(), label,
+                                  [](const RegionMeasure& row, int l) { return row.label < l; });
+  return r != regions.end() && r->label == label ? (int)(r - regions.begin()) : -1;
+}
+
 std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets) {
+  std::vector<int> labels;
+  for (const SheetPatch& s : sheets) labels.insert(labels.end(), {s.front, s.back});
+  std::sort(labels.begin(), labels.end());
+  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
   std::vector<RegionMeasure> regions;
-  for (const SheetPatch& s : sheets)
-    for (int label : {s.front, s.back}) regions.push_back({label});
-  auto by_label = [](const RegionMeasure& a, const RegionMeasure& b) { return a.label < b.label; };
-  std::sort(regions.begin(), regions.end(), by_label);
-  regions.erase(
-      std::unique(regions.begin(), regions.end(),
-                  [](const RegionMeasure& a, const RegionMeasure& b) { return a.label == b.label; }),
-      regions.end());
+  for (int label : labels) regions.push_back({label});
   const std::vector<int>& patch = surface.face.get<int>("patch");
   for (int t = 0; t < (int)patch.size(); ++t) {
-    const auto s = std::lower_bound(sheets.begin(), sheets.end(), patch[t],
-                                    [](const SheetPatch& row, int p) { return row.patch < p; });
-    if (s == sheets.end() || s->patch != patch[t] || s->front == s->back) continue;
+    const SheetPatch* s = find_sheet(sheets, patch[t]);
+    if (!s || s->front == s->back) continue;
     const double volume = volume6(surface, t, surface.points[0]) / 6,
                  area = 0.5 * norm(area_vector(surface, t));
     for (int side : {1, -1}) {
-      RegionMeasure& r = *std::lower_bound(regions.begin(), regions.end(),
-                                           RegionMeasure{side > 0 ? s->back : s->front}, by_label);
+      RegionMeasure& r = regions[row_of(regions, side > 0 ? s->back : s->front)];
       r.volume += side * volume;
       r.area += area;
       ++r.triangles;

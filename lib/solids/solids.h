@@ -39,6 +39,9 @@ struct SheetPatch {
   auto operator<=>(const SheetPatch&) const = default;
 };
 
+/// Returns the row of a patch, or null. Requires: `sheets` in ascending order.
+const SheetPatch* find_sheet(const std::vector<SheetPatch>& sheets, int patch);
+
 /// Returns a row per patch that is used, in ascending order; triangles of other regions than the first of
 /// their patch get a new patch, reported in `added` with the one that it was. `label` is per region.
 std::vector<SheetPatch> sheet_patches(Surface& surface, const Solids& solids, const std::vector<int>& label,
@@ -58,16 +61,20 @@ std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::ve
 std::vector<double> region_volumes(const Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
                                    std::size_t n);
 
+/// Returns the number of the row of a label, or -1.
+int row_of(const std::vector<RegionMeasure>& regions, int label);
+
 /// How vertices give way when regions are to have other volumes.
 struct Compliance {
   std::vector<double> share;     ///< of the motion, per vertex; 0: stays
-  std::vector<double> farthest;  ///< per vertex: it is moved by no more than this
+  std::vector<double> farthest;  ///< per vertex: it is moved by no more than this, and then stays
+  std::vector<Vec3> from{};      ///< per vertex: where that is measured from; empty: where it is
 };
 
 /// Moves vertices so that region r has the volume `volume[r]`, as pressure in each region would: along
 /// normals, alike where vertices have the same share. `sides` is as in Solids, `volume[0]` is not looked at.
 /// Requires: triangles that meet share their vertices. Returns the largest relative difference left.
 double match_volumes(Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
-                     const std::vector<double>& volume, const Compliance& compliance);
+                     const std::vector<double>& volume, Compliance compliance);
 
 }  // namespace meshpipe

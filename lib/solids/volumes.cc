@@ -85,8 +85,8 @@ std::vector<double> region_volumes(const Mesh& mesh, const std::vector<std::arra
 }
 
 double match_volumes(Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
-                     const std::vector<double>& volume, const Compliance& compliance) {
-  const std::vector<Vec3> start = mesh.points;
+                     const std::vector<double>& volume, Compliance compliance) {
+  const std::vector<Vec3> start = compliance.from.empty() ? mesh.points : std::move(compliance.from);
   for (int step = 0;; ++step) {
     std::vector<double> growth = region_volumes(mesh, sides, volume.size());
     double most = 0;
@@ -103,8 +103,10 @@ double match_volumes(Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
     const std::vector<double> pressure = pressures(rows, ease, std::move(growth));
     for (const auto& [v, r, by] : rows) mesh.points[v] = mesh.points[v] + ease[v] * pressure[r] * by;
     for (std::size_t v = 0; v < start.size(); ++v)
-      if (const double way = norm(mesh.points[v] - start[v]); way > compliance.farthest[v])
+      if (const double way = norm(mesh.points[v] - start[v]); way > compliance.farthest[v]) {
         mesh.points[v] = start[v] + compliance.farthest[v] / way * (mesh.points[v] - start[v]);
+        compliance.share[v] = 0;
+      }
   }
 }
 

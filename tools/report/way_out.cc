@@ -107,14 +107,16 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.intersections > 0 && !c.ran("mwrap"); },
      [](const Case& c) {
-       return WayOut{c.found.tangled || c.used("mclean", "--resolve") ? "mwrap" : "mclean --resolve outer",
+       return WayOut{c.found.tangled || c.used("mclean", "--resolve") ? "mwrap"
+                     : c.found.sheets                                 ? "mclean --resolve all"
+                                                                      : "mclean --resolve outer",
                      std::to_string(c.found.intersections) +
                          " pairs of triangles of the input intersect, first at " +
                          shown(c.found.intersection)};
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.sheets && !c.ran("msmooth"); },
      [](const Case&) {
-       return WayOut{"msmooth", "sheets of labeled images meet along rough lines, which it smooths"};
+       return WayOut{"--smooth", "sheets of labeled images meet along rough lines, which it smooths"};
      }},
     {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
      [](const Case&) {

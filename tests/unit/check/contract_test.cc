@@ -21,6 +21,34 @@ bool fails(const std::vector<Failure>& failures, const std::string& requirement)
   return false;
 }
 
+/// Two spheres around each other, the normals of the inner one inward; `inside_out`: both the other way.
+Mesh shell(int triangles, double gap, bool inside_out) {
+  Mesh m = sphere(triangles);
+  const int n = (int)m.points.size(), n_tris = (int)m.tris.size();
+  for (int v = 0; v < n; ++v) m.points.push_back((1 - gap) * m.points[v]);
+  for (int t = 0; t < n_tris; ++t) {
+    const Tri c = m.tris[t];
+    m.tris.push_back({c[0] + n, c[2] + n, c[1] + n});
+  }
+  if (inside_out)
+    for (Tri& t : m.tris) std::swap(t[0], t[1]);
+  return m;
+}
+
+TEST(contract, thin_bodies_that_are_inside_out_fail) {
+  Mesh plate = cube(600);
+  for (Vec3& p : plate.points) p.z *= 0.003;  // a twentieth of an edge
+  Mesh reversed = plate;
+  for (Tri& t : reversed.tris) std::swap(t[0], t[1]);
+  EXPECT_FALSE(fails(verdict(plate, plate), "topology"));
+  EXPECT_TRUE(fails(verdict(reversed, plate), "topology"));
+  // chords sag to the other side and beyond
+  for (double gap : {0.002, 0.006, 0.02}) {
+    EXPECT_FALSE(fails(verdict(shell(600, gap, false), shell(6000, gap, false)), "topology")) << gap;
+    EXPECT_TRUE(fails(verdict(shell(600, gap, true), shell(6000, gap, false)), "topology")) << gap;
+  }
+}
+
 TEST(contract, lists_are_read_and_refused) {
   const Contract c = parse_contract("topology,kappa=0.25,hausdorff=1e-3");
   ASSERT_EQ(c.size(), 3u);

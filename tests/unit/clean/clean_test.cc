@@ -704,6 +704,36 @@ TEST(Clean, SolidsThatTouchStayClosedEach) {
   }
 }
 
+TEST(Clean, SolidsMayShareAFaceAnEdgeOrAVertex) {
+  for (const Vec3 shift : {Vec3{0, 1, 0}, Vec3{1, 1, 0}, Vec3{1, 1, 1}}) {
+    const bool face = shift.x == 0;
+    Surface s = cubes({{0, 0, 0}});
+    const int n = (int)s.points.size();
+    for (int v = 0; v < n; ++v) s.points.push_back(s.points[v] + shift);
+    for (int t = 0; t < 12; ++t) {
+      const Tri& c = s.tris[t];
+      s.tris.push_back({c[0] + n, c[1] + n, c[2] + n});
+    }
+    s = surface(s.points, s.tris);
+    for (CleanOptions::Sheets how : {CleanOptions::automatic, CleanOptions::pair}) {
+      Surface cleaned = s;
+      const CleanReport r = clean(cleaned, {.sheets = how});
+      EXPECT_EQ(r.opened_edges, 0);
+      EXPECT_EQ(r.sheets.kept, face && how == CleanOptions::automatic);
+      if (r.sheets.kept) {
+        const RegionReport regions = take_apart(cleaned);
+        EXPECT_EQ(regions.volume.size(), 3u);
+        EXPECT_NEAR(regions.volume[1] + regions.volume[2], 2, 1e-12);
+        continue;
+      }
+      expect_manifold(cleaned);
+      EXPECT_EQ(r.components, 2);
+      EXPECT_EQ(topology_of(cleaned).loops, 0);
+      EXPECT_NEAR(volume(cleaned), 2, 1e-12);
+    }
+  }
+}
+
 TEST(Clean, SecondCopiesOfASheetAreDropped) {
   for (bool reversed : {false, true})
     for (bool other : {false, true}) {

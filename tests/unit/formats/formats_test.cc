@@ -470,7 +470,7 @@ TEST(Matrix, AnEmptyMeshGoesThroughAll) {
        {"a.ply", "a.off", "a.msh", "a.msh4", "a.vtu", "a.vtp", "a.vtk", "a.mesh", "a.meshb"})
     for (bool ascii : {true, false})
       EXPECT_EQ(read_any(write_as(Stream(), path, ascii), path).surface.tris.size(), 0u) << path;
-  for (const char* path : {"a.gts", "a.bdf", "a.inp", "a.poly"})
+  for (const char* path : {"a.gts", "a.bdf", "a.inp", "a.poly", "a.smesh"})
     EXPECT_FALSE(write_as(Stream(), path, true).empty()) << path;
 }
 
@@ -540,6 +540,19 @@ TEST(Msh, OldVersionsAndDataOfSomeNodes) {
   EXPECT_EQ(s.surface.vertex.get<double>("a%20b"), (std::vector<double>{1, 2, 0.1}));
   EXPECT_EQ(read_any(four + "$NodeData\n1\n\"a\"\n1\n0\n3\n0\n1\n1\n1 1\n$EndNodeData\n", "in").remarks,
             std::vector<std::string>{"left out: vertex data a, given for 1 of 3"});
+}
+
+TEST(Msh, ASurfaceInTwoPhysicalGroupsIsThereForEach) {
+  // two triangles of entities 7, in groups 3 and 4, and 8, in none
+  const Stream s = read_any(
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 2 0\n7 0 0 0 1 1 0 2 3 -4 0\n8 0 0 0 1 1 0 0 0\n"
+      "$EndEntities\n$Nodes\n1 4 1 4\n2 7 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n$EndNodes\n"
+      "$Elements\n2 2 1 2\n2 7 2 1\n1 1 2 3\n2 8 2 1\n2 2 4 3\n$EndElements\n"
+      "$ElementData\n1\n\"a\"\n1\n0\n3\n0\n1\n2\n1 0.5\n2 0.7\n$EndElementData\n",
+      "in");
+  EXPECT_EQ(s.surface.tris, (std::vector<Tri>{{0, 1, 2}, {0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{3, 4, 12}));
+  EXPECT_EQ(s.surface.face.get<double>("a"), (std::vector<double>{0.5, 0.5, 0.7}));
 }
 
 TEST(Vtk, CellsThatAreNoSurfaceAreLeftOutWithTheirData) {

@@ -24,7 +24,11 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   EXPECT_EQ(named(missed, {}, found), "--feature-angle none");
   found.at_patch_border = true;
   EXPECT_EQ(named(missed, {}, found), "--merge-auto");
+  found.sheets = true;
+  EXPECT_EQ(named(missed, {}, found), "--smooth");
   found.intersections = 3;
+  EXPECT_EQ(named(missed, {}, found), "mclean --resolve all");  // what bounds the outside is not all
+  found.sheets = false;
   EXPECT_EQ(named(missed, {}, found), "mclean --resolve outer");
   found.weld = 2.3456e-7;
   EXPECT_EQ(named(missed, {}, found), "mclean --weld 2.35e-07");

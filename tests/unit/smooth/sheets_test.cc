@@ -7,6 +7,7 @@
 #include "lib/core/junctions.h"
 #include "lib/shape/shape.h"
 #include "lib/smooth/smooth.h"
+#include "lib/solids/solids.h"
 
 using namespace meshpipe;
 
@@ -26,6 +27,38 @@ TEST(SmoothSheets, StaysConformingWithinTheBound) {
   for (std::size_t v = 0; v < before.size(); ++v)
     EXPECT_LE(norm(s.points[v] - before[v]), r.within * (1 + 1e-12));
   EXPECT_LT(r.region_change, 1e-3);
+}
+
+/// Triangles with two edges where more than two meet, and the length of all such edges.
+static std::pair<int, double> ears(const Mesh& mesh) {
+  std::vector<int> on_line(mesh.tris.size(), 0);
+  double length = 0;
+  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() < 3) return;
+    length += edge_length(mesh, half_edge(uses[0]));
+    for (EdgeUse e : uses) ++on_line[half_edge(e) / 3];
+  });
+  return {(int)std::count(on_line.begin(), on_line.end(), 2), length};
+}
+
+TEST(SmoothSheets, LinesBecomeStraightWithoutFolds) {
+  const Surface blocks = surface_of(labeled_image(2, true, true, 6000, 1));
+  Surface s = blocks;
+  EXPECT_GT(ears(s).first, 40);
+  flip_ears(s);
+  EXPECT_EQ(ears(s).first, 0);
+  EXPECT_EQ(ears(s).second, ears(blocks).second);
+  const Solids before = find_solids(blocks), after = find_solids(s);
+  ASSERT_EQ(after.count(), before.count());
+  for (int i = 1; i <= before.count(); ++i) EXPECT_NEAR(after.volume[i], before.volume[i], 1e-12);
+  const SmoothReport r = smooth_sheets(s, {});
+  EXPECT_EQ(r.moved_back, 0);
+  EXPECT_LT(ears(s).second, 2 * 3.15 * 1.1);  // little more than the circle where the plane meets the ball
+  // those on model edges stay
+  Surface marked = blocks;
+  marked.face.set("model", std::vector<std::uint8_t>(blocks.tris.size(), 7));
+  flip_ears(marked);
+  EXPECT_EQ(marked.tris, blocks.tris);
 }
 
 TEST(SmoothSheets, KeepsShortLines) {
