@@ -130,7 +130,8 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
   }
   if (r.opened_edges > 0)  // not to go unseen
     io.warn("warning: sheets are split at " + std::to_string(r.opened_edges) +
-            " edges where they met: the parts will not fit together there any more");
+            (r.opened_edges == 1 ? " edge" : " edges") +
+            " where they met: the parts will not fit together there any more");
   for (const Nonorientable& c : r.nonorientable) io.say("dropped: " + describe(c));
 }
 
