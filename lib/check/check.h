@@ -58,8 +58,7 @@ Findings examine(const Surface& result, const Surface& reference, const Lines* l
                  double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false,
                  double least_size = 0);
 
-/// Finds the edges where two triangles turn by more than 150 degrees while the reference within an edge
-/// length has only one of their two orientations. Thin plates and sharp ridges are no folds.
+/// Finds the half-edges, one of each edge, at which the result is folded: see lib/core/fold.h.
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
 
 /// Returns the mean kappa of triangles within one edge length of an interface line, and of all others; none

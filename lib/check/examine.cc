@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "lib/check/check.h"
+#include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
 #include "lib/core/original_triangles.h"
@@ -93,25 +94,16 @@ bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
 
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree) {
   const Mesh& mesh = result.mesh;
-  constexpr double sharp = -0.8660254037844386;  // cos 150 degrees
   const int n = (int)mesh.tris.size();
   std::vector<Vec3> normal(n);
   for (int t = 0; t < n; ++t) normal[t] = normalized(area_vector(mesh, t));
   std::vector<int> folds;
   for (int h = 0; h < 3 * n; ++h) {
     const int g = result.opposite[h];
-    if (g < h || !(dot(normal[h / 3], normal[g / 3]) < sharp)) continue;
-    const Vec3 &a = mesh.points[origin(mesh.tris, h)], &b = mesh.points[target(mesh.tris, h)];
-    const Vec3 middle = lerp(a, b, 0.5);
-    const double r = norm(b - a);
-    bool faces[2] = {false, false};
-    reference_tree.overlapping({middle - Vec3{r, r, r}, middle + Vec3{r, r, r}}, [&](int t) {
-      const Vec3 m = area_vector(reference, t);
-      const double length = norm(m);
-      faces[0] |= dot(m, normal[h / 3]) > 0.3 * length;
-      faces[1] |= dot(m, normal[g / 3]) > 0.3 * length;
-    });
-    if (!(faces[0] && faces[1])) folds.push_back(h);
+    if (g < h || !turn_back(normal[h / 3], normal[g / 3])) continue;
+    if (faces_one_way(mesh.points[origin(mesh.tris, h)], mesh.points[target(mesh.tris, h)], normal[h / 3],
+                      normal[g / 3], reference, reference_tree))
+      folds.push_back(h);
   }
   return folds;
 }

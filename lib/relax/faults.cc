@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
+#include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
 #include "lib/core/triangle_count.h"
@@ -15,22 +16,29 @@ struct Known {
   Crossings crossings;
   std::vector<double> walked;    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched;  ///< `distance_of` then, or -1
-  int time = -1;
+  int time;
   std::optional<Mesh> intersections;
-  std::optional<Bvh> tree;
+  std::optional<Bvh> built{};
+
+  const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
 
-/// What is wrong, and how wrong: a count of pairs, and a sum of distances and 1/kappa over what is bearable.
+/// What is wrong, and how wrong: a count of pairs and folds, and a sum of distances and 1/kappa over what is
+/// bearable.
 struct Fault {
   std::vector<std::pair<int, int>> pairs;
   int of_reference = 0;
-  std::vector<int> triangles;  ///< those that are too far from the reference, and needles
+  int folds = 0;
+  std::vector<int> triangles;  ///< those at folds, those that are too far from the reference, and needles
+  std::vector<std::pair<int, Vec3>> missed;  ///< places of the reference, by the triangle nearest to them
   double excess = 0;
 
   bool none() const { return pairs.empty() && triangles.empty(); }
+  int places() const { return (int)(pairs.size() + triangles.size()); }
+  int count() const { return (int)pairs.size() + folds; }
   bool less_than(const Fault& other) const {
-    return pairs.size() < other.pairs.size() ||
-           (pairs.size() == other.pairs.size() && excess < rules::less_excess * other.excess);
+    return count() < other.count() ||
+           (count() == other.count() && excess < rules::less_excess * other.excess);
   }
 };
 
@@ -62,6 +70,22 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
+void find_folds(const State& s, Known& known, Fault& found) {
+  const EditMesh& m = s.mesh;
+  std::vector<Vec3> normal(m.tris.size());
+  for (int t = 0; t < (int)normal.size(); ++t)
+    if (!m.dead(t)) normal[t] = s.face_normal(t);
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    const int g = m.opp[h];
+    if (g < h || m.dead(h / 3) || !turn_back(normal[h / 3], normal[g / 3])) continue;
+    if (!faces_one_way(s.points[m.from(h)], s.points[m.to(h)], normal[h / 3], normal[g / 3], known.reference,
+                       known.tree()))
+      continue;
+    ++found.folds;
+    found.triangles.insert(found.triangles.end(), {h / 3, g / 3});
+  }
+}
+
 /// Climbs in a triangle with sides up to `length` from barycentric coordinates `at`, where the distance f is
 /// `most`, by ever shorter steps from `first` on, while it may still come to `limit`; returns the largest
 /// value, and sets where.
@@ -81,46 +105,85 @@ double climb(std::array<double, 3>& at, double most, double first, double length
   return most;
 }
 
-/// Returns the largest distance of triangle t from the reference at its middle and those of its edges; where
-/// that is nearly `limit`, the larger one that is climbed to from there. A walk may end on the wrong sheet,
-/// so it is searched for.
+/// A part of a triangle of the mesh, with the nearest triangles of the reference.
+struct Piece {
+  std::array<Vec3, 3> corner;
+  std::array<double, 3> distance;
+  std::array<int, 3> face;
+
+  int longest() const {
+    int k = 0;
+    for (int i : {1, 2})
+      if (norm(corner[next(i)] - corner[i]) > norm(corner[next(k)] - corner[k])) k = i;
+    return k;
+  }
+  /// Is no point farther than `limit`? None is farther from a corner than the longest side over sqrt(3), and
+  /// distance from one triangle of the reference is convex.
+  bool within(double limit, const Mesh& reference) const {
+    const int k = longest();
+    const double most = *std::max_element(distance.begin(), distance.end());
+    if (most + norm(corner[next(k)] - corner[k]) / std::numbers::sqrt3 <= limit) return true;
+    return std::any_of(face.begin(), face.end(), [&](int f) {
+      return std::all_of(corner.begin(), corner.end(),
+                         [&](Vec3 p) { return norm(closest_point(reference, f, p) - p) <= limit; });
+    });
+  }
+};
+
+/// Returns a distance of triangle t from the reference that is larger than `limit`, if there is one, else the
+/// largest that was found. A walk may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
-  const Tri& v = s.mesh.tris[t];
-  std::array<double, 3> farthest{};
+  const Mesh& reference = s.reference->surface;
+  const auto [a, b, c] = s.mesh.tris[t];
+  std::vector<Piece> pieces{{{s.points[a], s.points[b], s.points[c]},
+                             {0, 0, 0},
+                             {s.place[a].face, s.place[b].face, s.place[c].face}}};
   double most = 0;
-  auto distance = [&](const std::array<double, 3>& b) {
-    return tree.nearest(b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]]).distance;
-  };
-  constexpr double third = 1.0 / 3;
-  for (const std::array<double, 3>& b :
-       {std::array{third, third, third}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}})
-    if (const double d = distance(b); d > most) most = d, farthest = b;
-  if (most < rules::nearly_far * limit || most > limit) return most;
-  const double length =
-      std::max({norm(s.points[v[1]] - s.points[v[0]]), norm(s.points[v[2]] - s.points[v[1]]),
-                norm(s.points[v[0]] - s.points[v[2]])});
-  return climb(farthest, most, rules::first_step, length, limit, distance);
+  for (int halvings = 0; !pieces.empty() && halvings < rules::most_halvings; ++halvings) {
+    const Piece piece = pieces.back();
+    pieces.pop_back();
+    if (piece.within(limit, reference)) continue;
+    const int k = piece.longest();
+    const Vec3 middle = lerp(piece.corner[k], piece.corner[next(k)], 0.5);
+    const Bvh::Hit near = tree.nearest(middle);
+    most = std::max(most, near.distance);
+    if (most > limit) break;
+    for (int end : {k, next(k)}) {
+      Piece& half = pieces.emplace_back(piece);
+      half.corner[end] = middle, half.distance[end] = near.distance, half.face[end] = near.place.face;
+    }
+  }
+  return most;
 }
 
-/// Adds samples that are farther from the mesh than `limit` in triangles of the reference where one that was
-/// measured after `time` is nearly as far.
-void add_far_samples(const State& s, Samples& samples, std::vector<double>& distance, int time,
-                     double limit) {
+/// How far triangle t and what is nearest to it may be apart, where the mean size is `mean`.
+double bearable_distance(const State& s, int t, double mean) {
+  const Tri& v = s.mesh.tris[t];
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
+  const double size = (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3;
+  return rules::too_far * std::max(mean, std::min(size, size_over_longest * longest));
+}
+
+/// Adds samples that are farther from the mesh than they may be, in triangles of the reference where one that
+/// was measured after `time` is nearly as far.
+void add_far_samples(const State& s, Samples& samples, std::vector<double>& distance, int time, double mean) {
   std::vector<int> from;
   for (int i = 0; i < (int)distance.size(); ++i)
-    if (samples.list[i].time > time && distance[i] > rules::nearly_far * limit && distance[i] <= limit)
+    if (samples.list[i].time > time && distance[i] > rules::nearly_far * rules::too_far * mean)
       from.push_back(i);
   std::vector<Sample> found(from.size());
 #pragma omp parallel for schedule(dynamic, 16) if (from.size() > 100)
   for (int i = 0; i < (int)from.size(); ++i) {
     const Sample& x = samples.list[from[i]];
     Sample& y = found[i];
+    const double limit = bearable_distance(s, x.near, mean);
     auto nearest = [&](const std::array<double, 3>& b) {
       return samples.search.nearest(s.reference->walk.point({x.place.face, b[0], b[1], b[2]}), 1e300, 0);
     };
     std::array<double, 3> at{x.place.b0, x.place.b1, x.place.b2};
     y.distance = nearest(at).distance;
-    if (y.distance < rules::nearly_far * limit) continue;
+    if (y.distance < rules::nearly_far * limit || y.distance > limit) continue;
     const auto& [a, b, c] = s.reference->surface.tris[x.place.face];
     const std::vector<Vec3>& p = s.reference->surface.points;
     const double length = std::max({norm(p[b] - p[a]), norm(p[c] - p[b]), norm(p[a] - p[c])});
@@ -128,11 +191,12 @@ void add_far_samples(const State& s, Samples& samples, std::vector<double>& dist
     y.distance = climb(at, y.distance, rules::first_step * first, length, limit,
                        [&](const auto& place) { return nearest(place).distance; });
     y.place = {x.place.face, at[0], at[1], at[2]};
-    y.near = nearest(at).place.face;
+    const int near = nearest(at).place.face;
+    if (y.distance > bearable_distance(s, near, mean)) y.near = near;
     y.time = s.clocks.now;
   }
   for (const Sample& y : found)
-    if (y.distance > limit) samples.list.push_back(y), distance.push_back(y.distance);
+    if (y.near >= 0) samples.list.push_back(y), distance.push_back(y.distance);
 }
 
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags.
@@ -158,23 +222,20 @@ void find_far(const State& s, Known& known, Fault& found) {
   const double mean = mean_size(s), least = rules::too_far * mean;
   std::vector<std::pair<int, double>> far;
   auto look = [&](int t, double distance) {
-    const Tri& v = s.mesh.tris[t];
-    double longest = 0;
-    for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
-    const double local =
-        std::min((s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3, size_over_longest * longest);
-    const double size = std::max(mean, local);
-    if (distance > rules::too_far * size) far.push_back({t, -distance / (rules::too_far * size)});
+    const double bearable = bearable_distance(s, t, mean);
+    if (distance > bearable) far.push_back({t, -distance / bearable});
+    return distance > bearable;
   };
   std::vector<double> distance = sample_distances(s, known.samples, least);
-  add_far_samples(s, known.samples, distance, known.time, least);
+  add_far_samples(s, known.samples, distance, known.time, mean);
   for (std::size_t i = 0; i < distance.size(); ++i)
-    if (distance[i] > least) look(known.samples.list[i].near, distance[i]);
+    if (const Sample& x = known.samples.list[i]; distance[i] > least && look(x.near, distance[i]))
+      found.missed.push_back({x.near, s.reference->walk.point(x.place)});
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t) || known.walked[t] <= rules::nearly_far * least) continue;
-    if (!known.tree) known.tree.emplace(known.reference);
-    if (known.searched[t] < 0) known.searched[t] = distance_of(s, t, *known.tree, least);
+    if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
+    if (known.searched[t] < 0)
+      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean));
     look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());
@@ -248,30 +309,105 @@ void refine_at(State& s, const Fault& fault) {
     for (int v : around) improve_vertex(s, v);
 }
 
+/// How far a patch is from good: pairs that intersect, and distances over what is bearable, there and from
+/// places of the reference.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean) {
+  double sum = 0;
+  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
+  const Mesh mesh{s.points, s.mesh.tris};
+  std::vector<Box> box(mesh.tris.size());
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = mesh.tris[t];
+    const double most = bearable_distance(s, t, mean);
+    const double there = deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
+    sum += rules::far_weight * std::max(0.0, there / most - 1);
+    box[t] = box_of(mesh, t);
+    for (int u = 0; u < t; ++u)
+      if (!s.mesh.dead(u) && overlap(box[t], box[u]) && triangles_intersect(mesh, u, t))
+        sum += rules::pair_weight;
+    for (std::size_t i = 0; i < missed.size(); ++i)
+      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d < distance[i])
+        distance[i] = d, bearable[i] = most;
+  }
+  for (std::size_t i = 0; i < missed.size(); ++i)
+    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
+  return sum;
+}
+
+Fault find_faults(const State& s, Known& known) {
+  Fault found;
+  find_intersections(s, known, found);
+  find_folds(s, known, found);
+  find_far(s, known, found);
+  find_needles(s, found);
+  return found;
+}
+
+/// Tries all edits where refinement did not help, and takes the best of each place.
+void repair_at(State& s, const Fault& fault) {
+  struct Item {
+    int t, other;
+    std::vector<Vec3> missed;
+  };
+  std::vector<Item> items;
+  for (auto [a, b] : fault.pairs) items.push_back({a, b, {}});
+  for (int t : fault.triangles) items.push_back({t, -1, {}});
+  for (Item& i : items)
+    for (const auto& [t, p] : fault.missed)
+      if (t == i.t || t == i.other) i.missed.push_back(p);
+  const double mean = mean_size(s);
+  auto around = [&](const Item& item, std::vector<int> before) {
+    if (!before.empty() || s.mesh.dead(item.t)) return before;
+    std::vector<int> found = triangles_around(s, item.t, rules::thorough_rings);
+    if (item.other >= 0 && !s.mesh.dead(item.other))
+      for (int t : triangles_around(s, item.other, rules::rings))
+        if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
+    if ((int)found.size() > rules::largest_patch) found.clear();
+    return found;
+  };
+  auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
+    return repaired(
+        s, triangles, true,
+        {[&](const State& patch) { return objective(patch) + faultiness(patch, item.missed, mean); }, true});
+  };
+  change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+}
+
 }  // namespace
 
 Intersections remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   std::optional<std::pair<State, Fault>> best;
-  Known known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}};
+  std::optional<Known> known{Known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}}};
   Repairs memory;
-  for (int round = 0, since_best = 0;; ++round) {
-    Fault found;
-    find_intersections(s, known, found);
-    find_far(s, known, found);
-    find_needles(s, found);
+  for (int round = 0, since_best = 0, repairs = 0;; ++round) {
+    Fault found = find_faults(s, *known);
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
-    const bool last = found.none() || since_best == rules::useless_rounds || round == rules::fault_rounds ||
-                      s.mesh.live > most;
-    if (last && !better) s = std::move(best->first), found = std::move(best->second);
-    if (last) return {found.pairs, found.of_reference};
     if (better) best = {s, found};
-    refine_at(s, found);
-    if (found.triangles.empty()) continue;
-    reach_features(s, samples, rules::too_far, (int)found.triangles.size());
-    repair_worst(s, memory);
+    if (found.none()) break;
+    if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
+        s.mesh.live <= most) {
+      refine_at(s, found);
+      if (found.triangles.empty()) continue;
+      reach_features(s, samples, rules::too_far, (int)found.triangles.size());
+      repair_worst(s, memory);
+      continue;
+    }
+    if ((repairs > 0 && !better) || repairs == rules::fault_repairs ||
+        best->second.places() > rules::few_faults)
+      break;
+    if (!better) {
+      s = best->first;
+      samples.forget();
+      known.emplace(Known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}});
+    }
+    repair_at(s, best->second);
+    ++repairs;
   }
+  s = std::move(best->first);
+  return {best->second.pairs, best->second.of_reference};
 }
 
 }  // namespace meshpipe

@@ -10,8 +10,8 @@ namespace meshpipe {
 
 /// Splits the edge of h at the place on the reference nearest to its point `at` (0 to 1 from where h starts);
 /// a border or model edge at a place on the line, and the edges of other sheets there alike. False if the
-/// pieces would fold.
-bool split_edge(State& s, int h, double at = 0.5);
+/// pieces would fold, unless they may.
+bool split_edge(State& s, int h, double at = 0.5, bool may_fold = false);
 /// Puts a new vertex on the edge of h, without a look at the triangles.
 void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal);
 /// The end of a line's edge that is no corner, so that it knows which line; -1 if both are.

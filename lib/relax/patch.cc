@@ -184,8 +184,8 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
   s.schedule.listed = false;
 }
 
-void keep_best(std::vector<Trial>& trials, std::size_t most) {
-  for (Trial& t : trials) t.objective = objective(t.state);
+void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge) {
+  for (Trial& t : trials) t.objective = judge.of(t.state);
   std::stable_sort(trials.begin(), trials.end(),
                    [](const Trial& a, const Trial& b) { return a.objective < b.objective; });
   if (trials.size() > most) trials.erase(trials.begin() + (std::ptrdiff_t)most, trials.end());

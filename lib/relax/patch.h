@@ -3,6 +3,7 @@
 // better; for lib/relax/ only.
 #pragma once
 #include <climits>
+#include <functional>
 #include <optional>
 
 #include "lib/core/parallel.h"
@@ -51,8 +52,13 @@ void settle(State& s, int times);
 void rest(State& s);
 /// Repeats in s what was done to the patch extracted from these triangles, and moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
+/// What trials make small, and whether splits may fold what smoothing may unfold.
+struct Judge {
+  std::function<double(const State&)> of = objective;
+  bool may_fold = false;
+};
 /// Evaluates the trials and keeps the best `most` of them, the best first.
-void keep_best(std::vector<Trial>& trials, std::size_t most);
+void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge = {});
 
 /// Changes neighborhoods until `most` were adopted or `attempts` were tried. Those that do not overlap are
 /// tried together, in parallel; the rest wait for the next batch.

@@ -5,8 +5,9 @@ namespace meshpipe {
 namespace {
 
 /// Makes a change if it may be made; else nothing is changed.
-bool try_edit(State& s, const Edit& edit) {
-  if (edit.kind == Edit::split) return split_edge(s, edit.h, edit.at);
+bool try_edit(State& s, const Edit& edit, bool may_fold) {
+  if (edit.kind == Edit::split)
+    return split_edge(s, edit.h, edit.at) || (may_fold && split_edge(s, edit.h, edit.at, true));
   if (edit.kind == Edit::collapse)
     return ((s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.gone)) &&
            collapse_edge(s, edit.h, edit.gone, rules::on_trial);
@@ -52,22 +53,23 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide) {
 
 /// Tries each edit on a copy of `from`, where only what it disturbs moves. All are smoothed once, the better
 /// third settles a little, and the best of them quite.
-std::vector<Trial> try_all(State from, const std::vector<Edit>& edits) {
+std::vector<Trial> try_all(State from, const std::vector<Edit>& edits, const Judge& judge) {
   std::vector<Trial> trials;
   rest(from);
   State copy = from;
   for (const Edit& e : edits) {
-    if (!try_edit(copy, e)) continue;
+    if (!try_edit(copy, e, judge.may_fold)) continue;
     flip_to_shape(copy);
     smooth(copy, 1);
     trials.push_back({0, std::move(copy)});
     copy = from;
   }
-  keep_best(trials, std::max(rules::promising, (int)(rules::promising_at_once * (double)trials.size())));
+  keep_best(trials, std::max(rules::promising, (int)(rules::promising_at_once * (double)trials.size())),
+            judge);
   for (Trial& t : trials) smooth(t.state, rules::sweeps_to_settle - 1);
-  keep_best(trials, rules::promising);
+  keep_best(trials, rules::promising, judge);
   for (Trial& t : trials) settle(t.state, 1);
-  keep_best(trials, rules::promising);
+  keep_best(trials, rules::promising, judge);
   return trials;
 }
 
@@ -120,17 +122,18 @@ std::vector<int> bad_triangles(const State& s, Repairs& memory) {
 
 }  // namespace
 
-std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough) {
+std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough,
+                              const Judge& judge) {
   if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
-  const double bad = objective(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
-  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough));
+  const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
+  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough), judge);
   if (trials.empty()) return {};
   Trial best = trials.front();
   for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {
     if (best.objective <= good_enough) break;
     const State& from = trials[i].state;
-    for (Trial& second : try_all(from, edits_around(from, worst(from), false)))
+    for (Trial& second : try_all(from, edits_around(from, worst(from), false), judge))
       if (second.objective < best.objective) best = std::move(second);
   }
   if (best.objective > good_enough) return {};

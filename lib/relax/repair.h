@@ -20,7 +20,8 @@ struct Repairs {
 /// Returns the best of the edits around the first of these triangles, each tried on the neighborhood and
 /// optimized there, if it improves on `s`. `thorough`: also pairs of edits, the second where the first leaves
 /// its worst triangle.
-std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough);
+std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough,
+                              const Judge& judge = {});
 
 /// Repairs the triangles that are not good enough, the worst first, then vertices of a valence other than 5,
 /// 6, 7. Stops after 200 + n/100 of them: beyond that the size field is at fault, not single triangles.

@@ -92,6 +92,8 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;     // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;    // of the size; a half is the limit of mcheck
 constexpr double nearly_far = 0.7;   // of the bearable: from there the farthest place is looked for
+constexpr double doubtful = 0.4;     // of the bearable, walked to: from there all of a triangle is searched
+constexpr int most_halvings = 400;   // of a triangle, to find its largest distance
 constexpr double first_step = 0.25;  // of the longest edge: of the climb to it
 constexpr double last_step = 0.05;   // of the first step
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
@@ -101,6 +103,8 @@ constexpr double stale_share = 0.1;   // of the triangles: more that are new are
 constexpr double growth = 1.6,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
+constexpr int fault_repairs = 3, few_faults = 40;   // rounds, and places: of more the sizes are at fault
+constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples

@@ -46,7 +46,7 @@ int end_on_line(const State& s, int a, int b) {
   return s.hold[a] == slides ? a : s.hold[b] == slides ? b : -1;
 }
 
-bool split_edge(State& s, int h, double at) {
+bool split_edge(State& s, int h, double at, bool may_fold) {
   const EditMesh& m = s.mesh;
   const int g = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = g < 0 ? -1 : m.apex(g);
   if (g < 0 && s.keep_border) return false;
@@ -62,7 +62,7 @@ bool split_edge(State& s, int h, double at) {
     return false;
   const std::vector<CopyPlace> places = places_on_edge(s, h, place, p);
   for (const CopyPlace& e : places)
-    if (folds_split(s, e.at, p, e.normal)) return false;
+    if (!may_fold && folds_split(s, e.at, p, e.normal)) return false;
   insert_copies(s, places, p);
   return !places.empty();
 }
