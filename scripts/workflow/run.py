@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 
-def main(name, surface, record, extension, *options):
+def main(name, surface, record, extension, *options, more=()):
     folder = os.path.dirname(record)
     os.makedirs(folder, exist_ok=True)
     report = os.path.join(folder, "report.json")
@@ -21,7 +21,7 @@ def main(name, surface, record, extension, *options):
     for old in (report, mesh, os.path.join(folder, "page.html")):
         if os.path.exists(old):
             os.remove(old)
-    command = ["mremesh", "-q", *options, "--accept", "--report", report, "--html", os.path.join(folder, "page.html"),
+    command = ["mremesh", "-q", *options, *more, "--accept", "--report", report, "--html", os.path.join(folder, "page.html"),
                "-o", mesh, "--", surface]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
     sys.stderr.write(done.stderr)
