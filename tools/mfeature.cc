@@ -113,7 +113,7 @@ void report(Io& io, const FeatureReport& r) {
          std::to_string(r.crease_edges) + " on creases; " + std::to_string(r.corners) + " corners");
   if (r.slivers > 0)
     io.say(std::to_string(r.slivers) +
-           " triangles thinner than a fiftieth of the size make no creases of their own");
+           " triangles thinner than 0.06 of the size make no creases of their own");
   for (const auto& [key, n] : {std::pair{"slivers", r.slivers},
                                {"model_edges", r.model_edges},
                                {"patch_edges", r.patch_edges},

@@ -8,6 +8,9 @@
 #include "lib/core/topology.h"
 
 namespace meshpipe {
+namespace {
+constexpr int most_steps = 10000;  ///< along a line, to its end
+}
 
 double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
                const std::vector<int>& opposite, int& t, double enough) {
@@ -116,52 +119,53 @@ Place SurfaceWalk::across(const Place& p) const {
   return p;
 }
 
-Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
-  const double b[3] = {from.b0, from.b1, from.b2};
-  auto closest_on = [&](int h, double& t) {
-    const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
-               q = mesh_.points[meshpipe::target(mesh_.tris, h)];
-    const double l2 = dot(q - p, q - p);
-    t = l2 > 0 ? std::clamp(dot(target - p, q - p) / l2, 0.0, 1.0) : 0;
-    const Vec3 e = lerp(p, q, t) - target;
-    return dot(e, e);
-  };
-  int line = -1;
-  double t;
-  for (int i = 0; i < 3; ++i)
-    if (b[(i + 2) % 3] <= 0 && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
-  for (int i = 0; i < 3; ++i) {
-    if (b[i] < 1) continue;
-    // at a vertex, which may be the end of several lines: the one that leaves it towards the target
-    double nearest = 1e300;
-    auto look = [&](int h) {
-      if (beyond_[h] >= 0) return;
-      if (const double d = closest_on(h, t); d < nearest) nearest = d, line = h;
-    };
-    const int start = 3 * from.face + i;
-    int h = start;
-    do {
-      look(h);
-      look(prev(h));
-      h = opposite_[prev(h)];
-    } while (h >= 0 && h != start);
-    for (int e = start; h < 0 && opposite_[e] >= 0;) {
-      e = next(opposite_[e]);
-      look(e);
-      look(prev(e));
-    }
-  }
-  if (line < 0) return from;
+/// The square of the distance of h from the target, nearest at t of it.
+double SurfaceWalk::squared_distance(int h, Vec3 target, double& t) const {
+  const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
+             q = mesh_.points[meshpipe::target(mesh_.tris, h)];
+  const double l2 = dot(q - p, q - p);
+  t = l2 > 0 ? std::clamp(dot(target - p, q - p) / l2, 0.0, 1.0) : 0;
+  const Vec3 e = lerp(p, q, t) - target;
+  return dot(e, e);
+}
 
-  double best = closest_on(line, t);
-  for (int step = 0; step < 10000 && (t <= 0 || t >= 1); ++step) {
-    const bool forward = t >= 1;
-    const int v = forward ? meshpipe::target(mesh_.tris, line) : meshpipe::origin(mesh_.tris, line);
-    if (degree_[v] != 2) break;
-    int e = forward ? next(line) : prev(line);
-    while (beyond_[e] >= 0) e = forward ? next(beyond_[e]) : prev(beyond_[e]);
+/// The next edge of the line of h, at its end or its start; -1 where the line ends.
+int SurfaceWalk::next_on_line(int h, bool forward) const {
+  const int v = forward ? meshpipe::target(mesh_.tris, h) : meshpipe::origin(mesh_.tris, h);
+  if (degree_[v] != 2) return -1;
+  int e = forward ? next(h) : prev(h);
+  while (beyond_[e] >= 0) e = forward ? next(beyond_[e]) : prev(beyond_[e]);
+  return e;
+}
+
+/// The edges of lines at corner i of triangle t, from both sides.
+std::vector<int> SurfaceWalk::lines_at(int t, int i) const {
+  std::vector<int> found;
+  auto look = [&](int h) {
+    if (beyond_[h] < 0) found.push_back(h);
+  };
+  const int start = 3 * t + i;
+  int h = start;
+  do {
+    look(h);
+    look(prev(h));
+    h = opposite_[prev(h)];
+  } while (h >= 0 && h != start);
+  for (int e = start; h < 0 && opposite_[e] >= 0;) {
+    e = next(opposite_[e]);
+    look(e);
+    look(prev(e));
+  }
+  return found;
+}
+
+Place SurfaceWalk::slide_along(int line, Vec3 target) const {
+  double t;
+  double best = squared_distance(line, target, t);
+  for (int step = 0; step < most_steps && (t <= 0 || t >= 1); ++step) {
+    const int e = next_on_line(line, t >= 1);
     double s;
-    const double closer = closest_on(e, s);
+    const double closer = e < 0 ? best : squared_distance(e, target, s);
     if (closer >= best * (1 - 1e-12)) break;
     best = closer, t = s, line = e;
   }
@@ -170,6 +174,45 @@ Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
   *c[line % 3] = 1 - t;
   *c[(line + 1) % 3] = t;
   return p;
+}
+
+Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
+  const double b[3] = {from.b0, from.b1, from.b2};
+  int line = -1;
+  for (int i = 0; i < 3; ++i)
+    if (b[(i + 2) % 3] <= 0 && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
+  for (int i = 0; i < 3; ++i) {
+    if (b[i] < 1) continue;
+    // at a vertex, which may be the end of several lines: the one that leaves it towards the target
+    double nearest = 1e300, t;
+    for (int h : lines_at(from.face, i))
+      if (const double d = squared_distance(h, target, t); d < nearest) nearest = d, line = h;
+  }
+  return line < 0 ? from : slide_along(line, target);
+}
+
+Place SurfaceWalk::slide(const Place& from, const Place& to, Vec3 target) const {
+  auto corner = [](const Place& p) { return p.b0 >= 1 ? 0 : p.b1 >= 1 ? 1 : p.b2 >= 1 ? 2 : -1; };
+  if (corner(from) < 0 || corner(to) < 0) return slide(from, target);
+  const int a = mesh_.tris[from.face][corner(from)], b = mesh_.tris[to.face][corner(to)];
+  double nearest = 1e300;
+  Place best;
+  for (int line : lines_at(from.face, corner(from))) {
+    const bool forward = meshpipe::origin(mesh_.tris, line) == a;
+    auto end = [&](int h) {
+      return forward ? meshpipe::target(mesh_.tris, h) : meshpipe::origin(mesh_.tris, h);
+    };
+    int last = line;
+    for (int step = 0; step < most_steps && end(last) != b; ++step) {
+      const int e = next_on_line(last, forward);
+      if (e < 0) break;
+      last = e;
+    }
+    if (end(last) != b) continue;
+    const Place p = slide_along(line, target);
+    if (const double d = norm(point(p) - target); d < nearest) nearest = d, best = p;
+  }
+  return nearest < 1e300 ? best : slide(from, target);
 }
 
 }  // namespace meshpipe

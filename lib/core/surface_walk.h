@@ -26,6 +26,8 @@ class SurfaceWalk {
   /// Slides from `from`, on a border or feature edge, along its line towards `target`, not past an end of the
   /// line or a junction. Returns a place on no such line as it is.
   Place slide(const Place& from, Vec3 target) const;
+  /// The same from a vertex, on a line that comes to the vertex at `to`, if there is one.
+  Place slide(const Place& from, const Place& to, Vec3 target) const;
   /// Returns the same point on the other side of the feature edge it lies on, or the place itself if it lies
   /// on none.
   Place across(const Place& place) const;
@@ -34,6 +36,11 @@ class SurfaceWalk {
   Vec3 normal(const Place& place) const { return normals_[place.face]; }
 
  private:
+  double squared_distance(int h, Vec3 target, double& t) const;
+  int next_on_line(int h, bool forward) const;
+  std::vector<int> lines_at(int t, int i) const;
+  Place slide_along(int line, Vec3 target) const;
+
   const Mesh& mesh_;
   std::vector<int> opposite_;
   std::vector<int> beyond_;  ///< the same, -1 along feature edges

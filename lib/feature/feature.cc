@@ -24,11 +24,13 @@ constexpr double near_cosine =
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
-constexpr double gap = 0.05;         ///< edges between weak and strong, as a share of the strong ones' length
-constexpr double spacing = 1.5;      ///< target lengths between creases, on average
-constexpr double sliver = 0.02;      ///< target lengths: thinner triangles do not show which way they face
+constexpr double gap = 0.05;     ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double spacing = 1.5;  ///< target lengths between creases, on average
+/// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
+/// unasked. (At 0.02, two lines along a needle forced needles: a third of the rounds that CAD had to repeat.)
+constexpr double sliver = 0.06;
 constexpr double slender = 0.05;     ///< height over length: other triangles have normals of their own
-constexpr double widest_band = 1.5;  ///< times `sliver`, to either side: what mfeature removes unasked
+constexpr double widest_band = 0.5;  ///< times `sliver`, to either side
 constexpr double far_turn = 30;      ///< times further across an edge, for each 1 - cosine of its angle
 constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
 constexpr double long_chain = 5;     ///< mean edges of the input

@@ -246,8 +246,21 @@ void find_far(const State& s, Known& known, Fault& found) {
   }
 }
 
-/// Triangles that are needles, except those between two model edges at a corner, which forces them.
-/// None if there are too many: then the sizes of all are at fault.
+/// Is the needle t, of kappa k, no worse than the angle between two model edges at a corner forces it to be?
+/// kappa of an isosceles triangle is 4 s (1 - s), s the sine of half the angle at its apex.
+bool is_forced(const State& s, int t, double k) {
+  const EditMesh& m = s.mesh;
+  for (int h = 3 * t; h < 3 * t + 3; ++h) {
+    const Vec3 p = s.points[m.from(h)];
+    if (!m.hard[h] || !m.hard[prev(h)] || s.hold[m.from(h)] != fixed) continue;
+    const double half = std::sin(0.5 * angle(s.points[m.to(h)] - p, s.points[m.apex(h)] - p));
+    if (half < rules::sharp_half && k >= rules::leaning * 4 * half * (1 - half)) return true;
+  }
+  return false;
+}
+
+/// Triangles that are needles and that no corner forces. None if there are too many: then the sizes of all
+/// are at fault.
 void find_needles(const State& s, Fault& found) {
   const EditMesh& m = s.mesh;
   std::vector<int> needles;
@@ -257,10 +270,7 @@ void find_needles(const State& s, Fault& found) {
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
     if (k > rules::bearable_kappa) continue;
-    bool forced = false;
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      forced |= m.hard[h] && m.hard[prev(h)] && s.hold[m.from(h)] == fixed;
-    if (forced) continue;
+    if (is_forced(s, t, k)) continue;
     needles.push_back(t);
     excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
   }

@@ -100,7 +100,9 @@ std::vector<CopyPlace> places_on_edge(const State& s, int h, const Place& place,
   for (int e : edges_along(s, h)) {
     if (e == h) continue;
     const int from = end_on_line(s, m.from(e), m.to(e));
-    const Place at = s.reference->walk.slide(s.place[from < 0 ? m.from(e) : from], p);
+    const SurfaceWalk& walk = s.reference->walk;
+    const Place at =
+        from < 0 ? walk.slide(s.place[m.from(e)], s.place[m.to(e)], p) : walk.slide(s.place[from], p);
     if (!near(s, at, p, m.from(e))) return {};
     places.push_back({e, at, s.reference->normal(at)});
   }

@@ -97,7 +97,9 @@ constexpr int most_halvings = 400;   // of a triangle, to find its largest dista
 constexpr double first_step = 0.25;  // of the longest edge: of the climb to it
 constexpr double last_step = 0.05;   // of the first step
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
-constexpr double refinement = 0.8;                          // of the size, each round
+constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
+constexpr double leaning = 0.7;       // of the isosceles triangle's kappa: what leaning ones have
+constexpr double refinement = 0.8;    // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,

@@ -55,7 +55,8 @@ bool split_edge(State& s, int h, double at, bool may_fold) {
   const Vec3 wanted = lerp(s.points[a], s.points[b], at);
   const int from = end_on_line(s, a, b);
   const Place place = m.hard[h]
-                          ? s.reference->walk.slide(s.place[from < 0 ? a : from], wanted)
+                          ? (from < 0 ? s.reference->walk.slide(s.place[a], s.place[b], wanted)
+                                      : s.reference->walk.slide(s.place[from], wanted))
                           : place_near(s, wanted, {a, b, c, d}, s.face_normal(h / 3) + s.face_normal(g / 3));
   const Vec3 p = s.reference->walk.point(place);
   if (norm(p - wanted) > (m.hard[h] ? rules::off_line : rules::off_edge) * norm(s.points[b] - s.points[a]))

@@ -44,4 +44,19 @@ TEST(SurfaceWalk, StopsAtTheBorderAndAtWalls) {
   EXPECT_NEAR(norm(x - Vec3{2, 0.5, 1.5}), 0, 1e-15);
 }
 
+//      4        the lines 0-3-1 and 3-4 are model edges, the others the border
+//    / | \
+//  0 --3-- 1
+//    \ | /
+//      2
+TEST(SurfaceWalk, BetweenTwoCornersItSlidesOnTheLineThatJoinsThem) {
+  const Mesh m{{{0, 0, 0}, {4, 0, 0}, {2, -1, 0}, {2, 0.2, 0}, {2, 2, 0}},
+               {{0, 2, 3}, {2, 1, 3}, {0, 3, 4}, {3, 1, 4}}};
+  const SurfaceWalk walk(m, {0b100, 0b010, 0b011, 0b101});
+  const Place corner{0, 1, 0, 0}, other{1, 0, 1, 0};
+  EXPECT_EQ(walk.point(walk.slide(corner, {2, 0, 0})), (Vec3{2 * 2 / 2.02, 0.2 / 1.01, 0}));
+  const Vec3 x = walk.point(walk.slide(corner, other, {2, 0, 0}));
+  EXPECT_NEAR(norm(x - Vec3{1.6, -0.8, 0}), 0, 1e-15);
+}
+
 }  // namespace
