@@ -323,7 +323,7 @@ void SheetDistance::leave_sides(const Connectivity& c, const std::vector<char>& 
 }
 
 /// Replaces the radii on folds, and those next to them that leave_sides flags, by the mean of the neighbors
-/// farther away, or by `none` where there are none.
+/// farther away, or by the largest balls on the triangles where there are none.
 void SheetDistance::leave_folds(const Connectivity& c) {
   std::vector<char> fold(c.n_vertices(), 0);
   for (int h = 0; h < c.n_half_edges(); ++h) {
@@ -341,6 +341,15 @@ void SheetDistance::leave_folds(const Connectivity& c) {
   }
   leave_sides(c, fold, longest);
   fill(mesh_, none_, folded_, radius_);
+  const std::vector<double> filled = radius_;
+  for (int h = 0; h < c.n_half_edges(); ++h) {  // tubes of three sides are all folds
+    const int v = c.from(h), t = h / 3;
+    if (!folded_[v] || filled[v] < none_) continue;
+    for (int corner : mesh_.tris[t]) {  // almost at the middles of edges: largest balls of the section
+      const double r = ball(lerp(centroid(mesh_, t), mesh_.points[corner], -0.45), face_[t]).radius;
+      if (r < none_) radius_[v] = radius_[v] < none_ ? std::max(radius_[v], r) : r;
+    }
+  }
   const Neighbors next(mesh_);
   // what a single vertex has alone is a fault there
   const std::vector<double> before = radius_;

@@ -176,6 +176,35 @@ TEST(sheet_distance, RadiusOfCoarseTubesIsThatOfASection) {
 }
 
 //    A roof of 40 degrees over a floor, ten long: its edges are folds, not thin places.
+// n sides, rings of edges as long as these; all corners of the section are sharp
+Mesh prism(int sides) {
+  Mesh m;
+  const int rings = 12;
+  for (int k = 0; k <= rings; ++k)
+    for (int i = 0; i < sides; ++i) {
+      const double a = 2 * M_PI * i / sides;
+      m.points.push_back({std::cos(a), std::sin(a), 0.5 * k});
+    }
+  for (int k = 0; k < rings; ++k)
+    for (int i = 0; i < sides; ++i) {
+      const int a = k * sides + i, b = k * sides + (i + 1) % sides;
+      m.tris.push_back({a, b, b + sides});
+      m.tris.push_back({a, b + sides, a + sides});
+    }
+  return m;
+}
+
+TEST(sheet_distance, RadiusOfTubesOfFewSides) {
+  for (int sides : {3, 4, 6}) {
+    const Mesh m = prism(sides);
+    const double inner = std::cos(M_PI / sides);  // radii of the circles within and around
+    for (double r : radii(m, SheetDistance::inside)) {
+      EXPECT_GT(r, 0.9 * inner) << sides;
+      EXPECT_LT(r, 1.05) << sides;
+    }
+  }
+}
+
 TEST(sheet_distance, FoldsAreNotThin) {
   Mesh m = tube(10, 100, true);
   for (Vec3& p : m.points) p.x *= 0.1 + 0.9 * std::abs(p.y);  // pinched along y = 0, sharp at y = 1 / 2
