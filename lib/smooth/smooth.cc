@@ -248,15 +248,19 @@ double mean_edge(const Mesh& mesh) {
   return sum / (3.0 * mesh.tris.size());
 }
 
-/// Throws: GoalMissed if the bound leaves almost nothing of what smoothing does without one.
+/// Throws: GoalMissed if the bound leaves almost nothing of what smoothing does without one, if that is much.
 void refuse_small_bound(Motion& m, const SmoothReport& r, double edge) {
   if (m.within >= edge || r.angle_after <= (1 - least_gain) * r.angle_before) return;
   const double bound = m.within;
+  const std::vector<Vec3> done = m.s.points;
   m.s.points = m.start;
   m.within = edge;
   smooth_rounds(m, steps[0]);
   const double gain = r.angle_before - mean_angle(m.c);
-  if (r.angle_before - r.angle_after >= least_gain * gain) return;
+  if (gain < least_gain * r.angle_before || r.angle_before - r.angle_after >= least_gain * gain) {
+    m.s.points = done;
+    return;
+  }
   std::vector<double> way(m.n());
   for (int v = 0; v < m.n(); ++v) way[v] = norm(m.s.points[v] - m.start[v]);
   const int most = static_cast<int>(std::max_element(way.begin(), way.end()) - way.begin());

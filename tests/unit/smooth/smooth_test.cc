@@ -120,6 +120,16 @@ TEST(smooth, ABoundThatIsTooSmallIsRefusedWithTheNumberThatHelps) {
   EXPECT_NO_THROW(smooth(smooth_already, {.within = 1e-3}));  // nothing to be gained by any
 }
 
+TEST(smooth, SmallBoundsOfSmoothSurfacesHold) {
+  const Surface before = surface_of(tube(3, 40, false));
+  for (double within : {1e-5, 1e-4, 5e-4, 1e-3, 1e-2}) {
+    Surface s = before;
+    const SmoothReport r = smooth(s, {.within = within});
+    EXPECT_LE(farthest(s.points, before.points), within);
+    EXPECT_EQ(farthest(s.points, before.points), r.farthest);
+  }
+}
+
 TEST(smooth, SmoothSurfacesStay) {
   const Mesh before = sphere(5000);
   Surface s = surface_of(before);
