@@ -28,6 +28,9 @@ constexpr double damping = 0.5;  ///< of a step: 1 would let the shortest waves 
 constexpr double most_volume_change = 1e-3;  ///< relative; GoalMissed beyond
 constexpr double volume_tolerance = 1e-6;    ///< relative; where the search for the offset ends
 constexpr double planar = 1e-5;              ///< of the diagonal: single precision far from the origin
+/// Of its radius, by which a border may be off its plane and is smoothed along it: the wobble of an
+/// extraction.
+constexpr double almost_planar = 0.1;
 constexpr double least_gain = 0.1;  ///< of what smoothing without a bound does to the angles: less is no help
 constexpr int worth_threads = 20000;  ///< vertices
 constexpr int most_repairs = 4;       ///< of intersections and volume in turn
@@ -41,7 +44,7 @@ struct Motion {
   Neighbors near;
   std::vector<std::array<int, 2>> along{};  ///< per vertex of a border: its two neighbors there
   std::vector<int> loop{};                  ///< per vertex, of the border it slides along; else -1
-  std::vector<Vec3> plane{};                ///< per loop: the unit normal of its plane; zero if it has none
+  std::vector<Vec3> plane{};                ///< per loop: the unit normal of its plane; zero if it stays
   std::vector<Vec3> center{};               ///< per loop
   std::vector<char> held{};                 ///< vertices that stay where they are
   std::vector<int> component{};             ///< per triangle
@@ -59,7 +62,7 @@ void for_vertices(const Motion& m, F f) {
     if (!m.held[v]) f(v);
 }
 
-/// Finds the borders, those in a plane, and what is held.
+/// Finds the borders, those almost in a plane, and what is held.
 void find_borders(Motion& m, bool keep_features, SmoothReport& report) {
   m.held.assign(m.n(), 0);
   m.loop.assign(m.n(), -1);
@@ -71,9 +74,11 @@ void find_borders(Motion& m, bool keep_features, SmoothReport& report) {
     for (int h : loop) center = center + (1.0 / loop.size()) * m.c.point(m.c.from(h));
     for (int h : loop)
       normal = normal + cross(m.c.point(m.c.from(h)) - center, m.c.point(m.c.to(h)) - center);
+    const double radius = std::sqrt(norm(normal) / (2 * std::numbers::pi));
+    const double most = std::max(tolerance, almost_planar * radius);
     normal = normalized(normal);
     bool flat = norm(normal) > 0;
-    for (int h : loop) flat = flat && std::abs(dot(m.c.point(m.c.from(h)) - center, normal)) <= tolerance;
+    for (int h : loop) flat = flat && std::abs(dot(m.c.point(m.c.from(h)) - center, normal)) <= most;
     ++(flat ? report.planar_ends : report.kept_ends);
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int v = m.c.from(loop[i]);
@@ -89,7 +94,7 @@ void find_borders(Motion& m, bool keep_features, SmoothReport& report) {
     if (m.c.is_model(h)) m.held[m.c.from(h)] = m.held[m.c.to(h)] = 1;
 }
 
-/// The part of a displacement that a vertex may take: in the plane of its end.
+/// The part of a displacement that a vertex may take: along the plane of its end.
 Vec3 allowed(const Motion& m, int v, Vec3 d) {
   return m.loop[v] < 0 ? d : d - dot(d, m.plane[m.loop[v]]) * m.plane[m.loop[v]];
 }
@@ -344,7 +349,7 @@ std::vector<std::string> describe(const SmoothReport& r) {
     lines.push_back(count(r.moved_back, "vertex", "vertices") +
                     " moved back where triangles would intersect");
   if (r.kept_ends)
-    lines.push_back(count(r.kept_ends, "border that is", "borders that are") + " not in a plane stay" +
+    lines.push_back(count(r.kept_ends, "border that is", "borders that are") + " far from plane stay" +
                     (r.kept_ends == 1 ? "s as it is" : " as they are"));
   return lines;
 }

@@ -21,12 +21,13 @@ struct SmoothReport {
   double angle_before = 0, angle_after = 0;  ///< root mean square between adjacent triangles, degrees
   int bounded = 0;                           ///< vertices that the bound holds back
   int moved_back = 0;                        ///< vertices moved back where triangles would intersect
-  int planar_ends = 0, kept_ends = 0;        ///< border loops that slide in their plane, or stay
+  int planar_ends = 0, kept_ends = 0;        ///< border loops that slide along a plane, or stay
   double region_change = 0;                  ///< of sheets: the largest change of a region's volume, relative
 };
 
-/// Smooths the surface, its volume kept within 0.1 %. Border loops in a plane stay in it, others and what
-/// `keep_features` names stay where they are; no two triangles intersect that did not do so before.
+/// Smooths the surface, its volume kept within 0.1 %. Vertices of border loops within a tenth of their
+/// radius from a plane move along it, others and what `keep_features` names stay where they are; no two
+/// triangles intersect that did not do so before.
 /// Throws: NotAdmissible if there are no triangles, or if they are not an oriented manifold; GoalMissed with
 /// the expected number if `within` is too small to smooth anything, or to keep the volume.
 /// Source: the filter of Taubin, "A signal processing approach to fair surface design", 1995, with the

@@ -158,9 +158,31 @@ TEST(smooth, OpenEndsKeepTheirPlaneAndRadius) {
   }
 }
 
+TEST(smooth, EndsThatWobbleSlideAlongTheirPlane) {
+  Surface s = open_voxel_tube(8);
+  const auto loops = boundary_loops(opposite_halfedges(s.tris, (int)s.points.size()));
+  std::vector<int> rim;
+  for (int h : loops[0]) rim.push_back(origin(s.tris, h));
+  auto turning = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      const Vec3 p = s.points[rim[i]];
+      sum += angle(p - s.points[rim[(i + rim.size() - 1) % rim.size()]],
+                   s.points[rim[(i + 1) % rim.size()]] - p);
+    }
+    return sum;
+  };
+  std::vector<double> z;
+  for (std::size_t i = 0; i < rim.size(); ++i) z.push_back(s.points[rim[i]].z += i % 3 == 0 ? 0.1 : 0);
+  const double before = turning();
+  EXPECT_EQ(smooth(s, {}).planar_ends, 2);
+  EXPECT_LT(turning(), 0.5 * before);
+  for (std::size_t i = 0; i < rim.size(); ++i) EXPECT_NEAR(s.points[rim[i]].z, z[i], 0.02);
+}
+
 TEST(smooth, EndsThatAreNotPlanarStay) {
   Surface s = open_voxel_tube(4);
-  s.points[origin(s.tris, boundary_loops(opposite_halfedges(s.tris, (int)s.points.size()))[0][3])].z += 0.3;
+  s.points[origin(s.tris, boundary_loops(opposite_halfedges(s.tris, (int)s.points.size()))[0][3])].z += 1.5;
   const std::vector<Vec3> before = s.points;
   const SmoothReport r = smooth(s, {});
   EXPECT_EQ(r.kept_ends, 1);
