@@ -4,6 +4,8 @@
 #include "lib/clean/clean.h"
 #include "lib/core/edges.h"
 #include "lib/core/error.h"
+#include "lib/core/split_edges.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -17,6 +19,43 @@ void split(Surface& s) {
     throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
                         std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
                         " duplicate triangles; run mclean first");
+}
+
+/// Divides edges where sheets meet and two sides of one have the same copies of both ends: these would be
+/// neighbors in that sheet, rather than the sides of a slit. Returns, per triangle, the one it is part of;
+/// empty if nothing was divided.
+std::vector<int> open_slits(Surface& s) {
+  Surface apart = s;
+  split(apart);
+  const int n = (int)s.points.size();
+  std::vector<int> first(3 * s.tris.size(), -1), middle(first.size(), -1);  // of marked half-edges
+  for_each_edge(s.tris, n, [&](std::span<const EdgeUse> uses) {
+    bool closes = false;
+    auto ends = [&](int h) { return std::minmax({origin(apart.tris, h), target(apart.tris, h)}); };
+    for (std::size_t i = 0; uses.size() > 2 && i < uses.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) closes |= ends(half_edge(uses[i])) == ends(half_edge(uses[j]));
+    for (EdgeUse e : uses)
+      if (closes) first[half_edge(e)] = half_edge(uses[0]);
+  });
+  std::vector<char> mark;
+  std::vector<int> number(n);  // of a vertex, those in the middle of half-edges included, which are one
+  std::iota(number.begin(), number.end(), 0);
+  std::vector<int> rows = number;
+  for (int h = 0; h < (int)first.size(); ++h) {
+    mark.push_back(first[h] >= 0);
+    if (first[h] < 0) continue;
+    if (first[h] == h) middle[h] = (int)rows.size(), rows.push_back((int)number.size());
+    number.push_back(middle[first[h]]);
+  }
+  if ((int)rows.size() == n) return {};
+  std::vector<int> none(first.size(), -1);
+  const std::vector<int> parent = split_edges({s, none}, std::move(mark), nullptr);
+  for (Tri& t : s.tris)
+    for (int& v : t) v = number[v];
+  for (std::size_t i = 0; i < rows.size(); ++i) s.points[i] = s.points[rows[i]];
+  s.points.resize(rows.size());
+  take_rows(s.vertex, rows);
+  return parent;
 }
 
 /// Reverses the sheets that have the outside behind them, and a region in front.
@@ -35,7 +74,11 @@ void face_outside(Surface& surface, Solids& solids) {
 
 }  // namespace
 
-RegionReport take_apart(Surface& surface, const std::vector<std::array<int, 2>>& given) {
+RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given) {
+  if (const std::vector<int> part_of = open_slits(surface); !given.empty() && !part_of.empty()) {
+    const std::vector<std::array<int, 2>> whole = std::exchange(given, {});
+    for (int t : part_of) given.push_back(whole[t]);
+  }
   Solids solids = find_solids(surface);
   RegionReport report;
   report.volume = solids.volume;

@@ -383,6 +383,13 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
     const int a = place(chains.vertex[c.first]), b = place(chains.vertex[c.first + c.count - 1]);
     if (!chains.leader.empty() && chains.leader[l] != l) {
       count.push_back(0);  // as its leader
+      auto ends = [&](int k) {
+        const Chain& x = chains.chain[k];
+        return std::minmax(chains.vertex[x.first], chains.vertex[x.first + x.count - 1]);
+      };
+      // a slit of one segment, both sides with the same ends, would be none
+      for (int k = chains.leader[l]; k < l; ++k)
+        if (ends(k) == ends(l)) count[chains.leader[l]] = std::max(2, count[chains.leader[l]]);
       continue;
     }
     all += total(l);

@@ -734,6 +734,22 @@ TEST(Clean, SolidsMayShareAFaceAnEdgeOrAVertex) {
   }
 }
 
+TEST(Clean, SlitsOfOneEdgeAreDividedSoThatTheyStayOpen) {
+  // each of two cubes is cut along the edge where they touch
+  Surface s = cubes({{0, 0, 0}, {1, 1, 0}});
+  clean(s, {.sheets = CleanOptions::keep});
+  const std::vector<std::array<int, 2>> given(s.tris.size(), {5, 0});
+  const std::size_t points = s.points.size();
+  const RegionReport r = take_apart(s, given);
+  EXPECT_EQ(s.tris.size(), 28u);
+  EXPECT_EQ(s.points.size(), points + 2 + 4);  // ends for each of the cubes, middles for each of their sides
+  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  EXPECT_EQ(std::count(opposite.begin(), opposite.end(), -1), 8);
+  expect_manifold(s);
+  EXPECT_EQ(r.label, (std::vector<int>{0, 5, 5}));
+  EXPECT_NEAR(volume(s), 2, 1e-12);
+}
+
 TEST(Clean, SecondCopiesOfASheetAreDropped) {
   for (bool reversed : {false, true})
     for (bool other : {false, true}) {
