@@ -46,7 +46,7 @@ Mesh regions(const Options& o, int triangles) {
 /// Returns the number of triangles with which a region is about ten edges across: with fewer, corners force
 /// most of them to be bad.
 int usual_of_regions(const Options& o) {
-  constexpr int per_square = 250, per_region = 1200, per_region_of_image = 2500, per_smallest = 200;
+  constexpr int per_square = 250, per_region = 1500, per_region_of_image = 2500, per_smallest = 200;
   constexpr double most = 1e7;
   if (o.nested > 0) {
     const double n = o.nested, squares = n * (n + 1) * (2 * n + 1) / 6;  // areas relative to the smallest

@@ -27,8 +27,11 @@ struct Plane {
 class Diagram {
  public:
   Diagram(int n, std::vector<Plane> sides, int seed) : n_(n), sides_(std::move(sides)) { spread(seed); }
+  void set_sides(std::vector<Plane> sides) { sides_ = std::move(sides); }
   /// The polygon between seed i and seed or side j, by corners in order; empty if they are not adjacent.
   std::vector<Key> polygon(int i, int j) const;
+  /// All polygons that are not empty.
+  std::vector<std::vector<Key>> polygons() const;
   Vec3 corner(const Key& key) const;
   int sides() const { return n_ + (int)sides_.size(); }
 
@@ -110,6 +113,14 @@ std::vector<Key> Diagram::polygon(int i, int j) const {
   return keys;
 }
 
+std::vector<std::vector<Key>> Diagram::polygons() const {
+  std::vector<std::vector<Key>> all;
+  for (int i = 0; i < n_; ++i)
+    for (int j = i + 1; j < sides(); ++j)
+      if (std::vector<Key> p = polygon(i, j); p.size() >= 3) all.push_back(std::move(p));
+  return all;
+}
+
 Vec3 Diagram::corner(const Key& key) const {
   Vec3 row[3];
   double right[3];
@@ -168,24 +179,31 @@ void add_split_triangle(Mesh& mesh, int k, const std::vector<Vec3>& corners, Tri
 }  // namespace
 
 Mesh voronoi(int seeds, bool ball, int n, int seed) {
-  // a facet has 6 triangles; above 1000 they are seen no longer, and cost their square
-  const Diagram diagram(seeds, body(ball, std::clamp(n / 12, 50, 1000)), seed);
+  // a facet has about 6 edges; above 1000 they are seen no longer, and cost their square
+  constexpr int least_facets = 50, most_facets = 1000, tries = 4;
+  constexpr double per_facet = 6.5, enough = 0.03;  // edges; relative difference of their number
+  int facets = std::clamp(n / 12, least_facets, most_facets);
+  Diagram diagram(seeds, body(ball, facets), seed);
   std::vector<std::vector<Key>> polygons;
   std::vector<Key> keys;
-  std::size_t edges = 0;
-  for (int i = 0; i < seeds; ++i)
-    for (int j = i + 1; j < diagram.sides(); ++j) {
-      std::vector<Key> polygon = diagram.polygon(i, j);
-      if (polygon.size() < 3) continue;
-      keys.insert(keys.end(), polygon.begin(), polygon.end());
-      edges += polygon.size();
-      polygons.push_back(std::move(polygon));
-    }
+  double edges = 0;
+  int k = 0;  // each triangle of an edge and the middle of its polygon becomes k^2
+  for (int i = 0; i < tries; ++i) {
+    polygons = diagram.polygons();
+    keys.clear();
+    for (const std::vector<Key>& polygon : polygons) keys.insert(keys.end(), polygon.begin(), polygon.end());
+    edges = (double)keys.size();
+    if (!ball) k = std::max(1, (int)std::lround(std::sqrt(n / edges)));
+    if (k == 0) k = std::max(1, (int)std::ceil(std::sqrt(n / (edges + per_facet * (most_facets - facets)))));
+    const double more = (double)n / k / k - edges;
+    const int next = std::clamp(facets + (int)(more / per_facet), least_facets, most_facets);
+    if (!ball || next == facets || std::abs(more) < enough * edges || i + 1 == tries) break;
+    diagram.set_sides(body(ball, facets = next));
+  }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   std::vector<Vec3> corners;
   for (const Key& key : keys) corners.push_back(diagram.corner(key));
-  const int k = std::max(1, (int)std::lround(std::sqrt((double)n / (double)edges)));
   Mesh mesh;
   for (const std::vector<Key>& polygon : polygons) {
     std::vector<int> number;
