@@ -126,9 +126,9 @@ struct RegionReport {
 };
 
 /// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with
-/// borders where they meet; edges on which one would close again are divided. Patches have one region on either side, and sheets next to the outside are
-/// oriented towards it. `given`: labels as in labels_of; empty: regions are labeled 1, 2 ...
-/// Throws: as labels_of and sheets_apart.
+/// borders where they meet; edges on which one would close again are divided. Patches have one region on
+/// either side, and sheets next to the outside are oriented towards it. `given`: labels as in labels_of;
+/// empty: regions are labeled 1, 2 ... Throws: as labels_of and sheets_apart.
 RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given = {});
 
 /// Returns one line: which component, how large, which triangles, where.
