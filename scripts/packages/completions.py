@@ -104,7 +104,7 @@ def main(bin_dir, out_dir):
     for p in programs:
         text = subprocess.run([os.path.join(bin_dir, p), "--help"], capture_output=True, text=True, check=True).stdout
         known[p] = options_of(text)
-    words = {n: o.words for options in known.values() for o in options if o.words for n in o.names}
+    words = {n: o.words for p, options in known.items() if p != "mshape" for o in options if o.words for n in o.names}
     for p, options in known.items():
         for o in options:  # the driver's options are those of the stages
             if p == "mremesh" and not o.takes_file():
