@@ -64,7 +64,9 @@ void join(Io& io, const std::string& directory) {
   Stream& whole = io.read();
   const int open = join_shards(whole, names, [&](const std::string& name) { return io.read(name); });
   io.say(std::to_string(names.size()) + " shards joined" +
-         (open ? ", " + std::to_string(open) + " parts are left to mparam --resume" : ""));
+         (open ? ", " + std::to_string(open) + (open == 1 ? " part is" : " parts are") +
+                     " left to mparam --resume"
+               : ""));
   io.report["shards"] = names.size();
   io.report["parts_left"] = open;
   write_as_it_is(io, whole);
@@ -97,14 +99,11 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mshard",
       "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join what "
-      "they "
-      "have made.\n\nexamples:\n"
-      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mshard --shards 2 --into in "
-      "stages/08-lines.ply "
-      "-o all.ply\n"
+      "they have made.\n\nexamples:\n"
+      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
+      "mshard --shards 2 --into in stages/08-lines.ply -o all.ply\n"
       "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply -o all.ply && "
-      "mkdir "
-      "out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && mshard --join out all.ply | "
-      "mlift -o lifted.ply",
+      "mkdir out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && "
+      "mshard --join out all.ply | mlift -o lifted.ply",
       options, body, {.passes = true, .any_size = true});
 }

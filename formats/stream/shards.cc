@@ -81,6 +81,8 @@ void number_lines(const Stream& whole, const std::vector<int>& local_part, Shard
 }
 
 const std::vector<int>& part_of_faces(const Stream& whole) {
+  // from mlift on, lines and charts index the surface that is kept
+  if (whole.find("ref_vertex")) throw NotAdmissible("the stream has passed mlift; use one from before");
   if (!whole.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
   return whole.surface.face.get<int>("part");
 }

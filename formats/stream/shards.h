@@ -21,7 +21,7 @@ std::vector<char> kept_vertices(const Stream& stream);
 
 /// Distributes the parts to `count` shards (fewer if there are fewer parts), each with almost the same number
 /// of triangles, those of the result included where sizes are known. Returns the parts of each, ascending.
-/// Throws: NotAdmissible for a stream that has no parts, or is a shard.
+/// Throws: NotAdmissible for a stream that has no parts, is a shard, or has passed mlift.
 std::vector<std::vector<int>> share_out(const Stream& whole, int count);
 
 /// Numbers the faces, vertices and line points of a shard. A line point that stands for another one at its

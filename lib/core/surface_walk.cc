@@ -9,7 +9,7 @@
 
 namespace meshpipe {
 namespace {
-constexpr int most_steps = 10000;  ///< along a line, to its end
+constexpr int most_steps = 10000;  ///< from triangle to triangle, or along a line
 }
 
 double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
@@ -63,7 +63,7 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target, bool through_features
   double best = 0;
   Place place = project(from.face, best);
   // each step goes to a triangle strictly closer, so it ends; the bound only guards against rounding
-  for (int step = 0; step < 10000; ++step) {
+  for (int step = 0; step < most_steps; ++step) {
     const double b[3] = {place.b0, place.b1, place.b2};
     const int zeros = (b[0] <= 0) + (b[1] <= 0) + (b[2] <= 0);
     if (zeros == 0) break;

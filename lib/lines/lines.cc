@@ -387,7 +387,7 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
         const Chain& x = chains.chain[k];
         return std::minmax(chains.vertex[x.first], chains.vertex[x.first + x.count - 1]);
       };
-      // a slit of one segment, both sides with the same ends, would be none
+      // the two sides of a slit, with the same ends, would be one edge if they were single segments
       for (int k = chains.leader[l]; k < l; ++k)
         if (ends(k) == ends(l)) count[chains.leader[l]] = std::max(2, count[chains.leader[l]]);
       continue;

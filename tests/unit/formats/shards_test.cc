@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/stream/line_tables.h"
+#include "lib/core/error.h"
 #include "lib/mesh2d/mesh2d.h"
 
 using namespace meshpipe;
@@ -59,4 +60,16 @@ TEST(shards, are_streams) {
   EXPECT_EQ(again.find("shard")->get<int>("part"), (std::vector<int>{1}));
   EXPECT_EQ(kept_vertices(again), (std::vector<char>{1, 0, 1}));
   EXPECT_EQ(share_out(whole, 5).size(), 2u);
+}
+
+TEST(shards, are_joined_only_with_the_tables_that_theirs_point_to) {
+  Stream whole = square();
+  for (const char* table : {"line", "line_use", "line_vertex"}) whole.erase(table);
+  Stream shard = cut_shard(whole, number_shard(whole, {0, 1}), {});
+  shard.history.push_back({"mmesh2d", "1", ""});
+  Table points{"chart_point", 0, {}};
+  points.set("part", std::vector<int>{0, 1});
+  points.set("line_vertex", std::vector<int>{7, 1 << 30});
+  shard.set(std::move(points));
+  EXPECT_THROW(join_shards(whole, {"a"}, [&](const std::string&) { return shard; }), BadInput);
 }
