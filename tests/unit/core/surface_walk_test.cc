@@ -44,11 +44,8 @@ TEST(SurfaceWalk, StopsAtTheBorderAndAtWalls) {
   EXPECT_NEAR(norm(x - Vec3{2, 0.5, 1.5}), 0, 1e-15);
 }
 
-//      4        the lines 0-3-1 and 3-4 are model edges, the others the border
-//    / | \
-//  0 --3-- 1
-//    \ | /
-//      2
+// corners 0 and 1, joined by the border over 2; 3 between them is joined with both and with 4 above by model
+// edges
 TEST(SurfaceWalk, BetweenTwoCornersItSlidesOnTheLineThatJoinsThem) {
   const Mesh m{{{0, 0, 0}, {4, 0, 0}, {2, -1, 0}, {2, 0.2, 0}, {2, 2, 0}},
                {{0, 2, 3}, {2, 1, 3}, {0, 3, 4}, {3, 1, 4}}};
