@@ -259,24 +259,24 @@ bool is_forced(const State& s, int t, double k) {
   return false;
 }
 
-/// Triangles that are needles and that no corner forces. None if there are too many: then the sizes of all
-/// are at fault.
+/// Triangles that are needles and that no corner forces; of too many only the worst. None if even these are
+/// too many: then the sizes of all are at fault.
 void find_needles(const State& s, Fault& found) {
   const EditMesh& m = s.mesh;
-  std::vector<int> needles;
-  double excess = 0;
+  std::vector<std::pair<double, int>> needles;
   for (int t = 0; t < (int)m.tris.size(); ++t) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
-    if (k > rules::bearable_kappa) continue;
-    if (is_forced(s, t, k)) continue;
-    needles.push_back(t);
-    excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
+    if (k <= rules::bearable_kappa && !is_forced(s, t, k)) needles.push_back({k, t});
   }
+  if ((int)needles.size() > rules::hopeless)
+    std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });
   if ((int)needles.size() > rules::hopeless) return;
-  found.triangles.insert(found.triangles.end(), needles.begin(), needles.end());
-  found.excess += excess;
+  for (const auto& [k, t] : needles) {
+    found.triangles.push_back(t);
+    found.excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
+  }
 }
 
 /// Asks for smaller triangles around the offending ones, splits their longest edges and smooths.

@@ -96,16 +96,17 @@ constexpr double doubtful = 0.4;     // of the bearable, walked to: from there a
 constexpr int most_halvings = 400;   // of a triangle, to find its largest distance
 constexpr double first_step = 0.25;  // of the longest edge: of the climb to it
 constexpr double last_step = 0.05;   // of the first step
+constexpr double failing_kappa = 0.11;                      // a margin over the limit of mcheck
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
-constexpr double leaning = 0.7;       // of the isosceles triangle's kappa: what leaning ones have
+constexpr double leaning = 0.85;      // of the isosceles triangle's kappa: what leaning ones have
 constexpr double refinement = 0.8;    // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int fault_repairs = 3, few_faults = 40;   // rounds, and places: of more the sizes are at fault
+constexpr int fault_repairs = 3, few_faults = 100;   // rounds, and places: of more the sizes are at fault
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)
