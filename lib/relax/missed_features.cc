@@ -114,14 +114,8 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     const Place to = on_line ? walk.slide(s.place[v], p) : walk.closest(s.place[v], p);
     return norm(walk.point(to) - p) < rules::reached * s.target(v);
   };
-  // a vertex on a line may know the other side of it: one off lines is asked what is inside of t
-  const Tri& corners = s.mesh.tris[t];
-  const auto off_line = std::find_if(corners.begin(), corners.end(),
-                                     [&](int v) { return s.hold[v] == loose || s.hold[v] == anchored; });
-  const Vec3 normal = s.face_normal(t);
-  const bool inside = off_line != corners.end()
-                          ? reaches(*off_line, false)
-                          : dot(walk.normal(place), normal) > rules::same_side * norm(normal);
+  // a vertex on a line may know the other side of it
+  const bool same_side = dot(walk.normal(place), s.face_normal(t)) > rules::same_side;
   if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
   const double near_enough = std::max(deviation(before), least / size);
@@ -135,8 +129,8 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     const bool stays = !insert ? s.hold[from] != loose && s.hold[from] != slides
                                : hard && (seam || (before.mesh.opp[h] >= 0 && end_on_line(s, from, to) < 0));
     const bool on_line = insert ? hard : s.hold[from] == slides;
-    const bool reached = insert && !hard ? inside && (off_line != corners.end() || reaches(from, false))
-                                         : reaches(from, on_line) || (insert && reaches(to, true));
+    const bool reached = reaches(from, on_line) || (insert && hard && reaches(to, true));
+    if (insert && !hard && s.hold[from] != loose && !same_side) continue;
     if (stays || !reached) continue;
     State& after = trials.emplace_back(Trial{0, before}).state;
     const int v = insert ? (int)after.mesh.out.size() : after.mesh.from(h);
