@@ -13,13 +13,20 @@ namespace {
 struct Known {
   const Surface& reference;
   Samples& samples;
-  Crossings crossings;
-  std::vector<double> walked;    ///< per triangle, `deviation` over the size, at `time`
-  std::vector<double> searched;  ///< `distance_of` then, or -1
-  int time;
-  std::optional<Mesh> intersections;
+  Crossings crossings{};
+  std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
+  std::vector<double> searched{};  ///< `distance_of` then, or -1
+  int time = -1;
+  std::optional<Mesh> intersections{};  ///< of the reference
   std::optional<Bvh> built{};
 
+  /// Forgets the mesh: call it before it becomes another.
+  void forget() {
+    samples.forget();
+    crossings = {};
+    walked.clear(), searched.clear();
+    time = -1;
+  }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
 
@@ -319,10 +326,12 @@ void refine_at(State& s, const Fault& fault) {
     for (int v : around) improve_vertex(s, v);
 }
 
-/// How far a patch is from good: pairs that intersect, and distances over what is bearable, there and from
-/// places of the reference.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean) {
+/// How far a patch is from good: pairs that intersect where the reference does not, and distances over what
+/// is bearable, there and from places of the reference.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean,
+                  const std::optional<Mesh>& intersections) {
   double sum = 0;
+  std::vector<std::pair<int, int>> pairs;
   std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
   const Mesh mesh{s.points, s.mesh.tris};
   std::vector<Box> box(mesh.tris.size());
@@ -335,14 +344,15 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean) 
     box[t] = box_of(mesh, t);
     for (int u = 0; u < t; ++u)
       if (!s.mesh.dead(u) && overlap(box[t], box[u]) && triangles_intersect(mesh, u, t))
-        sum += rules::pair_weight;
+        pairs.push_back({u, t});
     for (std::size_t i = 0; i < missed.size(); ++i)
       if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d < distance[i])
         distance[i] = d, bearable[i] = most;
   }
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
-  return sum;
+  if (intersections && !pairs.empty()) pairs = new_intersections(mesh, pairs, *intersections);
+  return sum + rules::pair_weight * (double)pairs.size();
 }
 
 Fault find_faults(const State& s, Known& known) {
@@ -355,7 +365,7 @@ Fault find_faults(const State& s, Known& known) {
 }
 
 /// Tries all edits where refinement did not help, and takes the best of each place.
-void repair_at(State& s, const Fault& fault) {
+void repair_at(State& s, const Fault& fault, const std::optional<Mesh>& intersections) {
   struct Item {
     int t, other;
     std::vector<Vec3> missed;
@@ -377,9 +387,11 @@ void repair_at(State& s, const Fault& fault) {
     return found;
   };
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
-    return repaired(
-        s, triangles, true,
-        {[&](const State& patch) { return objective(patch) + faultiness(patch, item.missed, mean); }, true});
+    return repaired(s, triangles, true,
+                    {[&](const State& patch) {
+                       return objective(patch) + faultiness(patch, item.missed, mean, intersections);
+                     },
+                     true});
   };
   change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
 }
@@ -389,10 +401,10 @@ void repair_at(State& s, const Fault& fault) {
 Intersections remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   std::optional<std::pair<State, Fault>> best;
-  std::optional<Known> known{Known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}}};
+  Known known{s.reference->surface, samples};
   Repairs memory;
   for (int round = 0, since_best = 0, repairs = 0;; ++round) {
-    Fault found = find_faults(s, *known);
+    Fault found = find_faults(s, known);
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
     if (better) best = {s, found};
@@ -410,10 +422,9 @@ Intersections remove_faults(State& s, Samples& samples) {
       break;
     if (!better) {
       s = best->first;
-      samples.forget();
-      known.emplace(Known{s.reference->surface, samples, {}, {}, {}, -1, {}, {}});
+      known.forget();
     }
-    repair_at(s, best->second);
+    repair_at(s, best->second, known.intersections);
     ++repairs;
   }
   s = std::move(best->first);

@@ -16,12 +16,12 @@ bool try_edit(State& s, const Edit& edit, bool may_fold) {
   return may;
 }
 
-/// Splits of model edges of t where an end of its other edges is as near as possible: opposite to its third
-/// corner, and as far from each end as that is. Segments of lines that are closer to each other than they are
-/// long must be divided alike.
-void add_aligned_splits(const State& s, int t, std::vector<Edit>& edits) {
+/// Splits of model edges of t (`all`: of any) where an end of its other edges is as near as possible:
+/// opposite to its third corner, and as far from each end as that is. Segments of lines that are closer to
+/// each other than they are long must be divided alike.
+void add_aligned_splits(const State& s, int t, bool all, std::vector<Edit>& edits) {
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
-    if (!s.mesh.hard[h]) continue;
+    if (!all && !s.mesh.hard[h]) continue;
     const Vec3 a = s.points[s.mesh.from(h)], b = s.points[s.mesh.to(h)], c = s.points[s.mesh.apex(h)];
     const double l = norm(b - a), foot = dot(c - a, b - a) / (l * l);
     for (double at : {foot, norm(c - a) / l, 1 - norm(c - b) / l})
@@ -31,7 +31,7 @@ void add_aligned_splits(const State& s, int t, std::vector<Edit>& edits) {
 
 /// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
 /// share a vertex with it.
-std::vector<Edit> edits_around(const State& s, int t, bool wide) {
+std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
   const EditMesh& m = s.mesh;
   std::vector<int> halfedges;
   for (int u : wide ? triangles_around(s, t, 1) : std::vector<int>{t})
@@ -41,7 +41,7 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide) {
       if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
     }
   std::vector<Edit> edits;
-  add_aligned_splits(s, t, edits);
+  add_aligned_splits(s, t, all, edits);
   for (int h : halfedges) {
     edits.push_back({Edit::collapse, h, m.from(h)});
     edits.push_back({Edit::collapse, h, m.to(h)});
@@ -127,13 +127,13 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
   const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
-  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough), judge);
+  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough, judge.may_fold), judge);
   if (trials.empty()) return {};
   Trial best = trials.front();
   for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {
     if (best.objective <= good_enough) break;
     const State& from = trials[i].state;
-    for (Trial& second : try_all(from, edits_around(from, worst(from), false), judge))
+    for (Trial& second : try_all(from, edits_around(from, worst(from), false, judge.may_fold), judge))
       if (second.objective < best.objective) best = std::move(second);
   }
   if (best.objective > good_enough) return {};

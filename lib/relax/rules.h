@@ -106,7 +106,7 @@ constexpr double stale_share = 0.1;   // of the triangles: more that are new are
 constexpr double growth = 1.6,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int fault_repairs = 3, few_faults = 100;   // rounds, and places: of more the sizes are at fault
+constexpr int fault_repairs = 3, few_faults = 100;  // rounds, and places: of more the sizes are at fault
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)
