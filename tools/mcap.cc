@@ -63,6 +63,7 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
                                  {"trimmed", r.trimmed},
                                  {"moved", r.moved},
                                  {"extended", r.extended},
+                                 {"stub_triangles", r.stub},
                                  {"cap_triangles", r.cap},
                                  {"flat", r.flat},
                                  {"why_not", r.why_not}});

@@ -191,8 +191,7 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth) {
   return (int)(mesh.tris.size() - before);
 }
 
-int raise_end(Mesh& mesh, End& end, Growth& growth) {
-  const std::size_t before = mesh.tris.size();
+void raise_end(Mesh& mesh, End& end, Growth& growth) {
   Plane plane{end.center, end.normal};
   double low = 0, high = 0;
   for (const std::vector<int>& rim : end.rims)
@@ -213,7 +212,6 @@ int raise_end(Mesh& mesh, End& end, Growth& growth) {
       return r == rings ? last[k] : lerp(s.rim[k], last[k], (double)r / rings);
     });
   }
-  return (int)(mesh.tris.size() - before);
 }
 
 int plane_cap(Mesh& mesh, const End& end, Growth& growth) {

@@ -81,8 +81,8 @@ struct Growth {
   void add_like(int v) { vertex_like.push_back((std::size_t)v < first ? v : vertex_like[v - first]); }
 };
 /// Raises the rims of an end to a plane above them, by walls on which their notches are smoothed: a stub,
-/// such as is left of a branch. The rims are then the borders of that. Returns the number of triangles.
-int raise_end(Mesh& mesh, End& end, Growth& growth);
+/// such as is left of a branch. The rims are then the borders of that.
+void raise_end(Mesh& mesh, End& end, Growth& growth);
 /// The same for the ends flagged, along their normals or a little off. Returns what is in the way where that
 /// is impossible. Triangles get `owner`, their end.
 std::vector<std::string> raise_ends(Mesh& mesh, std::vector<End>& ends, const std::vector<char>& flagged,
