@@ -44,7 +44,7 @@ Mesh genus_surface(int g, int n);
 /// A branching tree of tubes along z with an inlet of diameter 1 and open ends, about n triangles.
 /// `generations`: bifurcations up to each outlet; `outlets`: number of ends, if not 0; `ratio`: a child's
 /// radius over its parent's; `aspect`: diameters of a tube of the same area, 0: branches are 5.5 radii long.
-/// Throws: GoalMissed if tubes touch, or their radii differ too much for one grid.
+/// Throws: GoalMissed if tubes touch, their radii differ too much for one grid, or triangles cross.
 Mesh branching_tree(int generations, int outlets, double ratio, int n, int seed, double aspect = 0);
 
 /// Returns the faces between voxels of side h whose center is inside the mesh and those outside, two

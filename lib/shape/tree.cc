@@ -7,6 +7,7 @@
 #include "lib/core/cut.h"
 #include "lib/core/edit_mesh.h"
 #include "lib/core/error.h"
+#include "lib/core/intersect.h"
 #include "lib/core/random.h"
 #include "lib/core/topology.h"
 #include "lib/shape/shape.h"
@@ -23,8 +24,9 @@ double smooth_min(double a, double b, double k) {
   return std::min(a, b) - h * h / (4 * k);
 }
 
-/// Collapses the shortest edges until about `count` triangles are left, without flipping a triangle.
-void coarsen(Mesh& mesh, int count) {
+/// Collapses the shortest edges until about `count` triangles are left, without flipping a triangle. An edge
+/// counts as longer by the smaller `fineness` of its ends' (at most 1).
+void coarsen(Mesh& mesh, int count, const std::vector<float>& fineness) {
   EditMesh edit(mesh.tris, (int)mesh.points.size(), {});
   auto& p = mesh.points;
   auto keeps_normals = [&](int h) {
@@ -42,7 +44,9 @@ void coarsen(Mesh& mesh, int count) {
   double shortest = 0.5 * std::sqrt(4 / std::sqrt(3) * total_area(mesh) / edit.live);
   for (int sweep = 0; sweep < 40 && edit.live > count; ++sweep, shortest *= 1.1)
     for (int h = 0; h < (int)edit.opp.size() && edit.live > count; ++h) {
-      if (edit.dead(h / 3) || norm(p[edit.from(h)] - p[edit.to(h)]) > shortest) continue;
+      if (edit.dead(h / 3)) continue;
+      const double allowed = shortest * std::min(fineness[edit.from(h)], fineness[edit.to(h)]);
+      if (norm(p[edit.from(h)] - p[edit.to(h)]) > allowed) continue;
       if (!edit.on_border(edit.from(h)) && edit.can_collapse(h, edit.from(h)) &&
           edit.valence(edit.from(h)) + edit.valence(edit.to(h)) < 13 && keeps_normals(h))
         edit.collapse(h, edit.from(h));
@@ -65,8 +69,31 @@ void coarsen(Mesh& mesh, int count) {
   p = std::move(points);
 }
 
+/// Multiplies the fineness of vertices near the triangles that cross in a coarser mesh of the same surface.
+void refine_at(const Mesh& coarse, const std::vector<std::pair<int, int>>& crossing, const Mesh& mesh,
+               std::vector<float>& fineness) {
+  constexpr double reach = 1.5;    // in longest edges of the pair: the triangles around it
+  constexpr float gentler = 0.7f;  // twice as many triangles
+  std::vector<char> near(mesh.points.size(), 0);
+  for (auto [s, t] : crossing) {
+    Vec3 middle;
+    for (int i = 0; i < 3; ++i)
+      middle = middle + 1.0 / 6 * (coarse.points[coarse.tris[s][i]] + coarse.points[coarse.tris[t][i]]);
+    double size = 0;
+    for (int u : {s, t})
+      for (int i = 0; i < 3; ++i)
+        size = std::max(size,
+                        norm(coarse.points[coarse.tris[u][i]] - coarse.points[coarse.tris[u][(i + 1) % 3]]));
+    for (std::size_t v = 0; v < near.size(); ++v)
+      if (norm(mesh.points[v] - middle) < reach * size) near[v] = 1;
+  }
+  for (std::size_t v = 0; v < near.size(); ++v)
+    if (near[v]) fineness[v] *= gentler;
+}
+
 /// Marches f on the grid that is a quarter finer than `count` triangles need, but not coarser than `cell`,
 /// takes the surplus away again, which makes the triangles even, and smooths.
+/// Throws: GoalMissed if triangles cross, however small they are left in that place.
 Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
                     const std::function<void(Mesh&)>& finish) {
   const Vec3 size = hi - lo;
@@ -78,9 +105,20 @@ Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
   if (n > coarsest) mesh = march(f, lo, hi, n);
   finish(mesh);
   relax_on(mesh, f, 2);
-  coarsen(mesh, count);
-  relax_on(mesh, f, 5);
-  return mesh;
+  // triangles as large as a tube is wide may cross in its forks: there they are left smaller
+  constexpr int most_rounds = 10;
+  std::vector<float> fineness(mesh.points.size(), 1);
+  for (int round = 0;; ++round) {
+    Mesh coarse = mesh;
+    coarsen(coarse, count, fineness);
+    relax_on(coarse, f, 5);
+    const auto crossing = self_intersections(coarse);
+    if (crossing.empty()) return coarse;
+    if (round == most_rounds)
+      throw GoalMissed(std::to_string(crossing.size()) + " pairs of triangles cross; ask for more than " +
+                       std::to_string(count) + " triangles");
+    refine_at(coarse, crossing, mesh, fineness);
+  }
 }
 
 // ---- the tree

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "lib/core/intersect.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -112,6 +113,15 @@ TEST(shape, EndsOfTreesAreRoundAlsoWhereTrianglesAreLarge) {
       }
       EXPECT_GT(4 * std::numbers::pi * norm(area), 0.9 * length * length) << outlets;
     }
+  }
+}
+
+TEST(shape, ForksOfTreesDoNotCrossThemselves) {
+  for (int outlets : {59, 64, 86, 97}) {
+    const Mesh m = branching_tree(0, outlets, 0.8, 25000, 1);
+    EXPECT_TRUE(self_intersections(m).empty()) << outlets;
+    EXPECT_NEAR(m.tris.size(), 25000, 60) << outlets;
+    expect_topology(m, 0, outlets);
   }
 }
 
