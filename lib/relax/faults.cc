@@ -137,8 +137,8 @@ struct Piece {
   }
 };
 
-/// Returns a distance of triangle t from the reference that is larger than `limit`, if there is one, else the
-/// largest that was found. A walk may end on the wrong sheet, so it is searched for.
+/// Returns a distance of triangle t from the reference that is larger than `limit`, if one is found, else the
+/// largest that is. A walk may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const Mesh& reference = s.reference->surface;
   const auto [a, b, c] = s.mesh.tris[t];
@@ -214,9 +214,9 @@ void look_at_changed(const State& s, Known& known) {
   for (int t = 0; t < n; ++t) {
     if (s.mesh.dead(t) || (t < before && !changed_since(s, t, known.time))) continue;
     const auto [a, b, c] = s.mesh.tris[t];
-    const Vec3 n = s.face_normal(t);
-    const bool flat =
-        std::min({dot(n, s.normal[a]), dot(n, s.normal[b]), dot(n, s.normal[c])}) > rules::parallel;
+    const Vec3 normal = s.face_normal(t);
+    const bool flat = std::min({dot(normal, s.normal[a]), dot(normal, s.normal[b]),
+                                dot(normal, s.normal[c])}) > rules::parallel;
     known.walked[t] = flat ? 0 : deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
     known.searched[t] = -1;
   }
@@ -246,8 +246,8 @@ void find_far(const State& s, Known& known, Fault& found) {
     look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());
-  for (auto [t, ratio] : far) {
-    if (!found.triangles.empty() && found.triangles.back() == t) continue;
+  for (int last = -1; auto [t, ratio] : far) {
+    if (std::exchange(last, t) == t) continue;
     found.triangles.push_back(t);
     found.excess -= ratio;
   }
@@ -351,6 +351,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean,
   }
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
+  if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
   if (intersections && !pairs.empty()) pairs = new_intersections(mesh, pairs, *intersections);
   return sum + rules::pair_weight * (double)pairs.size();
 }
@@ -361,6 +362,7 @@ Fault find_faults(const State& s, Known& known) {
   find_folds(s, known, found);
   find_far(s, known, found);
   find_needles(s, found);
+  sort_unique(found.triangles);
   return found;
 }
 
