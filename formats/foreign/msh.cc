@@ -52,6 +52,10 @@ long long number(NumberSource& in, const char* what, bool is_wide) {
   return is_wide || !in.binary ? in.wide(what) : in.get<int>(what);
 }
 
+/// Most physical groups that one entity of version 4 may be in: each of its elements is read once for each of
+/// them.
+constexpr std::size_t most_groups = 64;
+
 /// The physical tags of the curves and surfaces of version 4.
 class Entities {
  public:
@@ -84,8 +88,13 @@ void Entities::read(NumberSource& in, double version) {
         in.skip(4 * static_cast<std::size_t>(in.count("the count of bounding entities", true, 4, 2)),
                 "a bounding entity");
     }
-  for (auto& all : tags_)
+  for (auto& all : tags_) {
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = most_groups; i < all.size(); ++i)
+      if (all[i].first == all[i - most_groups].first)
+        in.fail("entity " + std::to_string(all[i].first) + " is in more than " + std::to_string(most_groups) +
+                " physical groups");
+  }
 }
 
 std::vector<int> Entities::physical_of(int dim, int tag) const {
