@@ -65,7 +65,7 @@ def test_bash(build):
         bash = Bash(folder, os.path.join(build, "bin"))
         bash.type(f"for f in {build}/completions/bash/*; do . $f; done\n")
         for line, expected in (("mcheck --refe", "mcheck --reference "), ("mremesh --keep-b", "mremesh --keep-boundary "),
-                               ("mremesh --mesher del", "mremesh --mesher delaunay "),
+                               ("mremesh --mesher del", "mremesh --mesher delaunay "), ("mremesh --from mes", "mremesh --from mesh2d "),
                                ("mremesh --size 1 sur", "mremesh --size 1 surface.stl "),
                                ("mremesh -o sur", "mremesh -o surface.stl "), ("mremesh --keep a", "mremesh --keep a\\ folder/"),
                                ("mremesh --si", "mremesh --size ")):

@@ -180,7 +180,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   io.any_size = usage.any_size;
   CLI::App app{summary, program};
   use_plain_help(app);
-  app.option_defaults()->group("Options");
+  app.option_defaults()->group(recorded_group);
   options(app);
   add_common_options(app, io, program, usage.reads);
 

@@ -24,7 +24,8 @@ double most_triangles();
 
 /// Runs a program: parses the common options and those that `options` adds, runs `body`, and turns exceptions
 /// into one line on standard error and the exit status. `summary` ends with the examples that --help shows.
-/// The stream records all of `options` except those of the group "Reports", which must not change the result.
+/// The stream records all of `options` except those of other groups, such as "Reports", which must not change
+/// the result.
 /// -o and --json are checked before `body` runs; call Io::expect_report for further files.
 int run_tool(int argc, char** argv, const char* program, const char* summary,
              const std::function<void(CLI::App&)>& options, const std::function<void(Io&)>& body,

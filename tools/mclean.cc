@@ -85,7 +85,7 @@ RegionReport take_apart_labeled(Stream& stream, const SheetCounts& sheets) {
         if (side > 0 && different.size() == label.size()) side = label.at(side);
     try {
       return take_apart(stream.surface, labels);
-    } catch (const NotAdmissible&) {  // patches are not solids, as of a design whose faces they are
+    } catch (const LabelsContradict&) {  // patches are not solids, as of a design whose faces they are
     }
   }
   return take_apart(stream.surface, given);

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
                  "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
     app.add_flag("--resume", resume,
                  "keep the maps that mshard --join has added, and make only those that are missing")
-        ->group("Reports");
+        ->group("Shards");
     app.add_option("--svg", svg, "draw the charts, colored by area scale")
         ->type_name("FILE")
         ->group("Reports");

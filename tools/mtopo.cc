@@ -109,14 +109,15 @@ int main(int argc, char** argv) {
                                   " joins triangles that share no edge; run mclean first");
           return topology_of_components({mesh, opposite}, component, n);
         };
-        Mesh apart;
+        Surface apart;
         const Mesh* mesh = &s;
         std::vector<Topology> pieces;
         try {
           pieces = components_of(s);
         } catch (const NotAdmissible&) {
           if (!cleaned || required == "manifold") throw;
-          apart = sheets_apart(s);  // as mclean --sheets keep has left it
+          apart = surface_of(s);  // as mclean --sheets keep has left it
+          split_sheets(apart);
           mesh = &apart;
           pieces = components_of(apart);
         }

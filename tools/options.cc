@@ -62,7 +62,7 @@ void add_common_options(CLI::App& app, CommonOptions& options, const std::string
 std::string recorded_options(const CLI::App& app) {
   std::string out;
   for (const CLI::Option* o : app.get_options()) {
-    if (o->count() == 0 || o->get_group() == common_group || o->get_group() == "Reports") continue;
+    if (o->count() == 0 || o->get_group() != recorded_group) continue;
     if (!out.empty()) out += ' ';
     out += o->get_name(!o->nonpositional());
     if (o->get_expected_min() == 0) continue;

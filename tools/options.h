@@ -18,9 +18,10 @@ struct CommonOptions {
 /// Adds the options; FILE only if the program reads one. Those that `app` already has get a better --help.
 void add_common_options(CLI::App& app, CommonOptions& options, const std::string& program, bool reads_file);
 
-/// Returns the options of the command line that change the result, as the stream records them. Left out: the
-/// common ones, those of the group "Reports", and names of files, which depend on where the program ran.
+/// Returns the options of the command line that change the result, as the stream records them: those of
+/// recorded_group. Left out are names of files, which depend on where the program ran.
 std::string recorded_options(const CLI::App& app);
+constexpr const char* recorded_group = "Options";
 
 /// Sets the --help formatter, which leaves out what only a programmer wants to know: types, checks,
 /// exclusions.

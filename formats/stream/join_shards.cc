@@ -10,6 +10,7 @@ namespace {
 
 /// What is left of a shard once it has been read.
 struct Taken {
+  std::string name;
   ShardNumbers numbers;
   std::vector<Table> tables;
   const Table* find(std::string_view name) const {
@@ -19,7 +20,15 @@ struct Taken {
   }
   const Table& table(std::string_view name) const {
     if (const Table* found = find(name)) return *found;
-    throw BadInput("a shard has no table '" + std::string(name) + "', but others do");
+    throw BadInput(this->name + ": there is no table '" + std::string(name) + "', but other shards have it");
+  }
+  template <class T>
+  const std::vector<T>& column(std::string_view of_table, const std::string& column) const {
+    try {
+      return table(of_table).get<T>(column);
+    } catch (const NotAdmissible& e) {
+      throw BadInput(name + ": " + e.what() + ", but other shards have it");
+    }
   }
 };
 
@@ -45,7 +54,7 @@ void expect_cut_from(const Stream& whole, const Stream& shard, const ShardNumber
 }
 
 /// Checks a shard, and takes the tables that its program has made.
-Taken take_shard(const Stream& whole, Stream shard, std::vector<Provenance>& made) {
+Taken take_shard(const Stream& whole, const std::string& name, Stream shard, std::vector<Provenance>& made) {
   const std::size_t n_parts = whole.need("part", "mpartition").rows, before = whole.history.size();
   const std::vector<int>& parts = shard.need("shard", "mshard").get<int>("part");
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -65,7 +74,7 @@ Taken take_shard(const Stream& whole, Stream shard, std::vector<Provenance>& mad
   if (!made.empty() && (added.size() != made.size() || text(added.back()) != text(made.back())))
     throw BadInput("it was made by '" + text(added.back()) + "', others by '" + text(made.back()) + "'");
   made = std::move(added);
-  Taken taken{number_shard(whole, parts), {}};
+  Taken taken{name, number_shard(whole, parts), {}};
   expect_cut_from(whole, shard, taken.numbers);
   if (shard.find("chart_point")) shard.need("line_vertex", "mlines");  // which its rows point to
   for (const char* name : {"part", "chart_vertex", "chart_point", "chart_face"})
@@ -74,12 +83,12 @@ Taken take_shard(const Stream& whole, Stream shard, std::vector<Provenance>& mad
 }
 
 /// Returns the first row of each part in a table sorted by part, and one more.
-std::vector<int> first_rows(const Table& table, std::size_t n_parts) {
-  const auto& part = table.get<int>("part");
+std::vector<int> first_rows(const Taken& shard, const char* table) {
+  const auto& part = shard.column<int>(table, "part");
   if (!std::is_sorted(part.begin(), part.end()))
-    throw BadInput("rows of " + table.name + " are not in the order of parts");
+    throw BadInput(shard.name + ": rows of " + table + " are not in the order of parts");
   std::vector<int> first;
-  for (int p = 0; p <= static_cast<int>(n_parts); ++p)
+  for (int p = 0; p <= static_cast<int>(shard.numbers.parts.size()); ++p)
     first.push_back(static_cast<int>(std::lower_bound(part.begin(), part.end(), p) - part.begin()));
   return first;
 }
@@ -89,7 +98,7 @@ class Merged {
  public:
   Merged(const char* name, const std::vector<Taken>& taken, const std::vector<Home>& homes)
       : name_(name), taken_(taken), homes_(homes) {
-    for (const Taken& t : taken) rows_.push_back(first_rows(t.table(name), t.numbers.parts.size()));
+    for (const Taken& t : taken) rows_.push_back(first_rows(t, name));
     for (const Home& h : homes) first_.push_back(first_.back() + end(h) - begin(h));
   }
   int begin(const Home& h) const { return rows_[h.shard][h.part]; }
@@ -107,7 +116,7 @@ class Merged {
             values.reserve(first_.back());
             for (int p = 0; p < static_cast<int>(homes_.size()); ++p) {
               const Home& h = homes_[p];
-              const std::vector<T>& from = taken_[h.shard].table(name_).template get<T>(like.name);
+              const std::vector<T>& from = taken_[h.shard].template column<T>(name_, like.name);
               const std::size_t start = values.size();
               values.insert(values.end(), from.begin() + begin(h), from.begin() + end(h));
               if constexpr (std::is_same_v<T, int>)
@@ -145,7 +154,7 @@ Table joined_parts(const std::vector<Taken>& taken, std::size_t n_parts) {
         [&]<class T>(const std::vector<T>&) {
           std::vector<T> values(n_parts);
           for (const Taken& t : taken) {
-            const std::vector<T>& from = t.table("part").get<T>(like.name);
+            const std::vector<T>& from = t.template column<T>("part", like.name);
             for (std::size_t p = 0; p < from.size(); ++p) values[t.numbers.parts[p]] = from[p];
           }
           out.set(like.name, std::move(values));
@@ -165,7 +174,7 @@ int join_shards(Stream& whole, const std::vector<std::string>& names,
     Stream shard = read(name);
     auto failed = [&](const std::exception& e) { return BadInput(name + ": " + e.what()); };
     try {
-      taken.push_back(take_shard(whole, std::move(shard), made));
+      taken.push_back(take_shard(whole, name, std::move(shard), made));
     } catch (const BadInput& e) {
       throw failed(e);
     } catch (const NotAdmissible& e) {

@@ -406,14 +406,13 @@ CleanReport clean(Surface& surface, const CleanOptions& options) {
   return report;
 }
 
-Mesh sheets_apart(const Mesh& mesh) {
-  Surface s = surface_of(mesh);
-  const CleanReport r = clean(s, {.weld = 0, .sheets = CleanOptions::split});
-  if (s.tris.size() != mesh.tris.size() || r.flipped || r.degenerate || r.duplicate)
+void split_sheets(Surface& surface) {
+  const std::size_t n = surface.tris.size();
+  const CleanReport r = clean(surface, {.weld = 0, .sheets = CleanOptions::split});
+  if (surface.tris.size() != n || r.flipped || r.degenerate || r.duplicate)
     throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
                         std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
                         " duplicate triangles; run mclean first");
-  return s;
 }
 
 }  // namespace meshpipe

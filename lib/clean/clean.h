@@ -111,9 +111,9 @@ struct Spikes {
 /// Finds vertices of a welded surface that stick out by 5 of those extents; none if they are many.
 Spikes find_spikes(const Surface& surface);
 
-/// Returns the same triangles with copies of vertices that keep sheets and fans apart: an oriented manifold.
-/// Throws: NotAdmissible if the mesh needs any other repair.
-Mesh sheets_apart(const Mesh& mesh);
+/// Makes copies of vertices that keep sheets and fans apart: an oriented manifold of the same triangles.
+/// Throws: NotAdmissible if the surface needs any other repair.
+void split_sheets(Surface& surface);
 
 /// The regions of a surface whose sheets were kept.
 struct RegionReport {
@@ -128,7 +128,7 @@ struct RegionReport {
 /// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with
 /// borders where they meet; edges on which one would close again are divided. Patches have one region on
 /// either side, and sheets next to the outside are oriented towards it. `given`: labels as in labels_of;
-/// empty: regions are labeled 1, 2 ... Throws: as labels_of and sheets_apart.
+/// empty: regions are labeled 1, 2 ... Throws: as labels_of, when only edges were divided, and split_sheets.
 RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given = {});
 
 /// Returns one line: which component, how large, which triangles, where.

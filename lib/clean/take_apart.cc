@@ -3,7 +3,6 @@
 
 #include "lib/clean/clean.h"
 #include "lib/core/edges.h"
-#include "lib/core/error.h"
 #include "lib/core/split_edges.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -11,22 +10,12 @@
 namespace meshpipe {
 namespace {
 
-/// As sheets_apart, with columns.
-void split(Surface& s) {
-  const std::size_t n = s.tris.size();
-  const CleanReport r = clean(s, {.weld = 0, .sheets = CleanOptions::split});
-  if (s.tris.size() != n || r.flipped || r.degenerate || r.duplicate)
-    throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
-                        std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
-                        " duplicate triangles; run mclean first");
-}
-
 /// Divides edges where sheets meet and two sides of one have the same copies of both ends: these would be
 /// neighbors in that sheet, rather than the sides of a slit. Returns, per triangle, the one it is part of;
 /// empty if nothing was divided.
 std::vector<int> open_slits(Surface& s) {
   Surface apart = s;
-  split(apart);
+  split_sheets(apart);
   const int n = (int)s.points.size();
   std::vector<int> first(3 * s.tris.size(), -1), middle(first.size(), -1);  // of marked half-edges
   for_each_edge(s.tris, n, [&](std::span<const EdgeUse> uses) {
@@ -92,7 +81,7 @@ RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given)
           lerp(surface.points[origin(surface.tris, h)], surface.points[target(surface.tris, h)], 0.5);
   });
   surface.face.erase("model");
-  split(surface);
+  split_sheets(surface);
   face_outside(surface, solids);
   report.sheets = sheet_patches(surface, solids, report.label, report.added);
   return report;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "lib/core/error.h"
 #include "lib/solids/solids.h"
 
 namespace meshpipe {
@@ -20,8 +19,8 @@ int outside_label(const Solids& solids, const std::vector<std::array<int, 2>>& g
         if (given[t][0] != label && given[t][1] != label) lacks[label + 1] = t;
   for (int label : {-1, 0})
     if (lacks[label + 1] < 0) return label;
-  throw NotAdmissible("triangle " + std::to_string(lacks[1]) + " has labels " + pair_of(given[lacks[1]]) +
-                      " on its sides, but one is outside, where -1 or 0 is expected");
+  throw LabelsContradict("triangle " + std::to_string(lacks[1]) + " has labels " + pair_of(given[lacks[1]]) +
+                         " on its sides, but one is outside, where -1 or 0 is expected");
 }
 
 }  // namespace
@@ -48,14 +47,14 @@ std::vector<int> labels_of(const Solids& solids, const std::vector<std::array<in
       const std::string where =
           "triangle " + std::to_string(t) + " has labels " + pair_of(pair) + " on its sides, but ";
       if (pair[0] != label[r] && pair[1] != label[r])
-        throw NotAdmissible(where + "triangle " + std::to_string(from[r]) +
-                            " gives the region on one of them label " + std::to_string(label[r]));
+        throw LabelsContradict(where + "triangle " + std::to_string(from[r]) +
+                               " gives the region on one of them label " + std::to_string(label[r]));
       const int beyond = pair[pair[0] == label[r]];
       if (other == r && beyond != label[r])
-        throw NotAdmissible(where + "they are one region: the sheet encloses nothing");
+        throw LabelsContradict(where + "they are one region: the sheet encloses nothing");
       if (known[other] && label[other] != beyond)
-        throw NotAdmissible(where + "triangle " + std::to_string(from[other]) +
-                            " gives the region on one of them label " + std::to_string(label[other]));
+        throw LabelsContradict(where + "triangle " + std::to_string(from[other]) +
+                               " gives the region on one of them label " + std::to_string(label[other]));
       if (known[other]) continue;
       known[other] = 1;
       label[other] = beyond;

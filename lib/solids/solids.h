@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/core/error.h"
 #include "lib/core/mesh.h"
 
 namespace meshpipe {
@@ -28,9 +29,14 @@ bool divides_space(const Solids& solids);
 /// Returns a point inside each region, the outside's is of no use.
 std::vector<Vec3> points_within(const Mesh& mesh, const Solids& solids);
 
+/// Labels of a file contradict each other or the regions.
+struct LabelsContradict : NotAdmissible {
+  using NotAdmissible::NotAdmissible;
+};
+
 /// Returns the label of each region from those that a file gives for the two sides of every triangle, in any
-/// order. Labels spread from the outside, which has -1 or 0. Throws: NotAdmissible naming triangles and
-/// labels that contradict each other or the regions.
+/// order. Labels spread from the outside, which has -1 or 0. Throws: LabelsContradict naming triangles and
+/// labels.
 std::vector<int> labels_of(const Solids& solids, const std::vector<std::array<int, 2>>& given);
 
 /// A patch and the labels of the regions in front of it (where normals point to) and behind; 0: the outside.

@@ -98,6 +98,13 @@ def fish(program, options):
     return out
 
 
+def stages_of(driver):
+    """Returns the names of the stages that the driver chains, in its lists of them."""
+    with open(driver, encoding="utf-8") as f:
+        lists = re.findall(r"\bstages=\(([a-z0-9 ]+)", f.read())
+    return list(dict.fromkeys(stage for names in lists for stage in names.split()))
+
+
 def main(bin_dir, out_dir):
     programs = sorted(p for p in os.listdir(bin_dir) if re.fullmatch(r"m[a-z0-9]+", p))
     known = {}
@@ -106,8 +113,10 @@ def main(bin_dir, out_dir):
         known[p] = options_of(text)
     words = {n: o.words for p, options in known.items() if p != "mshape" for o in options if o.words for n in o.names}
     for p, options in known.items():
-        for o in options:  # the driver's options are those of the stages
-            if p == "mremesh" and not o.takes_file():
+        for o in options if p == "mremesh" else []:  # its options are those of the stages
+            if o.value == "STAGE":
+                o.words = stages_of(os.path.join(bin_dir, p))
+            elif not o.takes_file():
                 o.words = o.words or words.get(o.names[-1], [])
         for shell, name, make in (("bash", p, bash), ("zsh", "_" + p, zsh), ("fish", p + ".fish", fish)):
             folder = os.path.join(out_dir, shell)

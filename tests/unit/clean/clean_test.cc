@@ -237,7 +237,8 @@ TEST(Clean, KeepsSheetsJoinedOnRequest) {
   EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
   EXPECT_EQ(r.sheets.patches, (std::vector<std::array<int, 2>>{{9, 7}}));
   EXPECT_THROW(opposite_halfedges(s.tris, 5), NotAdmissible);
-  Mesh apart = sheets_apart(s);
+  Surface apart = surface_of(s);
+  split_sheets(apart);
   EXPECT_EQ(apart.points.size(), 9u);
   EXPECT_EQ(topology_of(apart).components, 3);
   // kept once, it is clean

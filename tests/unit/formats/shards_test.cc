@@ -73,3 +73,27 @@ TEST(shards, are_joined_only_with_the_tables_that_theirs_point_to) {
   shard.set(std::move(points));
   EXPECT_THROW(join_shards(whole, {"a"}, [&](const std::string&) { return shard; }), BadInput);
 }
+
+TEST(shards, that_lack_a_table_of_the_others_are_named) {
+  Stream whole = square();
+  std::vector<Stream> shards;
+  for (int part : {0, 1}) {
+    Stream& shard = shards.emplace_back(cut_shard(whole, number_shard(whole, {part}), {}));
+    shard.history.push_back({"mparam", "1", ""});
+    Table charts{"chart_vertex", 0, {}};
+    charts.set("part", std::vector<int>{0});
+    if (part == 0) charts.set("vertex", std::vector<int>{0});
+    shard.set(std::move(charts));
+  }
+  const auto read = [&](const std::string& name) { return shards[name == "b"]; };
+  for (const char* lacks : {"column 'vertex'", "table 'chart_vertex'"}) {
+    try {
+      join_shards(whole, {"a", "b"}, read);
+      ADD_FAILURE();
+    } catch (const BadInput& e) {
+      EXPECT_TRUE(std::string(e.what()).starts_with("b: ")) << e.what();
+      EXPECT_NE(std::string(e.what()).find(lacks), std::string::npos) << e.what();
+    }
+    shards[1].erase("chart_vertex");
+  }
+}
