@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace meshpipe {
 
@@ -67,20 +68,10 @@ Aggregates grow_aggregates(const Connectivity& mesh, const std::vector<double>& 
       c = number[c];
     }
   }
-  // sorted in linear time: by the higher aggregate, then stably by the lower one
-  std::vector<int> start(result.n + 1), order;
-  auto sort_by = [&](auto key) {
-    std::fill(start.begin(), start.end(), 0);
-    for (int h : result.crossing) ++start[key(h) + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    order.resize(result.crossing.size());
-    for (int h : result.crossing) order[start[key(h)]++] = h;
-    result.crossing.swap(order);
-  };
   for (int h = 0; h < 3 * n; ++h)
     if (int o = opposite[h]; o >= 0 && result.of[h / 3] < result.of[o / 3]) result.crossing.push_back(h);
-  sort_by([&](int h) { return result.of[opposite[h] / 3]; });
-  sort_by([&](int h) { return result.of[h / 3]; });
+  auto key = [&](int h) { return std::tuple(result.of[h / 3], result.of[opposite[h] / 3], h); };
+  std::sort(result.crossing.begin(), result.crossing.end(), [&](int h, int g) { return key(h) < key(g); });
   return result;
 }
 

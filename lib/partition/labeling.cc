@@ -22,33 +22,19 @@ namespace meshpipe {
 namespace {
 
 /// Cuts are to follow creases: a sharp edge costs less than a smooth one.
-std::vector<int> cut_weights(const Connectivity& view) {
-  const Mesh& mesh = view.mesh;
-  const std::vector<int>& opposite = view.opposite;
+std::vector<int> cut_weights(const Connectivity& c) {
   constexpr double sharp_factor = 0.4;
-  std::vector<double> length(opposite.size(), 0);
+  const double flat = std::cos(sharp_edge);
   double sum = 0;
   std::size_t n = 0;
-  const double flat = std::cos(sharp_edge);
-  std::vector<Vec3> normal(mesh.tris.size());
-  std::vector<double> size(mesh.tris.size());
-  for (int t = 0; t < (int)normal.size(); ++t) {
-    normal[t] = area_vector(mesh, t);
-    size[t] = norm(normal[t]);
-  }
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] >= 0) {
-      length[h] = edge_length(mesh, h);
-      sum += length[h];
-      ++n;
-    }
-  std::vector<int> weight(opposite.size(), 0);
-  for (int h = 0; h < (int)opposite.size(); ++h) {
-    int o = opposite[h];
-    if (o < 0) continue;
-    double f = 1;
-    if (dot(normal[h / 3], normal[o / 3]) < flat * size[h / 3] * size[o / 3]) f = sharp_factor;
-    weight[h] = (int)std::clamp(std::round(100 * f * length[h] * n / sum), 1.0, 1e5);
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (!c.is_border(h)) sum += c.length(h), ++n;
+  std::vector<int> weight(c.n_half_edges(), 0);
+  for (int h = 0; h < c.n_half_edges(); ++h) {
+    if (c.is_border(h)) continue;
+    const Vec3 mine = c.area_vector(h / 3), other = c.area_vector(c.opposite[h] / 3);
+    const double f = dot(mine, other) < flat * norm(mine) * norm(other) ? sharp_factor : 1;
+    weight[h] = (int)std::clamp(std::round(100 * f * c.length(h) * n / sum), 1.0, 1e5);
   }
   return weight;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <numbers>
-#include <tuple>
+#include <set>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/cut.h"
@@ -61,23 +63,20 @@ std::vector<Curve> find_curves(const CutSurface& cut) {
   const Surface& s = cut.surface;
   const std::vector<int>& opposite = cut.opposite;
   const std::vector<int>& part = s.face.get<int>("part");
-  struct Piece {
-    int a, b, from, half_edge;
-    auto key() const { return std::tie(a, b, from); }
-  };
-  std::vector<Piece> pieces;
+  // an edge in the curve: its parts, the vertex where it begins, which it does but once, and the half-edge
+  std::vector<std::array<int, 4>> pieces;
   for (int h = 0; h < (int)opposite.size(); ++h)
     if (opposite[h] >= 0 && part[h / 3] < part[opposite[h] / 3])
       pieces.push_back({part[h / 3], part[opposite[h] / 3], origin(s.tris, h), h});
-  auto less = [](const Piece& p, const Piece& q) { return p.key() < q.key(); };
-  std::sort(pieces.begin(), pieces.end(), less);
+  std::sort(pieces.begin(), pieces.end());
 
   std::vector<int> follower(pieces.size(), -1);
   std::vector<char> follows(pieces.size(), 0), used(pieces.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece next{pieces[i].a, pieces[i].b, target(s.tris, pieces[i].half_edge), 0};
-    auto it = std::lower_bound(pieces.begin(), pieces.end(), next, less);
-    if (it == pieces.end() || it->key() != next.key()) continue;
+    const auto& [a, b, from, h] = pieces[i];
+    const std::array<int, 4> next{a, b, target(s.tris, h), 0};
+    const auto it = std::lower_bound(pieces.begin(), pieces.end(), next);
+    if (it == pieces.end() || !std::equal(next.begin(), next.end() - 1, it->begin())) continue;
     follower[i] = (int)(it - pieces.begin());
     follows[follower[i]] = 1;
   }
@@ -85,10 +84,10 @@ std::vector<Curve> find_curves(const CutSurface& cut) {
   for (bool closed : {false, true})
     for (int i = 0; i < (int)pieces.size(); ++i) {
       if (used[i] || (!closed && follows[i])) continue;
-      Curve c{pieces[i].a, pieces[i].b, {}};
+      Curve c{pieces[i][0], pieces[i][1], {}};
       for (int k = i; k >= 0 && !used[k]; k = follower[k]) {
         used[k] = 1;
-        c.half_edges.push_back(pieces[k].half_edge);
+        c.half_edges.push_back(pieces[k][3]);
       }
       curves.push_back(std::move(c));
     }
@@ -343,42 +342,28 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   return faults;
 }
 
+/// Two parts, the lower number first.
+using Pair = std::pair<int, int>;
+
 /// Pairs of parts whose curves share a junction get different colors; curves of a color are straightened
 /// together.
-struct PairColor {
-  int a, b, color;
-  auto key() const { return std::tie(a, b); }
-};
-std::vector<PairColor> color_pairs(const Surface& s, const std::vector<Curve>& curves) {
-  std::vector<PairColor> pairs;
-  for (const Curve& c : curves) pairs.push_back({c.a, c.b, -1});
-  auto less = [](const PairColor& p, const PairColor& q) { return p.key() < q.key(); };
-  std::sort(pairs.begin(), pairs.end(), less);
-  pairs.erase(std::unique(pairs.begin(), pairs.end(), [](auto& p, auto& q) { return p.key() == q.key(); }),
-              pairs.end());
-  std::vector<std::pair<int, int>> ends;  // (vertex, pair)
-  for (const Curve& c : curves) {
-    const int pair =
-        (int)(std::lower_bound(pairs.begin(), pairs.end(), PairColor{c.a, c.b, 0}, less) - pairs.begin());
-    ends.push_back({origin(s.tris, c.half_edges.front()), pair});
-    ends.push_back({target(s.tris, c.half_edges.back()), pair});
+std::map<Pair, int> color_pairs(const Surface& s, const std::vector<Curve>& curves) {
+  std::map<Pair, std::set<int>> ends;  // vertices
+  std::map<int, std::set<Pair>> at_end;
+  for (const Curve& c : curves)
+    for (int v : {origin(s.tris, c.half_edges.front()), target(s.tris, c.half_edges.back())}) {
+      ends[{c.a, c.b}].insert(v);
+      at_end[v].insert({c.a, c.b});
+    }
+  std::map<Pair, int> color;
+  std::map<Pair, std::set<int>> taken;
+  for (const auto& [pair, vertices] : ends) {
+    int& mine = color[pair];
+    while (taken[pair].contains(mine)) ++mine;
+    for (int v : vertices)
+      for (const Pair& other : at_end[v]) taken[other].insert(mine);
   }
-  std::sort(ends.begin(), ends.end());
-  std::vector<std::vector<int>> conflicts(pairs.size());
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    for (std::size_t j = i + 1; j < ends.size() && ends[j].first == ends[i].first; ++j)
-      if (ends[i].second != ends[j].second) {
-        conflicts[ends[i].second].push_back(ends[j].second);
-        conflicts[ends[j].second].push_back(ends[i].second);
-      }
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    auto taken = [&](int color) {
-      return std::any_of(conflicts[i].begin(), conflicts[i].end(),
-                         [&](int j) { return pairs[j].color == color; });
-    };
-    for (pairs[i].color = 0; taken(pairs[i].color);) ++pairs[i].color;
-  }
-  return pairs;
+  return color;
 }
 
 /// A curve by the ends of an edge in its middle: unlike half-edges these last while other curves are
@@ -398,7 +383,7 @@ std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector
   if (handles.empty()) return {};
   const std::vector<Curve> curves = find_curves(cut);
   std::vector<Role> role(curves.size(), Role::other);
-  std::vector<std::pair<int, int>> pairs;
+  std::vector<Pair> pairs;
   for (std::size_t c = 0; c < curves.size(); ++c)
     for (int h : curves[c].half_edges)
       if (std::binary_search(handles.begin(), handles.end(), Handle{origin(s.tris, h), target(s.tris, h)})) {
@@ -408,7 +393,7 @@ std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector
   std::sort(pairs.begin(), pairs.end());
   for (std::size_t c = 0; c < curves.size(); ++c)
     if (role[c] == Role::other &&
-        std::binary_search(pairs.begin(), pairs.end(), std::pair(curves[c].a, curves[c].b)))
+        std::binary_search(pairs.begin(), pairs.end(), Pair(curves[c].a, curves[c].b)))
       role[c] = Role::stays;
   std::vector<Handle> failed;
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
@@ -483,20 +468,20 @@ void straighten_corners(const CutSurface& cut, const Limits& limits, Trial& tria
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces) {
   const Limits limits{n_parts, snap, max_faces};
   Trial trial;
-  const std::vector<PairColor> pairs = color_pairs(cut.surface, find_curves(cut));
+  const std::map<Pair, int> colors = color_pairs(cut.surface, find_curves(cut));
   constexpr double straight = 0.05;  // as a closed shortest line is
   const Surface& surface = cut.surface;
   auto model = [&](int h) { return cut.connectivity().is_model(h); };
   int n_colors = 0;
-  for (const PairColor& p : pairs) n_colors = std::max(n_colors, p.color + 1);
+  for (const auto& [pair, color] : colors) n_colors = std::max(n_colors, color + 1);
   for (int color = 0; color < n_colors; ++color) {
     std::vector<Handle> open;
     for (const Curve& c : find_curves(cut))
-      for (const PairColor& p : pairs)
-        if (p.a == c.a && p.b == c.b && p.color == color &&
-            !std::all_of(c.half_edges.begin(), c.half_edges.end(), model) &&
-            !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
-          open.push_back(handle_of(surface, c));
+      if (const auto found = colors.find({c.a, c.b});
+          found != colors.end() && found->second == color &&
+          !std::all_of(c.half_edges.begin(), c.half_edges.end(), model) &&
+          !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
+        open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
     for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits, trial);
