@@ -47,7 +47,25 @@ std::string table_of(const std::vector<End>& ends) {
   return text;
 }
 
-void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done) {
+/// Radii by which a rim is moved without a word: the rounding of files.
+constexpr double hardly_moved = 1e-3;
+
+/// Says how many rims were moved, and how far at most.
+void report_moves(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done) {
+  int count = 0;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    count += done[i].moved > hardly_moved * ends[i].radius;
+    if (done[i].moved > done[most].moved) most = i;
+  }
+  if (count == 0) return;
+  io.say(std::to_string(count) + (count == 1 ? " rim is" : " rims are") + " moved into " +
+         (count == 1 ? "its plane" : "their planes") + ", by at most " + shown(done[most].moved) + ", at " +
+         ends[most].name);
+}
+
+void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done, bool flatten) {
+  int not_plane = 0;
   io.report["ends"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const End& e = ends[i];
@@ -78,7 +96,11 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
       io.say(line);
     else
       io.detail(line);
+    not_plane += r.cap > 0 && !r.flat;
   }
+  if (not_plane > 0 && !flatten)
+    io.say(std::to_string(not_plane) + (not_plane == 1 ? " cap is" : " caps are") +
+           " not plane, since the rim is not; --flatten cuts or raises such ends");
 }
 
 /// Names new patches after their ends, and a single one that is not named: wall.
@@ -118,7 +140,7 @@ void run(Io& io, Options& o) {
   if (!o.at.empty())
     for (char& kept : o.kept) kept = !kept;
   if (o.list && io.output == "-") {
-    report(io, ends, std::vector<EndReport>(ends.size()));
+    report(io, ends, std::vector<EndReport>(ends.size()), o.flatten);
     return io.write_bytes(table_of(ends));
   }
   io.say(std::to_string(ends.size()) + (ends.size() == 1 ? " open end" : " open ends"));
@@ -126,12 +148,13 @@ void run(Io& io, Options& o) {
     throw NotAdmissible("the surface has no open end to " + std::string(o.trim > 0 ? "cut back" : "extend"));
   if (ends.empty() && (o.flatten || o.cap)) io.warn("warning: no open ends: nothing is made plane or capped");
   if (ends.empty() || !(o.trim > 0 || o.flatten || o.extend > 0 || o.cap)) {
-    report(io, ends, std::vector<EndReport>(ends.size()));
+    report(io, ends, std::vector<EndReport>(ends.size()), o.flatten);
   } else {
     const double area = total_area(surface);
     const ModelSegments lines = read_model_edges(stream);
     const std::vector<EndReport> done = treat_ends(surface, ends, o);
-    report(io, ends, done);
+    report_moves(io, ends, done);
+    report(io, ends, done, o.flatten);
     name_patches(stream, ends, done);
     // nothing that is known of the surface as it was holds; the number of triangles that stands for its size
     // grows with it

@@ -214,7 +214,7 @@ void raise_end(Mesh& mesh, End& end, Growth& growth) {
   }
 }
 
-int plane_cap(Mesh& mesh, const End& end, Growth& growth) {
+int projected_cap(Mesh& mesh, const End& end, Growth& growth) {
   const std::size_t before = mesh.tris.size();
   add_plane_triangles(mesh, end, growth);
   return (int)(mesh.tris.size() - before);

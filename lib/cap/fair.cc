@@ -58,10 +58,11 @@ void inflate(Surface& cap, int rim, double height) {
 
 }  // namespace
 
+bool has_membrane(const End& end) { return end.rims.size() == 1 && end.rims[0].size() <= most_corners; }
+
 int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth) {
   const std::vector<int>& rim = end.rims[0];
   const int n = (int)rim.size();
-  if (end.rims.size() > 1 || rim.size() > most_corners) return 0;
   Mesh least;
   double length = 0;
   for (int i = 0; i < n; ++i) {

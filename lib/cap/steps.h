@@ -92,10 +92,11 @@ std::vector<std::string> raise_ends(Mesh& mesh, std::vector<End>& ends, const st
 int extend_end(Mesh& mesh, End& end, double length, Growth& growth);
 /// Closes an end by triangles that lie over its projected rims, which must be simple (crossing_of). Returns
 /// their number.
-int plane_cap(Mesh& mesh, const End& end, Growth& growth);
-/// Closes an end by a membrane that bulges outward by about `bulge` radii, of the connectivity of the
-/// triangulation of least area. Returns the number of triangles, 0 if the rim has too many vertices or is not
-/// the only one.
+int projected_cap(Mesh& mesh, const End& end, Growth& growth);
+/// Returns whether an end has one rim, of not too many vertices for a membrane.
+bool has_membrane(const End& end);
+/// Closes such an end by a membrane that bulges outward by about `bulge` radii, of the connectivity of the
+/// triangulation of least area. Returns the number of triangles.
 int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth);
 
 }  // namespace meshpipe
