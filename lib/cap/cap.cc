@@ -14,8 +14,8 @@ namespace {
 
 /// Share of the diagonal by which a plane rim is off for the single precision of a file: caps make it plane.
 constexpr double rounding = 1e-6;
-/// Share of its radius by which a rim may be off its plane and is made plane without being asked to: the wobble
-/// of an extraction, up to 0.06 where vessels were clipped. Holes along a wall start at 0.17.
+/// Share of its radius by which a rim may be off its plane and is made plane without being asked to: the
+/// wobble of an extraction, up to 0.06 where vessels were clipped. Holes along a wall start at 0.17.
 constexpr double almost_plane = 0.1;
 /// Radii below the lowest vertex of a rim at which it is cut, if moving it would fold the wall.
 constexpr double below_rim = 0.1;
@@ -31,6 +31,18 @@ constexpr double projected = -1;  ///< a triangulation of the rim as seen along 
 constexpr const char* fill_holes = "close it with mclean --fill-holes";
 
 using Planes = std::vector<std::optional<Plane>>;
+
+bool is_plane(const Mesh& mesh, const End& end) { return end.planarity <= 1e-3 * rounding * diagonal(mesh); }
+
+/// The caps to be tried for an end, one after another: membranes by their bulge, and `projected`, which is
+/// plane if the rim is and comes first then. None if that is impossible: rims that cross, and are two or of
+/// too many vertices.
+std::vector<double> kinds_of_cap(const Mesh& mesh, const End& end) {
+  std::vector<double> kinds;
+  if (has_membrane(end)) kinds.assign(std::begin(bulges), std::end(bulges));
+  if (!crossing_of(mesh, end)) kinds.insert(is_plane(mesh, end) ? kinds.begin() : kinds.end(), projected);
+  return kinds;
+}
 
 /// Runs the steps of treat_ends on one surface.
 struct Treatment {
@@ -203,24 +215,15 @@ struct Treatment {
     measure_all();
   }
 
-  bool is_plane(int i) const { return ends[i].planarity <= 1e-3 * rounding * diagonal(surface); }
-
-  /// The caps to be tried for an end, one after another: membranes by their bulge, and `projected`, which is
-  /// plane if the rim is and comes first then.
-  std::vector<double> kinds_of_cap(int i) const {
-    std::vector<double> kinds;
-    if (has_membrane(ends[i])) kinds.assign(std::begin(bulges), std::end(bulges));
-    if (!crossing_of(surface, ends[i])) kinds.insert(is_plane(i) ? kinds.begin() : kinds.end(), projected);
-    if (kinds.empty()) refuse_cap(i, "would need a single rim of fewer vertices");
-    return kinds;
-  }
-
   /// Caps all ends, and those again that meet something, until none does. Throws if that is impossible.
   void cap() {
     const std::size_t before = surface.tris.size(), points = surface.points.size();
     const Growth extensions = growth;
     std::vector<std::vector<double>> kinds;
-    for (int i = 0; i < n(); ++i) kinds.push_back(kinds_of_cap(i));
+    for (int i = 0; i < n(); ++i) {
+      kinds.push_back(kinds_of_cap(surface, ends[i]));
+      if (kinds[i].empty()) refuse_cap(i, "would need a single rim of fewer vertices");
+    }
     std::vector<int> tries(n(), 0);
     for (bool again = true; again;) {
       surface.tris.resize(before);
@@ -229,7 +232,7 @@ struct Treatment {
       owner.resize(before);
       for (int i = 0; i < n(); ++i) {
         const double kind = kinds[i][tries[i]];
-        reports[i].flat = kind == projected && is_plane(i);
+        reports[i].flat = kind == projected && is_plane(surface, ends[i]);
         reports[i].cap = kind == projected ? projected_cap(surface, ends[i], growth)
                                            : fair_cap(surface, ends[i], kind, growth);
         owner.resize(surface.tris.size(), i);
@@ -244,7 +247,8 @@ struct Treatment {
     flagged.resize(surface.tris.size(), 1);
     for (const Collision& c : collisions(surface, flagged)) {
       const int i = owner[c.triangle];
-      if (tries[i] + 1 == (int)kinds[i].size()) refuse_cap(i, "would meet the surface near " + shown(c.place));
+      if (tries[i] + 1 == (int)kinds[i].size())
+        refuse_cap(i, "would meet the surface near " + shown(c.place));
       meets[i] = 1;
     }
     for (int i = 0; i < n(); ++i) tries[i] += meets[i];
