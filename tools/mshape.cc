@@ -97,6 +97,19 @@ Body make(const Options& o) {
   return body;
 }
 
+Stream stream_of(Body&& shape) {
+  Stream stream;
+  Surface& s = stream.surface;
+  static_cast<Mesh&>(s) = std::move(static_cast<Mesh&>(shape));
+  s.vertex.rows = s.points.size();
+  s.face.rows = s.tris.size();
+  for (int& label : shape.patch) ++label;  // tag 0 means none to some formats
+  s.face.set("patch", std::move(shape.patch));
+  for (std::size_t i = 0; i < shape.names.size(); ++i)
+    stream.names.push_back({2, (int)i + 1, shape.names[i]});
+  return stream;
+}
+
 /// The options that only some kinds have.
 constexpr std::pair<const char*, const char*> kinds_of[] = {
     {"--aspect", "tube or tree"}, {"--ratio", "tree or torus"}, {"--closed", "tube"},
@@ -188,15 +201,8 @@ int main(int argc, char** argv) {
       body.patch.assign(body.tris.size(), 0);
       shape = std::move(body);
     }
-    Stream stream;
-    static_cast<Mesh&>(stream.surface) = std::move(static_cast<Mesh&>(shape));
+    Stream stream = stream_of(std::move(shape));
     Surface& s = stream.surface;
-    s.vertex.rows = s.points.size();
-    s.face.rows = s.tris.size();
-    for (int& label : shape.patch) ++label;  // tag 0 means none to some formats
-    s.face.set("patch", std::move(shape.patch));
-    for (std::size_t i = 0; i < shape.names.size(); ++i)
-      stream.names.push_back({2, (int)i + 1, shape.names[i]});
     if (o.noise > 0) add_noise(s, o.noise, o.seed);
     if (o.slivers > 0) add_slivers(s, o.slivers, o.seed);
     if (o.dirt > 0) add_dirt(s, o.dirt, o.seed);
