@@ -53,8 +53,6 @@ class Joiner {
   Joiner(const Connectivity& c, std::vector<int>& label, Regions regions);
   /// What the union of two neighboring regions would be.
   Region joined(int a, int b);
-  /// The border half-edges of the union that `joined` looked at last.
-  const std::vector<int>& border_of_union() const { return outer_; }
   /// Makes b part of a; b is left empty.
   void join(int a, int b);
   const Regions& regions() const { return regions_; }

@@ -130,29 +130,6 @@ bool turn_ends(std::vector<Stop>& path) {
   return true;
 }
 
-/// Leads the line around stops that it would run over out of turn.
-void lead_around(std::vector<Stop>& path) {
-  std::vector<Stop> out{path.front()};
-  for (std::size_t i = 0; i + 1 < path.size(); i++) {
-    const Vec2 a = path[i].at, d = path[i + 1].at - a;
-    std::vector<std::pair<double, Vec2>> bends;
-    for (std::size_t j = 1; j + 1 < path.size(); j++) {
-      if (j == i || j == i + 1 || !(overlap(path[j], a, path[i + 1].at) > 0)) continue;
-      const double t = dot(path[j].at - a, d) / dot(d, d);
-      Vec2 away = a + t * d - path[j].at;
-      if (norm(away) < 1e-6 * path[j].radius) away = {-d.y, d.x};
-      away = (1 / norm(away)) * away;
-      double reach = 0;
-      for (Vec2 p : path[j].outline) reach = std::max(reach, dot(p - path[j].at, away));
-      bends.push_back({std::clamp(t, 0., 1.), path[j].at + 1.2 * reach * away});
-    }
-    std::stable_sort(bends.begin(), bends.end(), [](auto& x, auto& y) { return x.first < y.first; });
-    for (auto& [t, p] : bends) out.push_back({p});
-    out.push_back(path[i + 1]);
-  }
-  path.swap(out);
-}
-
 /// The stops of a level, with a place for the line's ends before and after them.
 std::vector<Stop> stops_of(const FilledDisk& disk, const std::vector<Level>& levels, const Level& level) {
   std::vector<Stop> path(1);
@@ -214,7 +191,6 @@ std::vector<std::vector<Vec2>> cut_lines(const FilledDisk& disk, const std::vect
     const Stop from = path.front(), to = path.back();
     const bool bent = !root && turn_ends(path);
     shorten(path);
-    lead_around(path);
     if (bent) {
       path.insert(path.begin(), from);
       path.push_back(to);

@@ -348,32 +348,6 @@ Vec2 center_of(const Solver& s, const std::vector<int>& set_of, int set) {
   return (1 / total) * sum;
 }
 
-/// A hole close to a set is hard to pass through on the way to it: makes the neighborhood of such holes
-/// small, so that both come apart in a level of their own. Returns whether there were any.
-bool withdraw_holes(Solver& s, const std::vector<int>& set_of, int n_sets) {
-  std::vector<Vec2> centers(n_sets);
-  for (int i = 0; i < n_sets; ++i) centers[i] = center_of(s, set_of, i);
-  bool any = false;
-  for (std::size_t f = 0; f + 1 < s.disk.fan_begin.size(); ++f) {
-    const int begin = s.disk.fan_begin[f], end = s.disk.fan_begin[f + 1];
-    // only a fan that lies in the domain as a whole and is not withdrawn already
-    if (std::any_of(s.place.begin() + begin, s.place.begin() + end,
-                    [&](int i) { return i < 0 || s.small[i]; }))
-      continue;
-    const Vec2 center = s.uv[s.corners[s.place[begin]][2]];
-    double r = 0;
-    for (int t = begin; t < end; ++t) r = std::max(r, norm(s.uv[s.corners[s.place[t]][0]] - center));
-    if (r > 0.2) continue;
-    if (std::none_of(centers.begin(), centers.end(), [&](Vec2 c) { return norm(c - center) < 2 * r; }))
-      continue;
-    for (std::size_t i = 0; i < s.domain.size(); ++i)
-      if (norm(image_center(s, i) - center) < 2 * r) s.small[i] = 1;
-    for (int t = begin; t < end; ++t) s.small[s.place[t]] = 1;
-    any = true;
-  }
-  return any;
-}
-
 Level level_of(Solver& s, const Pending& set, int self) {
   Level level;
   level.parent = set.parent;
@@ -475,12 +449,6 @@ void solve(Solver& s, const Pending& set) {
   keep_what_touches_the_border(s);
   std::vector<int> set_of;
   int n_sets = find_sets(s, set_of, truncated);
-  constexpr int most_rounds = 8;
-  for (int round = 0; round < most_rounds && withdraw_holes(s, set_of, n_sets); ++round) {
-    keep_fans_whole(s);
-    keep_what_touches_the_border(s);
-    n_sets = find_sets(s, set_of, truncated);
-  }
   if (std::count(s.small.begin(), s.small.end(), 0) == 0) {
     // nothing left to resolve in this frame that another would resolve better: take the level as it is
     gather(s, set, 1e300);

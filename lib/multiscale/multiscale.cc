@@ -12,8 +12,8 @@
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
-#include "lib/multiscale/balance.h"
 #include "lib/multiscale/cut_line.h"
+#include "lib/multiscale/reach_holes.h"
 
 namespace meshpipe {
 namespace {
@@ -74,16 +74,17 @@ std::vector<double> across(const ConnectedPart& part, const std::vector<int>& ri
   return distance;
 }
 
-/// A line, and what it does before it is balanced.
+/// A line, and what it does.
 struct Candidate {
   Assessment is;
   std::vector<double> field;
   std::vector<std::vector<Vec2>> lines;
 };
 
-/// The lines in all directions, the best first; only the one across the part if none is any good.
-std::vector<Candidate> candidates_of(const ConnectedPart& part, const CutMaps& cut) {
+/// The best of the lines in all directions; the one across the part if none is any good.
+Candidate best_line(const ConnectedPart& part, const CutMaps& cut) {
   std::vector<Candidate> candidates(directions);
+  constexpr std::size_t worth_threads = 4000;  // triangles: below it starting threads takes longer
   auto try_direction = [&](int i) {
     Candidate& c = candidates[i];
     c.lines = cut_lines(cut.disk, cut.levels, std::numbers::pi * i / directions);
@@ -91,20 +92,14 @@ std::vector<Candidate> candidates_of(const ConnectedPart& part, const CutMaps& c
     drop_fragments(part, c.field);
     c.is = assess(part, c.field);
   };
-  constexpr std::size_t worth_threads = 4000;  // triangles
-  if (part.tris.size() > worth_threads)
-    parallel_for(directions, try_direction);
-  else
-    for (int i = 0; i < directions; ++i) try_direction(i);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return better(a.is, b.is); });
-  if (const Assessment& best = candidates[0].is; !best.valid || best.smaller_share < least_share) {
-    candidates.resize(1);
-    candidates[0].field = across(part, cut.disk.rim);
-    candidates[0].lines.assign(cut.levels.size(), {});
-    drop_fragments(part, candidates[0].field);
+  parallel_for(directions, try_direction, part.tris.size() > worth_threads);
+  Candidate& best = *std::min_element(candidates.begin(), candidates.end(),
+                                      [](const auto& a, const auto& b) { return better(a.is, b.is); });
+  if (!best.is.valid || best.is.smaller_share < least_share) {
+    best.field = across(part, cut.disk.rim);
+    best.lines.assign(cut.levels.size(), {});
   }
-  return candidates;
+  return std::move(best);
 }
 
 /// The best line of a part itself.
@@ -113,25 +108,11 @@ CutMaps best_cut_of(const ConnectedPart& part, double share) {
   cut.disk = fill_holes(part);
   cut.levels = laplace_levels(cut.disk);
   add_progress(0.4 * share);
-  // on triangles much longer than wide the sides can lock in a shape that only the mesh explains: then
-  // another direction may do better
-  constexpr int rounds = 8;
-  constexpr double much_longer = 1.5;
-  std::vector<Candidate> candidates = candidates_of(part, cut);
-  const Branches branches = find_branches(cut.disk, cut.levels);
-  for (Candidate& c : candidates) {
-    if (!cut.field.empty() && !c.is.valid) break;
-    reach_holes(cut.disk, {part, part.opposite}, c.field);
-    if (cut.field.empty()) cut.field = c.field, cut.lines = c.lines;
-    const Assessment before = assess(part, c.field);
-    balance_sides(cut.disk, {part, part.opposite}, branches, c.field, rounds);
-    drop_fragments(part, c.field);
-    const Assessment after = assess(part, c.field);
-    if (before.valid && !(after.valid && after.length < much_longer * before.length)) continue;
-    cut.field = std::move(c.field);
-    cut.lines = std::move(c.lines);
-    break;
-  }
+  Candidate best = best_line(part, cut);
+  reach_holes(cut.disk, {part, part.opposite}, best.field);
+  drop_fragments(part, best.field);
+  cut.field = std::move(best.field);
+  cut.lines = std::move(best.lines);
   add_progress(0.3 * share);
   return cut;
 }

@@ -25,7 +25,7 @@ struct CutMaps {
 };
 
 /// Finds the best line that cuts a part in two: drawn through all levels of its Laplace maps in several
-/// directions, then balanced so that it follows the part's branches along opposite sides.
+/// directions, and led to holes that would stay whole.
 /// `field` receives a value per vertex of the part, never zero, whose zero level is the line; `share` is that
 /// of the work (lib/core/progress.h).
 CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& field);

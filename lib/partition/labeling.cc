@@ -12,7 +12,6 @@
 #include "lib/core/progress.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
-#include "lib/partition/distortion_estimate.h"
 #include "lib/partition/graph.h"
 #include "lib/partition/handles.h"
 #include "lib/partition/merge.h"
@@ -184,31 +183,12 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed,
   return {};
 }
 
-/// Predicts how many charts a part will come to: one whose map would be too uneven is halved later, if it is
-/// a tree or tube and no sponge, and one whose map overlaps until it does not.
-int predicted_charts(const Region& r, const DistortionEstimate& e) {
-  const bool uneven = e.area_distortion > limit::predicted_distortion;
-  return 1 + e.crossings + (uneven ? 1 + r.loops / limit::holes_of_a_cut : 0);
-}
-
-/// Joins neighbors, those with the longest shared border first, while their union maps to the plane and is
-/// predicted to come to fewer charts. Leaves the charts of each label in `charts`, 0 where there is none.
-Regions merge(const Component& c, const DistortionModel& model, std::vector<int>& label, Regions regions,
-              std::vector<int>& charts) {
-  charts.clear();
-  for (int l = 0; l < (int)regions.region.size(); ++l)
-    charts.push_back(predicted_charts(regions.region[l], model.of(label, l, l, regions.border[l])));
+/// Joins neighbors, those with the longest shared border first, while their union maps to the plane.
+Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
   Joiner joiner({c.mesh, c.opposite}, label, std::move(regions));
   auto weight = [&](int h) { return (double)c.weight[h]; };
-  join_neighbors(joiner, {c.mesh, c.opposite}, label, weight, [&](int a, int b) {
-    const Region r = joiner.joined(a, b);
-    if (!r.maps_to_the_plane()) return false;
-    const int together = predicted_charts(r, model.of(label, a, b, joiner.border_of_union()));
-    if (together >= charts[a] + charts[b]) return false;
-    charts[a] = together;
-    charts[b] = 0;
-    return true;
-  });
+  join_neighbors(joiner, {c.mesh, c.opposite}, label, weight,
+                 [&](int a, int b) { return joiner.joined(a, b).maps_to_the_plane(); });
   return joiner.regions();
 }
 
@@ -225,32 +205,14 @@ std::int64_t bridge_cost(const Component& c, const std::vector<int>& label, cons
   return cost;
 }
 
-/// Halves the parts whose maps would overlap. Returns true if there was one.
-bool halve_tangled(const Component& c, const DistortionModel& model, std::vector<int>& label,
-                   const Regions& regions, int seed) {
-  int n = (int)regions.region.size();
-  for (int l = 0; l < (int)regions.region.size(); ++l)
-    if (regions.region[l].faces > limit::tangled_triangles &&
-        model.of(label, l, l, regions.border[l]).crossings > 0)
-      bisect(c, label, l, n++, seed);
-  return n > (int)regions.region.size();
-}
-
-Labeling finish(const Component& c, const DistortionModel& model, std::vector<int> label, int seed) {
+Labeling finish(const Component& c, std::vector<int> label, int seed) {
   Labeling l;
   Regions r = make_admissible(c, label, seed);
-  for (int round = 0; round < 4 && halve_tangled(c, model, label, r, seed); ++round)
-    r = make_admissible(c, label, seed);
   if (r.region.empty()) return l;
-  std::vector<int> charts;
-  r = merge(c, model, label, std::move(r), charts);
-  for (int x : charts) {
-    l.parts += x > 0;
-    l.charts += x;
-  }
+  r = merge(c, label, std::move(r));
   for (const SharedBorder& s : shared_borders(c, label, r)) l.cost += (std::int64_t)s.length;
   l.cost += bridge_cost(c, label, r);
-  separate_pieces({c.mesh, c.opposite}, label);
+  l.parts = separate_pieces({c.mesh, c.opposite}, label);
   l.label = std::move(label);
   return l;
 }
@@ -292,7 +254,6 @@ Labeling search(const Component& c, bool homology, int seed) {
   std::vector<int> ks{genus + 2};
   for (int d = 1; d <= genus && d <= 6; ++d) ks.insert(ks.end(), {genus + 2 + d, genus + 2 - d});
   const double balances[] = {0.3, 0.1, 0.5};
-  const DistortionModel model({c.mesh, c.opposite});
   constexpr int worth_threads = 3000;                  // triangles
   constexpr int batch = 2, first_side = 2, sides = 3;  // the sides of the surface come after two trials
   const Vec3 axes[sides] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -304,19 +265,19 @@ Labeling search(const Component& c, bool homology, int seed) {
     return label;
   };
   Labeling best;
-  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.charts > enough);
+  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.parts > enough);
        tried += batch) {
     Labeling found[batch];
-    auto try_one = [&](int i) { found[i] = finish(c, model, candidate(tried + i), seed + tried + i); };
+    auto try_one = [&](int i) { found[i] = finish(c, candidate(tried + i), seed + tried + i); };
     parallel_for(batch, try_one, n > worth_threads);
     for (Labeling& l : found)
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     add_progress(c.share * batch / (most_trials + sides));
   }
-  if (genus > 0 && (homology || best.charts > genus + 2)) {
+  if (genus > 0 && (homology || best.parts > genus + 2)) {
     const auto loops = handle_loops({c.mesh, c.opposite}, genus);
     if ((int)loops.size() == genus) {
-      Labeling l = finish(c, model, label_by_sides({c.mesh, c.opposite}, loops), seed);
+      Labeling l = finish(c, label_by_sides({c.mesh, c.opposite}, loops), seed);
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     }
   }
@@ -389,8 +350,7 @@ Labeling best_labeling(Component& c, bool homology, int seed) {
     }
   }
   weigh(c);
-  return l.parts > 0 ? finish(c, DistortionModel({c.mesh, c.opposite}), l.label, seed)
-                     : search(c, homology, seed);
+  return l.parts > 0 ? finish(c, l.label, seed) : search(c, homology, seed);
 }
 
 void bound_faces(Component& c, Labeling& l, int max_faces, int seed) {

@@ -26,18 +26,17 @@ struct Component {
 /// Without weights and aggregates, which are made when they are needed.
 Component make_component(ConnectedPart part, const Region& whole);
 
-/// How a labeling compares: fewer charts in the end first, then the cheaper cut.
+/// How a labeling compares: fewer parts first, then the cheaper cut.
 struct Labeling {
   std::vector<int> label;  ///< 0..parts-1
   int parts = 0;
-  int charts = 0;  ///< that the parts will come to, as predicted
   std::int64_t cost = 0;
-  bool operator<(const Labeling& o) const { return std::pair(charts, cost) < std::pair(o.charts, o.cost); }
+  bool operator<(const Labeling& o) const { return std::pair(parts, cost) < std::pair(o.parts, o.cost); }
 };
 
 /// Tries several numbers of parts, balances and seeds; those of a large component on a coarse model of it.
-/// With `homology`, cuts along handles (lib/partition/handles.h) too; else only if METIS's labelings come to
-/// more than genus + 2 charts. Every label is edge-connected, pinched nowhere, and has genus 0 and a border.
+/// With `homology`, cuts along handles (lib/partition/handles.h) too; else only if METIS's labelings have
+/// more than genus + 2 parts. Every label is edge-connected, pinched nowhere, and has genus 0 and a border.
 /// No parts if none is found.
 Labeling best_labeling(Component& c, bool homology, int seed);
 

@@ -23,13 +23,6 @@ constexpr double snap = 0.1;
 /// round, so that a part no neighbor can take becomes one of its own.
 constexpr double fragment = 0.01;
 constexpr int fragment_triangles = 20;
-/// Predicted area distortion above which a part counts as two. Below `area_scale`, since the estimate is for
-/// a border along the triangles' edges.
-constexpr double predicted_distortion = 1e7;
-/// Holes of such a part, for each of which it counts as one more: a cut along a limb removes no more.
-constexpr int holes_of_a_cut = 4;
-/// Triangles above which a part whose map is predicted to overlap is halved at once.
-constexpr int tangled_triangles = 100;
 
 // Of a map, when its part is cut again.
 

@@ -49,43 +49,8 @@ int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts,
   return n;
 }
 
-/// Carries the map of a part over a cut of its neighbors, which put vertices on the edges of its border.
-/// Returns nothing if the part has changed in another way, or if the map is not one-to-one to rounding.
-std::vector<Vec2> same_map(const Chart& before, const SubMesh& part, std::size_t n_surface) {
-  std::vector<int> place(n_surface, -1);
-  for (std::size_t i = 0; i < before.uv.size(); ++i) place[before.mesh.vertex[i]] = (int)i;
-  std::vector<Vec2> uv(part.points.size());
-  std::size_t added = 0;
-  for (std::size_t v = 0; v < uv.size(); ++v) {
-    const int at = place[part.vertex[v]];
-    if (at >= 0)
-      uv[v] = before.uv[at];
-    else
-      ++added;
-  }
-  auto is_new = [&](int v) { return place[part.vertex[v]] < 0; };
-  const std::vector<int> opposite = opposite_halfedges(part.tris, (int)part.points.size());
-  for (const auto& loop : boundary_loops(opposite)) {
-    auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
-    std::size_t a = 0;
-    while (a < loop.size() && is_new(vertex(a))) ++a;
-    if (a == loop.size()) return {};
-    for (const std::size_t end = a + loop.size(); a < end;) {
-      std::size_t b = a + 1;
-      while (is_new(vertex(b))) ++b;
-      const int from = vertex(a), to = vertex(b);
-      const double length = norm(part.points[to] - part.points[from]);
-      for (std::size_t i = a + 1; i < b; ++i, --added)
-        uv[vertex(i)] = lerp(uv[from], uv[to],
-                             norm(part.points[vertex(i)] - part.points[from]) / std::max(length, 1e-300));
-      a = b;
-    }
-  }
-  if (added > 0 || count_inverted(part.tris, uv) > 0 || !border_is_simple({part, opposite}, uv)) return {};
-  return uv;
-}
-
-/// Takes the parts as they are after cuts. One that was not cut itself keeps its map if that still holds.
+/// Takes the parts as they are after cuts. One that was not cut itself keeps its map, unless a cut of its
+/// neighbors has put vertices on its border.
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts);
@@ -94,13 +59,8 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   charts.waiting.resize(n_parts, 1);
   charts.as_it_is.resize(n_parts, 0);
   for (int p = 0; p < n_parts; ++p) {
-    Chart& chart = charts.chart[p];
-    if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
-      chart.uv = same_map(chart, parts[p], surface.points.size());
-      charts.waiting[p] = chart.uv.empty();
-      if (!charts.waiting[p]) measure_distortion(parts[p], chart.uv, charts.report[p]);
-    }
-    chart.mesh = std::move(parts[p]);
+    charts.waiting[p] |= parts[p].vertex != charts.chart[p].mesh.vertex;
+    charts.chart[p].mesh = std::move(parts[p]);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/multiscale/balance.h"
+#include "lib/multiscale/reach_holes.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -18,67 +18,7 @@ using namespace meshpipe;
 
 namespace {
 
-/// A square of n x n vertices, two triangles a square, numbered row by row.
-///
-///   2  6---7---8
-///      | / | / |
-///   1  3---4---5
-///      | / | / |
-///   0  0---1---2
-Mesh square(int n) {
-  Mesh m;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) m.points.push_back({(double)i, (double)j, 0});
-  for (int j = 0; j + 1 < n; ++j)
-    for (int i = 0; i + 1 < n; ++i) {
-      const int a = j * n + i;
-      m.tris.push_back({a, a + 1, a + n + 1});
-      m.tris.push_back({a, a + n + 1, a + n});
-    }
-  return m;
-}
-
-int corner_of(const Mesh& m, int v) {
-  for (int h = 0; h < (int)(3 * m.tris.size()); ++h)
-    if (origin(m.tris, h) == v) return h;
-  return -1;
-}
-
-TEST(Balance, AVertexIsSimpleIfNeitherSideIsTornOrPierced) {
-  const Mesh m = square(3);
-  const auto opposite = opposite_halfedges(m.tris, 9);
-  auto simple = [&](std::vector<double> field, int v) {
-    return is_simple({m, opposite}, field, corner_of(m, v));
-  };
-  //  + + +        + + +        + - +        + + -
-  //  - . +        + . +        + . +        + + -    the corner 8 alone among its like
-  //  - - +        + + +        + - +        + + -
-  EXPECT_TRUE(simple({-1, -1, 1, -1, 1, 1, 1, 1, 1}, 4));
-  EXPECT_FALSE(simple({1, 1, 1, 1, 1, 1, 1, 1, 1}, 4));
-  EXPECT_FALSE(simple({1, -1, 1, 1, 1, 1, 1, -1, 1}, 4));
-  EXPECT_TRUE(simple({1, 1, -1, 1, 1, -1, 1, 1, -1}, 1));
-  EXPECT_FALSE(simple({1, 1, -1, 1, 1, -1, 1, 1, -1}, 0));
-}
-
-TEST(Balance, AThinStripGrowsToHalfTheTube) {
-  const Mesh mesh = tube(12, 24, false);
-  const FilledDisk disk = fill_holes(mesh);
-  const auto opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  const Branches branches = find_branches(disk, laplace_levels(disk));
-  std::vector<double> field;
-  for (Vec3 p : mesh.points) field.push_back(p.x > 0.47 ? 1 : -1);
-  balance_sides(disk, {disk, opposite}, branches, field, 20);
-  double positive = 0;
-  for (double f : field) positive += f > 0;
-  EXPECT_NEAR(positive / (double)field.size(), 0.5, 0.05);
-  // half way along, where ends do not matter, the radius is that of the tube
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (std::abs(mesh.points[v].z - 6) < 0.5) {
-      EXPECT_NEAR(branches.radius[v], 0.5, 0.1);
-    }
-}
-
-TEST(Balance, ThePathOpensAHoleThatLiesInOneSide) {
+TEST(ReachHoles, ThePathOpensAHoleThatLiesInOneSide) {
   const Mesh mesh = branching_tree(0, 5, 0.8, 4000, 1);
   const FilledDisk disk = fill_holes(mesh);
   const auto opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
