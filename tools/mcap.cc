@@ -50,18 +50,30 @@ std::string table_of(const std::vector<End>& ends) {
 /// Radii by which a rim is moved without a word: the rounding of files.
 constexpr double hardly_moved = 1e-3;
 
-/// Says how many rims were moved, and how far at most.
-void report_moves(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done) {
+/// Says at how many ends something was done to make them plane, and how much at most: `amount` of an end.
+template <class Amount>
+void report_most(Io& io, const std::vector<End>& ends, const char* one, const char* many, Amount amount) {
   int count = 0;
   std::size_t most = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    count += done[i].moved > hardly_moved * ends[i].radius;
-    if (done[i].moved > done[most].moved) most = i;
+    count += amount(i) > 0;
+    if (amount(i) > amount(most)) most = i;
   }
-  if (count == 0) return;
-  io.say(std::to_string(count) + (count == 1 ? " rim is" : " rims are") + " moved into " +
-         (count == 1 ? "its plane" : "their planes") + ", by at most " + shown(done[most].moved) + ", at " +
-         ends[most].name);
+  if (count > 0)
+    io.say(std::to_string(count) + (count == 1 ? one : many) + shown(amount(most)) + ", at " +
+           ends[most].name);
+}
+
+void report_plane(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done, bool trims) {
+  report_most(
+      io, ends, " rim is moved into its plane, by ", " rims are moved into their planes, by at most ",
+      [&](std::size_t i) { return done[i].moved > hardly_moved * ends[i].radius ? done[i].moved : 0; });
+  if (!trims)
+    report_most(io, ends, " end is cut back to be plane, by ", " ends are cut back to be plane, by at most ",
+                [&](std::size_t i) { return done[i].trimmed; });
+  const auto stubs = std::count_if(done.begin(), done.end(), [](const EndReport& r) { return r.stub > 0; });
+  if (stubs > 0)
+    io.say(std::to_string(stubs) + (stubs == 1 ? " end is" : " ends are") + " raised to a plane by a stub");
 }
 
 void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& done, bool flatten) {
@@ -153,7 +165,7 @@ void run(Io& io, Options& o) {
     const double area = total_area(surface);
     const ModelSegments lines = read_model_edges(stream);
     const std::vector<EndReport> done = treat_ends(surface, ends, o);
-    report_moves(io, ends, done);
+    report_plane(io, ends, done, o.trim > 0);
     report(io, ends, done, o.flatten);
     name_patches(stream, ends, done);
     // nothing that is known of the surface as it was holds; the number of triangles that stands for its size
@@ -195,11 +207,12 @@ int main(int argc, char** argv) {
         app.add_option("--except", o.except, "cut back and extend all ends but these")
             ->type_name("END,...")
             ->excludes(at);
-        app.add_flag("--flatten", o.flatten, "move the rims into planes");
+        app.add_flag("--flatten", o.flatten, "make all rims plane: moved, cut, or raised by stubs");
         app.add_option("--extend", o.extend, "extend each end straight by K radii, to a circle")
             ->check(positive_number())
             ->type_name("K");
-        app.add_flag("--cap", o.cap, "close each end by a cap, a patch of the end's name");
+        app.add_flag("--cap", o.cap,
+                     "close each end by a cap, a patch of the end's name; almost plane rims are made plane");
       },
       [&](Io& io) { run(io, o); });
 }
