@@ -127,7 +127,10 @@ void flip_edge(State& s, int h) {
   ++s.counts.flips;
 }
 
-int excess(const State& s, int v) { return s.mesh.valence(v) - (s.mesh.on_border(v) ? 4 : 6); }
+int excess(const State& s, int v) {
+  if (s.hold[v] == frozen && !s.whole.rim_excess.empty()) return s.mesh.valence(v) + s.whole.rim_excess[v];
+  return s.mesh.valence(v) - (s.mesh.on_border(v) ? 4 : 6);
+}
 
 void flip_to_regular(State& s) {
   flip_all(s, [&](int h) {

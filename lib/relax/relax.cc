@@ -4,14 +4,18 @@
 
 #include <numeric>
 
+#include "lib/core/bvh.h"
 #include "lib/core/error.h"
+#include "lib/core/intersect.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/spatial_order.h"
+#include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/core/weld.h"
 #include "lib/relax/junctions.h"
 #include "lib/relax/repair.h"
+#include "lib/relax/tiles.h"
 #include "lib/relax/volumes.h"
 
 namespace meshpipe {
@@ -19,20 +23,20 @@ namespace {
 
 /// Holds the vertices of open seams: mlines divides borders this close alike, and chords that differ would
 /// cross.
-void hold_seams(State& s) {
-  const int n = (int)s.points.size();
-  std::vector<char> on_border(n);
+template <class Size>
+void hold_seams(const std::vector<Vec3>& points, const std::vector<char>& on_border, Size size,
+                std::vector<Hold>& hold) {
+  const int n = (int)points.size();
   double sum = 0;
   std::size_t count = 0;
   for (int v = 0; v < n; ++v)
-    if (s.mesh.out[v] >= 0 && s.mesh.on_border(v) && !is_shared(s, v))
-      on_border[v] = 1, sum += s.target(v), ++count;
+    if (on_border[v]) sum += size(v), ++count;
   if (count == 0) return;
   std::vector<int> same(n);
   std::iota(same.begin(), same.end(), 0);
-  merge_near(s.points, on_border, rules::open_seam * sum / (double)count, same);
+  merge_near(points, on_border, rules::open_seam * sum / (double)count, same);
   for (int v = 0; v < n; ++v)
-    if (same[v] != v) s.hold[v] = s.hold[same[v]] = paired;
+    if (same[v] != v) hold[v] = hold[same[v]] = paired;
 }
 
 /// Removes what is far too short or long, before anything else.
@@ -44,7 +48,7 @@ void coarse_rounds(State& s) {
     collapse_short(s, rules::collapse_below, 0);
     flip_to_regular(s);
     smooth(s, 1);
-    add_progress(0.1);
+    add_progress(0.1 * s.whole.share);
   }
 }
 
@@ -54,9 +58,15 @@ void meet_count(State& s, double target) {
   if (s.mesh.live < (1 - rules::count_tolerance) * target) split_long(s, rules::stretch_above, target);
 }
 
-/// Sweeps with `target` triangles, then the places that need more than sweeps.
-void optimize(State& s, int sweeps, double target, Samples& samples) {
-  samples.forget();
+/// Smooths twice, with flips between.
+void even_out(State& s) {
+  smooth(s, 1);
+  flip_to_shape(s);
+  smooth(s, 1);
+}
+
+/// Sweeps with `target` triangles.
+void sweep(State& s, int sweeps, double target) {
   for (int i = 0; i < sweeps; ++i) {
     // edits unsettle the mesh, so they come first and the last sweeps only settle it
     if (2 * i < sweeps) {
@@ -65,29 +75,35 @@ void optimize(State& s, int sweeps, double target, Samples& samples) {
       remove_dislocations(s, rules::dislocation_depth);
     }
     flip_to_regular(s);
-    smooth(s, 1);
-    flip_to_shape(s);
-    smooth(s, 1);
-    add_progress(0.5 / sweeps);
+    even_out(s);
+    add_progress(0.5 / sweeps * s.whole.share);
   }
+}
+
+/// Reaches features and repairs, where places need more than sweeps.
+void attend_to_places(State& s, Samples& samples) {
   Repairs memory;
   const int most = std::max(rules::features, s.mesh.live / rules::triangles_per_feature);
   for (int round = 0; round < rules::feature_rounds; ++round) {
     // on a smooth surface none is missed, and the mesh has come to rest in the first round
-    if (reach_features(s, samples, rules::missed, most) || round == 0) {
-      smooth(s, 1);
-      flip_to_shape(s);
-      smooth(s, 1);
-    }
+    if (reach_features(s, samples, rules::missed, most) || round == 0) even_out(s);
     repair_worst(s, memory);
-    add_progress(0.1 / rules::feature_rounds);
+    add_progress(0.1 / rules::feature_rounds * s.whole.share);
   }
+}
+
+/// Sweeps with `target` triangles, then attends to places; not without samples, as tiles have none until
+/// their seams have been swept, too.
+void optimize(State& s, int sweeps, double target, Samples* samples) {
+  if (samples) samples->forget();
+  sweep(s, sweeps, target);
+  if (samples) attend_to_places(s, *samples);
 }
 
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
 /// a coarse mesh has less area than its reference: the count is known only after optimization, so repeat with
 /// a rescaled size field until it is within 1.5 %, unless the worst triangle gets worse.
-int optimize_to_count(State& s, int sweeps, double target, Samples& samples) {
+int optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   const State start = s;
   std::optional<State> best;
   double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
@@ -111,7 +127,7 @@ int optimize_to_count(State& s, int sweeps, double target, Samples& samples) {
     for (double& f : s.refinement) f *= std::sqrt(target / goal);
   }
   s = std::move(*best);
-  samples.forget();
+  if (samples) samples->forget();
   return tries;
 }
 
@@ -127,57 +143,47 @@ Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
   return s;
 }
 
-/// The same of the mesh; its places stay.
-void rearrange_lifted(LiftedMesh& mesh) {
-  const SpatialOrder order = spatial_order(mesh);
+/// The same of the mesh; its places stay. Returns the order.
+SpatialOrder rearrange_lifted(LiftedMesh& mesh) {
+  SpatialOrder order = spatial_order(mesh);
   rearrange(mesh, order);
   mesh.place = rearranged(mesh.place, order.vertices);
   for (std::vector<int>* column : {&mesh.kind, &mesh.line}) *column = rearranged(*column, order.vertices);
   mesh.size = rearranged(mesh.size, order.vertices);
   for (std::vector<int>* column : {&mesh.patch, &mesh.part}) *column = rearranged(*column, order.tris);
   mesh.model = rearranged(mesh.model, order.tris);
+  return order;
 }
 
-}  // namespace
-
-RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
-                  const std::vector<char>& corners, const RelaxOptions& options) {
-  if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
-  // both in an order by place: else most of the time would be spent waiting for memory
-  SpatialOrder order;
+/// A mesh and its reference in an order by place: else most of the time would be spent waiting for memory.
+struct Ordered {
+  SpatialOrder mesh, reference;
   Surface surface;
-  std::optional<Reference> reference;
-  parallel_for(
-      2,
-      [&](int side) {
-        if (side == 1) return rearrange_lifted(mesh);
-        order = spatial_order(original);
-        surface = rearranged_surface(original, order);
-        reference.emplace(surface);
-      },
-      original.tris.size() > rules::half_edges_worth_threads / 3);
-  const std::vector<int> row = new_rows(order.tris);
-  for (Place& p : mesh.place) p.face = row[p.face];
-  const std::vector<char> corner = corners.empty() ? corners : rearranged(corners, order.vertices);
-  State s = start_state(mesh, *reference, line_kind, corner, options.sheets_meet);
-  s.keep_border = options.keep_border;
-  part_double_edges(s);
-  hold_seams(s);
-  const double natural = reference->sizes ? count_for_size(surface, *reference->sizes) : s.mesh.live;
-  coarse_rounds(s);
-  const double target = options.target_triangles > 0 ? options.target_triangles : natural;
-  Samples samples{feature_samples(*reference, size_for_count(total_area(surface), target)), {}};
-  int tries = 1;
-  if (options.target_triangles > 0)
-    tries = optimize_to_count(s, options.sweeps, target, samples);
-  else
-    optimize(s, options.sweeps, natural, samples);
-  const Intersections left = remove_faults(s, samples);
-  RelaxReport report{s.counts, left.pairs, left.of_reference};
-  report.tries = tries;
-  const std::vector<int> left_at = finish(s, mesh);
-  if (!options.sheets.empty()) report.volume_error = keep_volumes(mesh, original, options.sheets);
-  for (auto& [a, b] : report.intersections) a = left_at[a], b = left_at[b];
+  std::optional<Reference> on;
+
+  Ordered(LiftedMesh& lifted, const Surface& original) {
+    parallel_for(
+        2,
+        [&](int side) {
+          if (side == 1) {
+            mesh = rearrange_lifted(lifted);
+            return;
+          }
+          reference = spatial_order(original);
+          surface = rearranged_surface(original, reference);
+          on.emplace(surface);
+        },
+        original.tris.size() > rules::half_edges_worth_threads / 3);
+    const std::vector<int> row = new_rows(reference.tris);
+    for (Place& p : lifted.place) p.face = row[p.face];
+  }
+  template <class T>
+  std::vector<T> of_points(const std::vector<T>& column) const {
+    return column.empty() ? column : rearranged(column, reference.vertices);
+  }
+};
+
+void set_quality(RelaxReport& report, const Mesh& mesh) {
   report.kappa_min = 1;
   for (const auto& [a, b, c] : mesh.tris) {
     const double q = kappa(mesh.points[a], mesh.points[b], mesh.points[c]);
@@ -185,7 +191,217 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<i
     report.kappa_min = std::min(report.kappa_min, q);
   }
   report.kappa_mean /= (double)std::max<std::size_t>(1, mesh.tris.size());
-  for (Place& p : mesh.place) p.face = order.tris[p.face];
+}
+
+RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
+                        const std::vector<char>& corners, const RelaxOptions& options) {
+  const Ordered ordered(mesh, original);
+  const std::vector<char> corner = ordered.of_points(corners);
+  State s = start_state(mesh, *ordered.on, line_kind, corner, options.sheets_meet);
+  s.keep_border = options.keep_border;
+  part_double_edges(s);
+  std::vector<char> on_border(s.points.size());
+  for (int v = 0; v < (int)on_border.size(); ++v)
+    on_border[v] = s.mesh.out[v] >= 0 && s.mesh.on_border(v) && !is_shared(s, v);
+  hold_seams(
+      s.points, on_border, [&](int v) { return s.target(v); }, s.hold);
+  const Surface& surface = ordered.surface;
+  const double natural = ordered.on->sizes ? count_for_size(surface, *ordered.on->sizes) : s.mesh.live;
+  coarse_rounds(s);
+  const double target = options.target_triangles > 0 ? options.target_triangles : natural;
+  Samples samples{feature_samples(*ordered.on, size_for_count(total_area(surface), target)), {}};
+  int tries = 1;
+  if (options.target_triangles > 0)
+    tries = optimize_to_count(s, options.sweeps, target, &samples);
+  else
+    optimize(s, options.sweeps, natural, &samples);
+  const Intersections left = remove_faults(s, samples);
+  RelaxReport report{s.counts, left.pairs, left.of_reference};
+  report.tries = tries;
+  const std::vector<int> left_at = finish(s, mesh);
+  if (!options.sheets.empty()) report.volume_error = keep_volumes(mesh, original, options.sheets);
+  for (auto& [a, b] : report.intersections) a = left_at[a], b = left_at[b];
+  for (Place& p : mesh.place) p.face = ordered.reference.tris[p.face];
+  return report;
+}
+
+/// What is done to the tiles of a mesh.
+struct Pass {
+  const Surface& reference;
+  const std::vector<int>& line_kind;
+  const std::vector<char>& corner;
+  const RelaxOptions& options;
+  double sample_size = 0;  ///< see feature_samples
+  double mean_size = 0;    ///< of the mesh
+  double goal = 1;         ///< triangles to come to, per triangle
+  bool to_count = false;   ///< is the goal what was asked for?
+  bool repair = false;     ///< attend to places and remove faults; else optimize
+  double share = 1;        ///< of the work that is shown, per tile
+};
+
+/// Drops the samples that are nearer to other triangles of the whole than to the tile.
+void keep_own(const State& s, const Mesh& others, double size, Samples& samples) {
+  const double enough = rules::missed * size;
+  const std::vector<double> distance = sample_distances(s, samples, enough);
+  if (others.tris.empty()) return;
+  std::optional<Bvh> tree;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const Sample& x = samples.list[i];
+    if (!(distance[i] <= enough)) {
+      if (!tree) tree.emplace(others);
+      const Vec3 p = s.reference->walk.point(x.place);
+      if (tree->nearest_but({}, p, distance[i], distance[i]).place.face >= 0) continue;
+    }
+    samples.list[n++] = x;
+  }
+  samples.list.resize(n);
+}
+
+/// Moves what has become of a tile back to it.
+void finish_tile(State& s, const Ordered& ordered, Tile& tile) {
+  std::vector<int> vertices;
+  tile.hold.clear(), tile.refinement.clear();
+  for (int v = 0; v < (int)s.mesh.out.size(); ++v) {
+    if (s.mesh.out[v] < 0) continue;
+    vertices.push_back(s.hold[v] == frozen ? tile.vertices[ordered.mesh.vertices[v]] : -1);
+    tile.hold.push_back(s.hold[v] == slides ? loose : s.hold[v]);
+    tile.refinement.push_back(s.refinement[v]);
+  }
+  tile.vertices = std::move(vertices);
+  finish(s, tile.mesh);
+  for (Place& p : tile.mesh.place) p.face = tile.faces[ordered.reference.tris[p.face]];
+}
+
+/// Returns what was done, and the tries.
+RelaxReport relax_tile(Tile& tile, const Pass& pass) {
+  const double goal = pass.goal * (double)tile.mesh.tris.size();
+  const Ordered ordered(tile.mesh, tile.slice);
+  tile.slice = {};
+  State s = start_state(tile.mesh, *ordered.on, pass.line_kind, ordered.of_points(tile.corner));
+  s.keep_border = pass.options.keep_border;
+  s.whole.mean_size = pass.mean_size;
+  s.whole.share = pass.share;
+  s.whole.rim_excess.resize(s.points.size());
+  for (int v = 0; v < (int)s.points.size(); ++v) {
+    const int row = ordered.mesh.vertices[v];
+    s.whole.rim_excess[v] = tile.excess[row] - s.mesh.valence(v);
+    if (tile.hold[row] != loose) s.hold[v] = tile.hold[row];
+    if (tile.hold[row] == frozen && s.labels.line[v] >= 0) s.normal[v] = {};  // perhaps a model edge
+    s.refinement[v] = tile.refinement[row];
+  }
+  RelaxReport report;
+  if (pass.repair) {
+    Samples samples{feature_samples(*ordered.on, pass.sample_size), {}};
+    keep_own(s, tile.others, pass.sample_size, samples);
+    attend_to_places(s, samples);
+    remove_faults(s, samples);
+  } else {
+    coarse_rounds(s);
+    if (pass.to_count)
+      report.tries = optimize_to_count(s, pass.options.sweeps, goal, nullptr);
+    else
+      optimize(s, pass.options.sweeps, goal, nullptr);
+  }
+  finish_tile(s, ordered, tile);
+  static_cast<RelaxCounts&>(report) = s.counts;
+  return report;
+}
+
+void add(RelaxReport& sum, const RelaxReport& r) {
+  sum.splits += r.splits, sum.collapses += r.collapses, sum.flips += r.flips, sum.moves += r.moves;
+  sum.corners_merged += r.corners_merged;
+  sum.tries = std::max(sum.tries, r.tries);
+}
+
+/// Makes a pass over the tiles of a region, then over their seams, without another look at the number of
+/// triangles.
+void relax_region(TiledMesh& whole, std::vector<int> region, Pass pass, RelaxReport& report) {
+  pass.mean_size = size_for_count(total_area(whole.mesh), (double)whole.mesh.tris.size());
+  for (int round = 0; round < rules::seam_rounds && !region.empty(); ++round) {
+    const int most = round + 1 < rules::seam_rounds ? pass.options.tile : (int)region.size();
+    const std::vector<std::vector<int>> boxes = split_into_boxes(whole.mesh, region, most);
+    const int n = (int)boxes.size();
+    const Lists at_vertex = triangles_at_vertices(whole.mesh);
+    const Surroundings around = around_tiles(whole.mesh, boxes, pass.reference);
+    std::vector<Tile> tiles(n);
+    std::vector<RelaxReport> reports(n);
+    parallel_for(n, [&](int i) {
+      tiles[i] = cut_tile(whole, at_vertex, pass.reference, pass.corner, boxes, around, i);
+      reports[i] = relax_tile(tiles[i], pass);
+    });
+    for (const RelaxReport& r : reports) add(report, r);
+    const std::vector<int> seams = replace_tiles(whole, tiles);
+    region = triangles_near(whole.mesh, seams, rules::seam_rings);
+    pass.goal = 1, pass.to_count = false;
+  }
+}
+
+/// Repairs where tiles intersect that do not know each other. Returns what still intersects.
+Intersections part_tiles(TiledMesh& whole, const Pass& pass, RelaxReport& report) {
+  std::optional<Mesh> known;
+  for (int round = 0;; ++round) {
+    Intersections found{self_intersections(whole.mesh)};
+    if (found.pairs.empty()) return found;
+    if (!known) known = contacts(pass.reference, self_intersections(pass.reference));
+    const int all = (int)found.pairs.size();
+    found.pairs = new_intersections(whole.mesh, found.pairs, *known);
+    found.of_reference = all - (int)found.pairs.size();
+    if (found.pairs.empty() || round == rules::crossing_rounds) return found;
+    std::vector<int> corners;
+    for (const auto& [s, t] : found.pairs)
+      for (int u : {s, t})
+        corners.insert(corners.end(), whole.mesh.tris[u].begin(), whole.mesh.tris[u].end());
+    sort_unique(corners);
+    relax_region(whole, triangles_near(whole.mesh, corners, rules::crossing_rings), pass, report);
+  }
+}
+
+/// Optimizes a large mesh tile by tile, each on its slice of the reference, then along their seams; the same
+/// to remove faults.
+RelaxReport relax_tiles(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
+                        const std::vector<char>& corner, const RelaxOptions& options) {
+  const std::size_t n = mesh.points.size();
+  TiledMesh whole{std::move(mesh), std::vector<Hold>(n), std::vector<double>(n, 1)};
+  {
+    const std::vector<int> opposite = opposite_halfedges(whole.mesh.tris, (int)n);
+    std::vector<char> on_border(n);
+    for (int h = 0; h < (int)opposite.size(); ++h)
+      if (opposite[h] < 0) on_border[origin(whole.mesh.tris, h)] = 1;
+    hold_seams(
+        whole.mesh.points, on_border, [&](int v) { return whole.mesh.size[v]; }, whole.hold);
+  }
+  const double live = (double)whole.mesh.tris.size();
+  const double natural =
+      reference.vertex.has("size") ? count_for_size(reference, reference.vertex.get<double>("size")) : live;
+  const double target = options.target_triangles > 0 ? options.target_triangles : natural;
+  Pass pass{reference, line_kind, corner, options};
+  pass.sample_size = size_for_count(total_area(reference), target);
+  pass.goal = target / live;
+  pass.to_count = options.target_triangles > 0;
+  pass.share = 0.8 * options.tile / live;
+  RelaxReport report;
+  for (bool repair : {false, true}) {
+    pass.repair = repair;
+    std::vector<int> all(whole.mesh.tris.size());
+    std::iota(all.begin(), all.end(), 0);
+    relax_region(whole, std::move(all), pass, report);
+  }
+  const Intersections left = part_tiles(whole, pass, report);
+  report.intersections = left.pairs, report.intersections_of_reference = left.of_reference;
+  mesh = std::move(whole.mesh);
+  return report;
+}
+
+}  // namespace
+
+RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
+                  const std::vector<char>& corners, const RelaxOptions& options) {
+  if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
+  const bool tiled =
+      (int)mesh.tris.size() > 2 * options.tile && !options.sheets_meet && options.sheets.empty();
+  RelaxReport report = (tiled ? relax_tiles : relax_whole)(mesh, original, line_kind, corners, options);
+  set_quality(report, mesh);
   return report;
 }
 

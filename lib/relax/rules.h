@@ -137,4 +137,10 @@ constexpr double count_first = 0.025,
 constexpr double sluggish = 0.6, least_response = 0.2;  // triangles gone per triangle less asked for
 constexpr int tries = 4, sluggish_tries = 3;
 
+// tiles (tiles.cc, relax.cc)
+constexpr int seam_rings = 6;   // of triangles that seams are optimized with: farther away all is as it was
+constexpr int seam_rounds = 3;  // seams, and seams of seams, until they are not split
+constexpr int crossing_rounds = 2;  // of repair where tiles intersect each other
+constexpr int crossing_rings = 12;  // of triangles around
+
 }  // namespace meshpipe::rules

@@ -162,6 +162,7 @@ std::vector<int> finish(State& s, LiftedMesh& r) {
 }
 
 double mean_size(const State& s) {
+  if (s.whole.mean_size > 0) return s.whole.mean_size;
   double area = 0;
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
     if (const Tri& v = s.mesh.tris[t]; !s.mesh.dead(t))

@@ -51,7 +51,7 @@ enum Hold : char {
   slides,    ///< along a border or model edge
   fixed,     ///< a corner
   anchored,  ///< at a feature that the mesh would miss
-  frozen,    ///< at the rim of a patch
+  frozen,    ///< at the rim of a patch or tile
   paired     ///< on an open seam
 };
 
@@ -84,6 +84,14 @@ struct Schedule {
 struct Labels {
   std::vector<int> kind, line;
   std::vector<int> patch, part;
+};
+
+/// What a tile of a mesh knows of all of it.
+struct OfWhole {
+  std::vector<int>
+      rim_excess;        ///< of frozen vertices: see excess, less the valence in the tile; empty: no tile
+  double mean_size = 0;  ///< see mean_size; 0: that of this mesh
+  double share = 1;      ///< of the work that is shown
 };
 
 /// A mesh on its reference, while it is optimized.
@@ -120,6 +128,7 @@ struct State {
   Schedule schedule;
   RelaxCounts counts;
   bool keep_border = false;  ///< no new vertex on the border
+  OfWhole whole;
   bool recording = false;
   std::vector<Edit> edits;  ///< while recording
 };
@@ -151,7 +160,7 @@ State start_state(LiftedMesh& mesh, const Reference& reference, const std::vecto
 /// there, or -1.
 std::vector<int> finish(State& s, LiftedMesh& mesh);
 
-/// The edge length that the triangles would have if all were equilateral and equal.
+/// The edge length that the triangles, or those of the whole, would have if all were equilateral and equal.
 double mean_size(const State& s);
 
 /// Puts v at a place of the reference, whose point is p.

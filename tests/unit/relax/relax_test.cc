@@ -2,6 +2,7 @@
 #include "lib/relax/relax.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -75,7 +76,43 @@ TEST(Relax, TheSameInputGivesTheSameBytes) {
   EXPECT_TRUE(a.tris == b.tris);
 }
 
-TEST(Relax, ModelEdgesOfACubeStay) {
+RelaxOptions in_tiles(int triangles, double target = 0) {
+  RelaxOptions options;
+  options.tile = triangles;
+  options.target_triangles = target;
+  return options;
+}
+
+TEST(Relax, TilesLeaveNoTrace) {
+  const Surface s = sized(torus(0.4, 24000), 12000);
+  LiftedMesh m = lifted_of(s);
+  const RelaxReport r = relax(m, s, {}, {}, in_tiles(3000, 12000));
+  EXPECT_NEAR((double)m.tris.size(), 12000, 0.025 * 12000);
+  EXPECT_TRUE(r.intersections.empty());
+  EXPECT_GT(r.kappa_min, 0.7);
+  EXPECT_GT(r.kappa_mean, 0.97);
+  const Topology t = topology_of(m);
+  EXPECT_EQ(t.genus, 1);
+  EXPECT_EQ(t.loops, 0);
+  expect_on_surface(m, s);
+}
+
+TEST(Relax, TilesGiveTheSameBytesAtAnyNumberOfThreads) {
+  const Surface s = slivered_sphere(8000, 0.2, 1);
+  const int threads = omp_get_max_threads();
+  std::vector<LiftedMesh> results;
+  for (int n : {1, 2, 5}) {
+    omp_set_num_threads(n);
+    relax(results.emplace_back(lifted_of(s)), s, {}, {}, in_tiles(700));
+  }
+  omp_set_num_threads(threads);
+  for (const LiftedMesh& m : results) {
+    EXPECT_TRUE(m.points == results[0].points);
+    EXPECT_TRUE(m.tris == results[0].tris);
+  }
+}
+
+void expect_cube_stays(const RelaxOptions& options) {
   Body body = cube(2000);
   Surface s = sized(body, 1500);
   s.face.set("patch", body.patch);
@@ -89,7 +126,7 @@ TEST(Relax, ModelEdgesOfACubeStay) {
         p.push_back(body.patch[t]);
   for (std::size_t v = 0; v < patches.size(); ++v)
     if (patches[v].size() > 1) m.kind[v] = patches[v].size() > 2 ? 2 : 1, m.line[v] = 0;
-  relax(m, s, {model_line});
+  relax(m, s, {model_line}, {}, options);
   expect_on_surface(m, s);
   // eight corners, where they were
   int corners = 0;
@@ -103,6 +140,10 @@ TEST(Relax, ModelEdgesOfACubeStay) {
   // no triangle leaves its face of the cube: the area is exact
   EXPECT_NEAR(total_area(m), total_area(s), 1e-9);
 }
+
+TEST(Relax, ModelEdgesOfACubeStay) { expect_cube_stays({}); }
+
+TEST(Relax, ModelEdgesOfACubeStayInTiles) { expect_cube_stays(in_tiles(400)); }
 
 TEST(Relax, DislocationsGo) {
   const Surface s = sized(torus(0.4, 20000), 8000);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tiles of a large mesh: pieces that are optimized by themselves, with held rims, on the slice of the
+// reference below them; for lib/relax/ only.
+#pragma once
+#include "lib/relax/state.h"
+
+namespace meshpipe {
+
+/// A mesh with what its vertices remember from one pass over its tiles to the next.
+struct TiledMesh {
+  LiftedMesh mesh;
+  std::vector<Hold> hold;          ///< anchored, fixed or paired; loose: as the lines hold it
+  std::vector<double> refinement;  ///< see State
+};
+
+/// Triangles of a mesh as a mesh of its own. Vertices that other triangles have, too, are frozen.
+struct Tile : TiledMesh {
+  std::vector<int> triangles, vertices;        ///< their rows in the whole
+  std::vector<int> excess;                     ///< of each frozen vertex, in the whole: see excess
+  std::vector<std::pair<int, int>> model_rim;  ///< model edges between frozen vertices, rows of the whole
+  Mesh others;                                 ///< triangles of the whole around it
+  Surface slice;                               ///< of the reference
+  std::vector<int> faces;                      ///< its rows in the reference
+  std::vector<char> corner;  ///< per vertex of the slice, see relax; empty if none are known
+};
+
+/// Distributes triangles to boxes of at most `most` of them, by splits across their longest extent. Returns
+/// their rows, ascending in each box.
+std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vector<int>& triangles, int most);
+
+/// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].
+struct Lists {
+  std::vector<int> start, row;
+};
+Lists triangles_at_vertices(const Mesh& mesh);
+/// What is around each of several tiles, by up to about four of their edges.
+struct Surroundings {
+  Lists faces;   ///< of the reference
+  Lists others;  ///< triangles of the mesh that are not in the tile
+};
+Surroundings around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
+                          const Mesh& reference);
+
+/// Cuts the tile with number `tile` of these boxes out, with the slice of the reference around it.
+Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& reference,
+              const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes,
+              const Surroundings& around, int tile);
+
+/// Replaces the triangles of tiles by what has become of them: `mesh`, `hold` and `refinement` of each, with
+/// `vertices`, the row in the whole of each frozen vertex, -1 of the others, and places on the reference.
+/// Vertices outside of tiles come first, then those of each tile.
+/// Returns the vertices that were frozen only since they are on the rims of several tiles, ascending.
+std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles);
+
+/// Returns the triangles that are up to `rings` vertices away from one of these, ascending.
+std::vector<int> triangles_near(const Mesh& mesh, std::vector<int> vertices, int rings);
+
+}  // namespace meshpipe
