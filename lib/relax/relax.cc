@@ -80,24 +80,27 @@ void sweep(State& s, int sweeps, double target) {
   }
 }
 
-/// Reaches features and repairs, where places need more than sweeps.
-void attend_to_places(State& s, Samples& samples) {
+/// Reaches features and repairs, where places need more than sweeps. On a smooth surface no feature is
+/// missed, and a mesh that is not `at_rest` comes to it in the first round.
+void attend_to_places(State& s, Samples& samples, bool at_rest) {
   Repairs memory;
   const int most = std::max(rules::features, s.mesh.live / rules::triangles_per_feature);
   for (int round = 0; round < rules::feature_rounds; ++round) {
-    // on a smooth surface none is missed, and the mesh has come to rest in the first round
-    if (reach_features(s, samples, rules::missed, most) || round == 0) even_out(s);
+    if (reach_features(s, samples, rules::missed, most) || (round == 0 && !at_rest)) even_out(s);
     repair_worst(s, memory);
     add_progress(0.1 / rules::feature_rounds * s.whole.share);
   }
 }
 
-/// Sweeps with `target` triangles, then attends to places; not without samples, as tiles have none until
-/// their seams have been swept, too.
+/// Sweeps with `target` triangles, then attends to places. Without samples, as tiles have none until their
+/// seams have been swept, too, it only comes to rest.
 void optimize(State& s, int sweeps, double target, Samples* samples) {
   if (samples) samples->forget();
   sweep(s, sweeps, target);
-  if (samples) attend_to_places(s, *samples);
+  if (samples)
+    attend_to_places(s, *samples, false);
+  else
+    even_out(s);
 }
 
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
@@ -271,6 +274,8 @@ void finish_tile(State& s, const Ordered& ordered, Tile& tile) {
   tile.vertices = std::move(vertices);
   finish(s, tile.mesh);
   for (Place& p : tile.mesh.place) p.face = tile.faces[ordered.reference.tris[p.face]];
+  tile.others = {};  // frees memory now: other tiles are still at work
+  tile.faces = {}, tile.excess = {}, tile.corner = {};
 }
 
 /// Returns what was done, and the tries.
@@ -294,7 +299,8 @@ RelaxReport relax_tile(Tile& tile, const Pass& pass) {
   if (pass.repair) {
     Samples samples{feature_samples(*ordered.on, pass.sample_size), {}};
     keep_own(s, tile.others, pass.sample_size, samples);
-    attend_to_places(s, samples);
+    rest(s);
+    attend_to_places(s, samples, true);
     remove_faults(s, samples);
   } else {
     coarse_rounds(s);
@@ -323,25 +329,33 @@ void relax_region(TiledMesh& whole, std::vector<int> region, Pass pass, RelaxRep
     const std::vector<std::vector<int>> boxes = split_into_boxes(whole.mesh, region, most);
     const int n = (int)boxes.size();
     const Lists at_vertex = triangles_at_vertices(whole.mesh);
-    const Surroundings around = around_tiles(whole.mesh, boxes, pass.reference);
+    const Lists faces = around_tiles(whole.mesh, boxes, rules::around_tile, &pass.reference),
+                others = pass.repair ? around_tiles(whole.mesh, boxes, rules::around_tile, nullptr) : Lists();
     std::vector<Tile> tiles(n);
     std::vector<RelaxReport> reports(n);
     parallel_for(n, [&](int i) {
-      tiles[i] = cut_tile(whole, at_vertex, pass.reference, pass.corner, boxes, around, i);
+      tiles[i] = cut_tile(whole, at_vertex, pass.reference, pass.corner, boxes, faces, others, i);
       reports[i] = relax_tile(tiles[i], pass);
     });
     for (const RelaxReport& r : reports) add(report, r);
-    const std::vector<int> seams = replace_tiles(whole, tiles);
+    const std::vector<int> seams = replace_tiles(whole, std::move(tiles));
     region = triangles_near(whole.mesh, seams, rules::seam_rings);
     pass.goal = 1, pass.to_count = false;
   }
+}
+
+std::vector<int> all_triangles(const Mesh& mesh) {
+  std::vector<int> all(mesh.tris.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 /// Repairs where tiles intersect that do not know each other. Returns what still intersects.
 Intersections part_tiles(TiledMesh& whole, const Pass& pass, RelaxReport& report) {
   std::optional<Mesh> known;
   for (int round = 0;; ++round) {
-    Intersections found{self_intersections(whole.mesh)};
+    const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), pass.options.tile);
+    Intersections found{crossings_of_boxes(whole.mesh, boxes, rules::around_seams)};
     if (found.pairs.empty()) return found;
     if (!known) known = contacts(pass.reference, self_intersections(pass.reference));
     const int all = (int)found.pairs.size();
@@ -383,9 +397,7 @@ RelaxReport relax_tiles(LiftedMesh& mesh, const Surface& reference, const std::v
   RelaxReport report;
   for (bool repair : {false, true}) {
     pass.repair = repair;
-    std::vector<int> all(whole.mesh.tris.size());
-    std::iota(all.begin(), all.end(), 0);
-    relax_region(whole, std::move(all), pass, report);
+    relax_region(whole, all_triangles(whole.mesh), pass, report);
   }
   const Intersections left = part_tiles(whole, pass, report);
   report.intersections = left.pairs, report.intersections_of_reference = left.of_reference;
@@ -399,7 +411,7 @@ RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<i
                   const std::vector<char>& corners, const RelaxOptions& options) {
   if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
   const bool tiled =
-      (int)mesh.tris.size() > 2 * options.tile && !options.sheets_meet && options.sheets.empty();
+      (int)mesh.tris.size() > 4 * options.tile && !options.sheets_meet && options.sheets.empty();
   RelaxReport report = (tiled ? relax_tiles : relax_whole)(mesh, original, line_kind, corners, options);
   set_quality(report, mesh);
   return report;

@@ -2,7 +2,9 @@
 #include "lib/relax/tiles.h"
 
 #include <numeric>
+#include <span>
 
+#include "lib/core/intersect.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/patch.h"
 
@@ -155,6 +157,18 @@ void take_slice(Tile& tile, const Surface& reference, const std::vector<char>& c
   if (!corner.empty()) tile.corner = picked(corner, vertices.list);
 }
 
+/// These triangles as a mesh of its own.
+Mesh part_of(const Mesh& mesh, std::span<const int> triangles) {
+  Rows vertices(mesh.points.size());
+  Mesh part;
+  for (int t : triangles) {
+    Tri& v = part.tris.emplace_back(mesh.tris[t]);
+    for (int& w : v) w = vertices.of(w);
+  }
+  part.points = picked(mesh.points, vertices.list);
+  return part;
+}
+
 /// Cubes that fill the box of a mesh.
 class Grid {
  public:
@@ -248,9 +262,9 @@ Lists triangles_at_vertices(const Mesh& mesh) {
   });
 }
 
-Surroundings around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
-                          const Mesh& reference) {
-  constexpr double edges_per_cube = 4, reach = 2;  // edges: walks from vertices inside end in their stars
+Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
+                   const Mesh* reference) {
+  constexpr double edges_per_cube = 4;
   const int tiles = (int)boxes.size(), n = (int)mesh.tris.size();
   const Grid grid(mesh, edges_per_cube * size_for_count(total_area(mesh), n), std::max(1000.0, 0.5 * n));
   std::vector<int> own(n, -1);
@@ -271,28 +285,36 @@ Surroundings around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>&
     for (int i = 0; i < tiles; ++i)
       for (int cube : cubes[i]) add(cube, i);
   });
-  return {triangles_in_cubes(reference, grid, tiles_at, tiles, {}),
-          triangles_in_cubes(mesh, grid, tiles_at, tiles, own)};
+  return reference ? triangles_in_cubes(*reference, grid, tiles_at, tiles, {})
+                   : triangles_in_cubes(mesh, grid, tiles_at, tiles, own);
 }
 
 Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& reference,
-              const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes,
-              const Surroundings& around, int tile) {
+              const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes, const Lists& faces,
+              const Lists& others, int tile) {
   Tile t;
   t.triangles = boxes[tile];
   take_mesh(t, whole, at_vertex);
-  Rows vertices(whole.mesh.points.size());
-  for_rows(around.others, tile, [&](int other) {
-    Tri& v = t.others.tris.emplace_back(whole.mesh.tris[other]);
-    for (int& w : v) w = vertices.of(w);
-  });
-  t.others.points = picked(whole.mesh.points, vertices.list);
-  for_rows(around.faces, tile, [&](int f) { t.faces.push_back(f); });
+  if (!others.start.empty())
+    t.others = part_of(whole.mesh, {&others.row[others.start[tile]], &others.row[others.start[tile + 1]]});
+  for_rows(faces, tile, [&](int f) { t.faces.push_back(f); });
   take_slice(t, reference, corner);
   return t;
 }
 
-std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles) {
+std::vector<std::pair<int, int>> crossings_of_boxes(const Mesh& mesh,
+                                                    const std::vector<std::vector<int>>& boxes,
+                                                    double reach) {
+  std::vector<int> near = around_tiles(mesh, boxes, reach, nullptr).row;
+  sort_unique(near);
+  std::vector<std::pair<int, int>> pairs;
+  if (near.empty()) return pairs;
+  pairs = self_intersections(part_of(mesh, near));
+  for (auto& [a, b] : pairs) a = near[a], b = near[b];
+  return pairs;
+}
+
+std::vector<int> replace_tiles(TiledMesh& whole, std::vector<Tile> tiles) {
   const LiftedMesh& old = whole.mesh;
   const int n = (int)old.points.size();
   std::vector<char> gone_triangle(old.tris.size());
@@ -309,6 +331,16 @@ std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles)
       if (v >= 0) keep[v] = 1;
   TiledMesh result;
   LiftedMesh& to = result.mesh;
+  std::size_t points = std::count(keep.begin(), keep.end(), 1),
+              triangles = std::count(gone_triangle.begin(), gone_triangle.end(), 0);
+  for (const Tile& tile : tiles) {
+    points += std::count(tile.vertices.begin(), tile.vertices.end(), -1);
+    triangles += tile.mesh.tris.size();
+  }
+  to.points.reserve(points), to.place.reserve(points), to.kind.reserve(points), to.line.reserve(points);
+  to.size.reserve(points), result.hold.reserve(points), result.refinement.reserve(points);
+  to.tris.reserve(triangles), to.model.reserve(triangles);
+  to.patch.reserve(triangles), to.part.reserve(triangles);
   auto add_vertex = [&](const TiledMesh& from, int v) {
     const LiftedMesh& m = from.mesh;
     to.points.push_back(m.points[v]), to.place.push_back(m.place[v]);
@@ -326,7 +358,7 @@ std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles)
   for (int t = 0; t < (int)old.tris.size(); ++t)
     if (!gone_triangle[t]) add_triangle(old, t, number, old.model[t]);
   std::vector<int> seams;
-  for (const Tile& tile : tiles) {
+  for (Tile& tile : tiles) {
     std::vector<int> rows;
     for (int v = 0; v < (int)tile.vertices.size(); ++v) {
       const int known = tile.vertices[v];
@@ -342,6 +374,7 @@ std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles)
       }
       add_triangle(tile.mesh, t, rows, model);
     }
+    tile = {};  // frees its memory now
   }
   whole = std::move(result);
   sort_unique(seams);

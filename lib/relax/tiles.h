@@ -33,24 +33,26 @@ struct Lists {
   std::vector<int> start, row;
 };
 Lists triangles_at_vertices(const Mesh& mesh);
-/// What is around each of several tiles, by up to about four of their edges.
-struct Surroundings {
-  Lists faces;   ///< of the reference
-  Lists others;  ///< triangles of the mesh that are not in the tile
-};
-Surroundings around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
-                          const Mesh& reference);
+/// Returns for each of several tiles the triangles of the reference that are no farther from it than `reach`
+/// of its edges, and some others; where `reference` is null, triangles of the mesh that are not in the tile.
+Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
+                   const Mesh* reference);
 
-/// Cuts the tile with number `tile` of these boxes out, with the slice of the reference around it.
+/// Cuts the tile with number `tile` of these boxes out, with the slice of the reference around it. `others`:
+/// the triangles of the mesh around it; empty: none.
 Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& reference,
-              const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes,
-              const Surroundings& around, int tile);
+              const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes, const Lists& faces,
+              const Lists& others, int tile);
 
 /// Replaces the triangles of tiles by what has become of them: `mesh`, `hold` and `refinement` of each, with
 /// `vertices`, the row in the whole of each frozen vertex, -1 of the others, and places on the reference.
 /// Vertices outside of tiles come first, then those of each tile.
 /// Returns the vertices that were frozen only since they are on the rims of several tiles, ascending.
-std::vector<int> replace_tiles(TiledMesh& whole, const std::vector<Tile>& tiles);
+std::vector<int> replace_tiles(TiledMesh& whole, std::vector<Tile> tiles);
+
+/// Returns the pairs of triangles that intersect and may be in different boxes, sorted.
+std::vector<std::pair<int, int>> crossings_of_boxes(const Mesh& mesh,
+                                                    const std::vector<std::vector<int>>& boxes, double reach);
 
 /// Returns the triangles that are up to `rings` vertices away from one of these, ascending.
 std::vector<int> triangles_near(const Mesh& mesh, std::vector<int> vertices, int rings);

@@ -37,9 +37,10 @@ std::vector<Tile> cut_all(const TiledMesh& whole, const Surface& reference, int 
   std::vector<Tile> tiles;
   const Lists at_vertex = triangles_at_vertices(whole.mesh);
   const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), most);
-  const Surroundings around = around_tiles(whole.mesh, boxes, reference);
+  const Lists faces = around_tiles(whole.mesh, boxes, 2, &reference),
+              others = around_tiles(whole.mesh, boxes, 2, nullptr);
   for (int i = 0; i < (int)boxes.size(); ++i)
-    tiles.push_back(cut_tile(whole, at_vertex, reference, {}, boxes, around, i));
+    tiles.push_back(cut_tile(whole, at_vertex, reference, {}, boxes, faces, others, i));
   return tiles;
 }
 
@@ -198,6 +199,17 @@ TEST(Tiles, ModelEdgesOfRimsStay) {
   }
   replace_tiles(whole, tiles);
   EXPECT_EQ(edges(whole.mesh), before);
+}
+
+// two plates, a vertical one through a horizontal one, each in a box of its own
+TEST(Tiles, CrossingsOfBoxesAreFound) {
+  Mesh mesh{
+      {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, -1}, {1, 1, 1}, {4, 1, 0}, {9, 9, 9}, {9, 8, 9}, {9, 9, 8}},
+      {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};
+  const std::vector<std::pair<int, int>> expected{{0, 1}};
+  EXPECT_EQ(crossings_of_boxes(mesh, {{0}, {1}, {2}}, 1), expected);
+  mesh.points[5] = {1, 4, 0}, mesh.points[3].z = 0.5;
+  EXPECT_TRUE(crossings_of_boxes(mesh, {{0}, {1}, {2}}, 1).empty());
 }
 
 TEST(Tiles, TrianglesNearComeRingByRing) {
