@@ -14,15 +14,15 @@ struct Diagnosis {
   double weld = 0;                ///< tolerance that merges points almost at one place; 0: there are none
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others
-  int spikes = 0;                 ///< vertices that stick out, as mclean has found them
-  bool sheets = false;            ///< meet, with regions between them, which a wrap would lose
+  int spikes = 0;                 ///< for the caller: vertices that stick out, as mclean has found them,
+  bool sheets = false;            ///< and whether sheets meet, with regions that a wrap would lose
   bool closed = false;            ///< no edge has one triangle only, where equal points are one
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };
 
-/// Measures a surface. `place` and `reach`: where something failed, and the lengths of edges there; reach 0:
-/// unknown. Reads, where present, face columns `patch` and `model`.
+/// Measures a surface, all but `spikes` and `sheets`. `place` and `reach`: where something failed, and the
+/// lengths of edges there; reach 0: unknown. Reads, where present, face columns `patch` and `model`.
 Diagnosis diagnose(const Surface& surface, Vec3 place, double reach);
 
 }  // namespace meshpipe

@@ -25,7 +25,8 @@ struct SheetFindings {
   double volume_error = 0;  ///< largest difference over the reference's volume
   int worst = -1;           ///< row of `volumes` that has it
   std::vector<std::string> faults;
-  std::vector<int> unmatched;  ///< triangles with a free edge, where the reference has none in this patch
+  /// Triangles with a free edge, where the reference has none in this patch, or at all if not `named`.
+  std::vector<int> unmatched;
 };
 
 /// Compares where sheets meet (by patch, or by their number if patches are not `named` alike) and, if

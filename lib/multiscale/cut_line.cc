@@ -19,34 +19,12 @@ double angle_of(Vec2 a) { return std::atan2(a.y, a.x); }
 /// What a line has to pass through: the center of a child set or of a hole.
 struct Stop {
   Vec2 at = {};
-  int child = -1;                  ///< level, or -1
-  std::vector<Vec2> outline = {};  ///< of what no other piece of the line should run over
-  double radius = 0;               ///< of the outline
+  int child = -1;     ///< level, or -1
+  double radius = 0;  ///< of the set or hole around it
 };
 
-/// Length of a segment inside a stop's outline.
-double overlap(const Stop& stop, Vec2 a, Vec2 b) {
-  if (stop.outline.empty() || distance_to_segment(stop.at, a, b) > stop.radius) return 0;
-  const Vec2 d = b - a;
-  std::vector<double> cuts{0, 1};
-  for (std::size_t i = 0, j = stop.outline.size() - 1; i < stop.outline.size(); j = i++) {
-    const Vec2 p = stop.outline[j], q = stop.outline[i];
-    const double sp = cross(d, p - a), sq = cross(d, q - a);
-    if ((sp < 0) == (sq < 0)) continue;
-    const double at = dot(d, lerp(p, q, sp / (sp - sq)) - a) / dot(d, d);
-    if (at > 0 && at < 1) cuts.push_back(at);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  bool inside = encloses(stop.outline, a);
-  double sum = 0;
-  for (std::size_t i = 0; i + 1 < cuts.size(); i++, inside = !inside)
-    if (inside) sum += cuts[i + 1] - cuts[i];
-  return sum * norm(d);
-}
-
 /// Orders the stops of a path between its ends so that it is short: sorted along the chord as in the paper,
-/// then improved by reversing pieces and moving single stops. A short path does not cross itself; what it
-/// costs to run over a stop out of turn keeps it off the others.
+/// then improved by reversing pieces and moving single stops. A short path does not cross itself.
 void shorten(std::vector<Stop>& path) {
   const int n = path.size();
   const Vec2 chord = path.back().at - path.front().at;
@@ -54,16 +32,7 @@ void shorten(std::vector<Stop>& path) {
   for (int i = 0; i < n; i++) order[i] = i;
   std::stable_sort(order.begin() + 1, order.end() - 1,
                    [&](int a, int b) { return dot(path[a].at, chord) < dot(path[b].at, chord); });
-  std::vector<double> cost(n * n, 0);
-  for (int a = 0; a < n; a++)
-    for (int b = 0; b < a; b++) {
-      double& c = cost[a * n + b];
-      c = norm(path[a].at - path[b].at);
-      for (int j = 1; j + 1 < n; j++)
-        if (j != a && j != b) c += 8 * overlap(path[j], path[a].at, path[b].at);
-      cost[b * n + a] = c;
-    }
-  auto d = [&](int a, int b) { return cost[order[a] * n + order[b]]; };
+  auto d = [&](int a, int b) { return norm(path[order[a]].at - path[order[b]].at); };
   const double least = 1e-9 * norm(chord);
   for (bool better = true; better;) {
     better = false;
@@ -133,15 +102,18 @@ bool turn_ends(std::vector<Stop>& path) {
 /// The stops of a level, with a place for the line's ends before and after them.
 std::vector<Stop> stops_of(const FilledDisk& disk, const std::vector<Level>& levels, const Level& level) {
   std::vector<Stop> path(1);
-  for (int c : level.children) path.push_back({levels[c].center, c, levels[c].border});
-  for (int h : level.holes) path.push_back({level.uv[h]});
+  auto widen = [](Stop& s, Vec2 p) { s.radius = std::max(s.radius, norm(p - s.at)); };
+  for (int c : level.children) {
+    path.push_back({levels[c].center, c});
+    for (Vec2 p : levels[c].border) widen(path.back(), p);
+  }
   std::vector<int> stop_of(level.vertex.size(), -1);
-  for (std::size_t i = 0; i < level.holes.size(); i++)
-    stop_of[level.holes[i]] = 1 + level.children.size() + i;
-  for (const Tri& c : level.corners)  // a fan's triangles end in its center, and follow each other
-    if (int s = stop_of[c[2]]; s >= 0) path[s].outline.push_back(level.uv[c[1]]);
-  for (Stop& s : path)
-    for (Vec2 p : s.outline) s.radius = std::max(s.radius, norm(p - s.at));
+  for (int h : level.holes) {
+    stop_of[h] = path.size();
+    path.push_back({level.uv[h]});
+  }
+  for (const Tri& c : level.corners)  // a fan's triangles end in its center
+    if (int s = stop_of[c[2]]; s >= 0) widen(path[s], level.uv[c[1]]);
   if (path.size() == 1) path.push_back({middle_of(disk, level)});
   path.push_back({});
   return path;

@@ -2,14 +2,11 @@
 #include "lib/multiscale/multiscale.h"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 
 #include "lib/core/coarsen.h"
-#include "lib/core/fan.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
-#include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 #include "lib/multiscale/cut_line.h"
@@ -53,27 +50,6 @@ bool better(const Assessment& a, const Assessment& b) {
   return cost(a) < cost(b);
 }
 
-/// The last resort: cuts across the part, half way from its rim to its farthest vertex, which always shortens
-/// it.
-std::vector<double> across(const ConnectedPart& part, const std::vector<int>& rim) {
-  const std::vector<Tri>& tris = part.tris;
-  std::vector<double> distance(part.points.size(), 1e300);
-  std::vector<int> leaving(distance.size(), -1);
-  for (int h = 0; h < (int)part.opposite.size(); ++h) leaving[origin(tris, h)] = h;
-  for (int v : rim) distance[v] = 0;
-  double farthest = 0;
-  shortest_paths(rim, distance, [&](int v, auto reach) {
-    farthest = distance[v];
-    for_each_neighbor(tris, part.opposite, leaving[v],
-                      [&](int w) { reach(w, distance[v] + norm(part.points[w] - part.points[v])); });
-  });
-  for (double& d : distance) {
-    d -= farthest / 2;
-    if (d == 0) d = std::numeric_limits<double>::min();
-  }
-  return distance;
-}
-
 /// A line, and what it does.
 struct Candidate {
   Assessment is;
@@ -81,7 +57,7 @@ struct Candidate {
   std::vector<std::vector<Vec2>> lines;
 };
 
-/// The best of the lines in all directions; the one across the part if none is any good.
+/// The best of the lines in all directions; with a field of one sign if none is any good.
 Candidate best_line(const ConnectedPart& part, const CutMaps& cut) {
   std::vector<Candidate> candidates(directions);
   constexpr std::size_t worth_threads = 4000;  // triangles: below it starting threads takes longer
@@ -95,10 +71,7 @@ Candidate best_line(const ConnectedPart& part, const CutMaps& cut) {
   parallel_for(directions, try_direction, part.tris.size() > worth_threads);
   Candidate& best = *std::min_element(candidates.begin(), candidates.end(),
                                       [](const auto& a, const auto& b) { return better(a.is, b.is); });
-  if (!best.is.valid || best.is.smaller_share < least_share) {
-    best.field = across(part, cut.disk.rim);
-    best.lines.assign(cut.levels.size(), {});
-  }
+  if (!best.is.valid || best.is.smaller_share < least_share) best.field.assign(best.field.size(), 1);
   return std::move(best);
 }
 

@@ -15,7 +15,7 @@ class TriangleArrangement {
   explicit TriangleArrangement(ExactPoints& points) : points_(points) {}
   /// Starts with one triangle of three vertices. Requires: it has area.
   void start(const Tri& corners);
-  /// Makes point p, which lies on the triangle, a vertex.
+  /// Makes point p, which lies on the triangle, a vertex. As the next, throws Error if it does not.
   void insert(int p);
   /// Makes the segment between two vertices a chain of fixed edges; where it crosses other fixed edges, there
   /// are new vertices.

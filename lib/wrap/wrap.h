@@ -21,7 +21,7 @@ struct WrapReport {
   int held = 0;            ///< vertices kept farther out, where the fitted surface met the soup or itself
   double clearance = 0;    ///< smallest distance of a vertex of the wrap from the soup
   double farthest = 0;     ///< bound on the distance of any point of the wrap from the soup
-  double farthest_allowed = 0;
+  double farthest_allowed = 0;  ///< of that bound: offset, half of alpha, and 1.5 spacings
 };
 
 /// Wraps the soup: the result is a closed, outward oriented manifold without self-intersections that holds
@@ -34,7 +34,8 @@ struct WrapReport {
 Mesh wrap(const Mesh& soup, const WrapOptions& options, WrapReport& report);
 
 /// Checks every promise of `wrap`, intersections by exact predicates, and fills in components, genus,
-/// clearance and farthest. Throws ContractMissed naming the first promise that is broken.
+/// clearance and farthest. Reads spacing and farthest_allowed of the report. Throws ContractMissed naming the
+/// first promise that is broken.
 void verify_wrap(const Mesh& wrap, const Mesh& soup, WrapReport& report);
 
 }  // namespace meshpipe
