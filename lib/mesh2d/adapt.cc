@@ -63,7 +63,7 @@ class Adapter {
   // is a better estimate until it is split.
   double bent_length(int h) const {
     const int v = cdt_.origin(h), w = cdt_.target(h);
-    return norm(frame_of(0.5 * (m_.site[v].metric + m_.site[w].metric)).to(cdt_.points[w] - cdt_.points[v]));
+    return norm(factor_of(0.5 * (m_.site[v].metric + m_.site[w].metric)).to(cdt_.points[w] - cdt_.points[v]));
   }
 
   int split_long() {

@@ -20,7 +20,7 @@ LogMetric log_of(double a, double b, double c) {
 
 }  // namespace
 
-Frame frame_of(LogMetric l) {
+MetricFactor factor_of(LogMetric l) {
   // exp of the traceless part [d b; b -d], whose square is r^2 I, is cosh r I + sinh r / r [d b; b -d]
   double m = 0.5 * (l.a + l.c), d = 0.5 * (l.a - l.c), r = std::hypot(d, l.b);
   double e = std::exp(r), ch = 0.5 * (e + 1 / e), sh = r > 1e-8 ? 0.5 * (e - 1 / e) / r : 1;

@@ -17,12 +17,12 @@ inline LogMetric operator*(double s, LogMetric x) { return {s * x.a, s * x.b, s 
 
 /// Upper triangular factor of a metric M = F^T F: the affine map to where lengths are plain, orientation
 /// kept.
-struct Frame {
+struct MetricFactor {
   double xx = 1, xy = 0, yy = 1;
   Vec2 to(Vec2 d) const { return {xx * d.x + xy * d.y, yy * d.y}; }
   Vec2 back(Vec2 d) const { return {(d.x - xy / yy * d.y) / xx, d.y / yy}; }
 };
-Frame frame_of(LogMetric log_metric);
+MetricFactor factor_of(LogMetric log_metric);
 
 /// J^T J of the chart's map (J = dx/du), averaged over the triangles at a vertex, weighted by area, in log
 /// space.

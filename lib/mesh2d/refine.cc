@@ -105,7 +105,7 @@ class Refiner {
 
   // Rebay's point on the edge's bisector: on a circle of the ideal radius through its ends, but no farther
   // than the circumcenter's own triangle would reach. Judged in frame f.
-  bool rebay_point(int h, const Frame& f, Vec2& p) const {
+  bool rebay_point(int h, const MetricFactor& f, Vec2& p) const {
     Vec2 a = point(cdt_.origin(h));
     Vec2 b = f.to(point(cdt_.target(h)) - a), c = f.to(point(cdt_.apex(h)) - a);
     double half = 0.5 * norm(b), area2 = cross(b, c);
@@ -124,16 +124,16 @@ class Refiner {
     if (h < 0) return false;
     const Site &a = m_.site[cdt_.origin(h)], &b = m_.site[cdt_.target(h)];
     Vec2 p;
-    if (!rebay_point(h, frame_of(0.5 * (a.metric + b.metric)), p)) return false;
+    if (!rebay_point(h, factor_of(0.5 * (a.metric + b.metric)), p)) return false;
     // once more in the metric between the edge and there
     Site there = field_.at(p, a.place.face);
-    if (!rebay_point(h, frame_of((1.0 / 3) * (a.metric + b.metric + there.metric)), p)) return false;
+    if (!rebay_point(h, factor_of((1.0 / 3) * (a.metric + b.metric + there.metric)), p)) return false;
     return insert(p, t, there.place.face, row(h) + 1);
   }
 
   bool insert_at_center(int t) {
     const Tri& v = cdt_.tris[t];
-    Frame f = frame_of((1.0 / 3) * (site(t, 0).metric + site(t, 1).metric + site(t, 2).metric));
+    MetricFactor f = factor_of((1.0 / 3) * (site(t, 0).metric + site(t, 1).metric + site(t, 2).metric));
     Vec2 b = f.to(point(v[1]) - point(v[0])), c = f.to(point(v[2]) - point(v[0]));
     double area2 = cross(b, c);
     if (!(area2 > 0)) return false;

@@ -24,7 +24,7 @@ double worst_shape(const SiteMesh& m, int v, Vec3 x) {
 
 bool insert_site(SiteMesh& m, Vec2 p, const Site& there, int t, Spacing spacing) {
   Cdt& cdt = m.cdt;
-  Frame f = frame_of(there.metric);
+  MetricFactor f = factor_of(there.metric);
   bool free = m.cavity.grow(cdt, p, t, [&](int u) {
     // in-circle in the metric at p: plain rounding will do, as the cavity is kept star-shaped exactly
     const Tri& corner = cdt.tris[u];

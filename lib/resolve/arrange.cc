@@ -25,7 +25,7 @@ class Cuts {
  private:
   void edge_and_triangle(int p, int q, int at_p, int at_q, const Tri& t);
   void edge_in_plane(int p, int q, const Tri& t);
-  bool inside(int p, const Tri& t, View view) const;
+  bool inside(int p, const Tri& t, Projection view) const;
   bool strictly_between(int p, int a, int b) const;
   void put(int s, int t);
 
@@ -38,7 +38,7 @@ class Cuts {
   std::vector<char> coplanar;  ///< flags triangles that share an area with another
 };
 
-bool Cuts::inside(int p, const Tri& t, View view) const {
+bool Cuts::inside(int p, const Tri& t, Projection view) const {
   for (int i = 0; i < 3; ++i)
     if (points_.turn(t[i], t[(i + 1) % 3], p, view) < 0) return false;
   return true;
@@ -53,7 +53,7 @@ bool Cuts::strictly_between(int p, int a, int b) const {
 
 /// The ends of what edge pq has in common with a triangle of its plane.
 void Cuts::edge_in_plane(int p, int q, const Tri& t) {
-  const View view = points_.view(t);
+  const Projection view = points_.view(t);
   for (int v : {p, q})
     if (inside(v, t, view)) found_.push_back(v);
   for (int i = 0; i < 3; ++i) {

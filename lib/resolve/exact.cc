@@ -16,7 +16,7 @@ using Int = boost::multiprecision::cpp_int;
 constexpr double eps = std::numeric_limits<double>::epsilon() / 2;  // half an ulp of 1
 
 double coordinate(Vec3 p, int k) { return k == 0 ? p.x : k == 1 ? p.y : p.z; }
-Vec2 seen(Vec3 p, View v) { return {coordinate(p, v.i), coordinate(p, v.j)}; }
+Vec2 seen(Vec3 p, Projection v) { return {coordinate(p, v.i), coordinate(p, v.j)}; }
 
 /// The exponent of the lowest bit that is set.
 int lowest_bit(double x) {
@@ -138,7 +138,7 @@ int ExactPoints::line_and_plane(int p, int q, const Tri& t) {
   return number(between(a, b, value(a), value(b)));
 }
 
-int ExactPoints::line_and_line(int p, int q, int a, int b, View view) {
+int ExactPoints::line_and_line(int p, int q, int a, int b, Projection view) {
   const Homogeneous u = exact(p), v = exact(q), x = exact(a), y = exact(b);
   const int i = view.i, j = view.j;
   const Int l = x[j] * y[3] - x[3] * y[j], m = x[3] * y[i] - x[i] * y[3], n = x[i] * y[j] - x[j] * y[i];
@@ -146,20 +146,20 @@ int ExactPoints::line_and_line(int p, int q, int a, int b, View view) {
   return number(between(u, v, value(u), value(v)));
 }
 
-View ExactPoints::view(const Tri& t) const {
+Projection ExactPoints::view(const Tri& t) const {
   // the coordinate left out is that of the normal's largest component, if exact arithmetic agrees
   const Vec3 n = area_vector(near_[t[0]], near_[t[1]], near_[t[2]]);
   std::array<std::pair<double, int>, 3> size{{{-std::abs(n.x), 0}, {-std::abs(n.y), 1}, {-std::abs(n.z), 2}}};
   std::sort(size.begin(), size.end());
   for (const auto& [minus, k] : size) {
-    const View view{(k + 1) % 3, (k + 2) % 3};
+    const Projection view{(k + 1) % 3, (k + 2) % 3};
     if (const int sense = turn(t[0], t[1], t[2], view); sense != 0)
-      return sense > 0 ? view : View{view.j, view.i};
+      return sense > 0 ? view : Projection{view.j, view.i};
   }
   throw Error("a triangle without area in an arrangement");
 }
 
-int ExactPoints::turn(int a, int b, int c, View view) const {
+int ExactPoints::turn(int a, int b, int c, Projection view) const {
   const Vec2 p = seen(near_[a], view), q = seen(near_[b], view), r = seen(near_[c], view);
   if (is_vertex(a) && is_vertex(b) && is_vertex(c)) return orient2d(p, q, r);
   const Vec2 u = p - r, v = q - r;

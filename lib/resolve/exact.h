@@ -12,7 +12,7 @@
 namespace meshpipe {
 
 /// Two coordinates that a plane is seen in: 0 x, 1 y, 2 z.
-struct View {
+struct Projection {
   int i = 0, j = 1;
 };
 
@@ -30,15 +30,15 @@ class ExactPoints {
   const Vec3& near(int p) const { return near_[p]; }
 
   /// Returns coordinates to see triangle `t` in, such that it turns left. Requires: `t` has area.
-  View view(const Tri& t) const;
+  Projection view(const Tri& t) const;
 
   /// Returns the point where the line through vertices p, q meets the plane of vertices `t`.
   int line_and_plane(int p, int q, const Tri& t);
   /// Returns the point where the lines p q and a b of one plane meet, which are not parallel as seen.
-  int line_and_line(int p, int q, int a, int b, View view);
+  int line_and_line(int p, int q, int a, int b, Projection view);
 
   /// +1 if a, b, c turn left as seen, -1 right, 0 collinear.
-  int turn(int a, int b, int c, View view) const;
+  int turn(int a, int b, int c, Projection view) const;
   /// +1 if p lies on the side of the plane of vertices `t` from which they turn left, -1 on the other, 0 on
   /// it.
   int side(const Tri& t, int p) const;

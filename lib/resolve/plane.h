@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lib/resolve/exact.h"
-#include "lib/resolve/plane_mesh.h"
+#include "lib/resolve/plane_triangulation.h"
 
 namespace meshpipe {
 
@@ -23,7 +23,7 @@ class TriangleArrangement {
   /// Flips free edges towards Delaunay's, by rounded coordinates.
   void improve();
   /// The triangles, oriented as the corners; the sides of the corners are fixed.
-  const PlaneMesh& mesh() const { return mesh_; }
+  const PlaneTriangulation& mesh() const { return mesh_; }
 
  private:
   int turn(int a, int b, int c) const { return points_.turn(a, b, c, view_); }
@@ -35,8 +35,8 @@ class TriangleArrangement {
   int step(int p, int on_line);
 
   ExactPoints& points_;
-  PlaneMesh mesh_;
-  View view_;
+  PlaneTriangulation mesh_;
+  Projection view_;
   std::vector<std::array<int, 2>> lines_;  ///< two points on each
   int last_ = 0;                           ///< a triangle of the point inserted last
 };

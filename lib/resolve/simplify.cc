@@ -6,6 +6,7 @@
 
 #include "lib/core/edges.h"
 #include "lib/core/predicates.h"
+#include "lib/core/spatial_order.h"
 #include "lib/core/weld.h"
 
 namespace meshpipe {
@@ -36,20 +37,9 @@ void contract(PieceMesh& mesh, const std::vector<int>& same, std::vector<char>& 
   p.weight.resize(n);
   p.piece_of.clear();
   unite_coincident(p);
-  std::vector<int> number(mesh.points.size(), -1);
-  std::vector<Vec3> points;
-  std::vector<char> flags;
-  for (Tri& t : p.tris)
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = (int)points.size();
-        points.push_back(mesh.points[v]);
-        flags.push_back(flagged[v]);
-      }
-      v = number[v];
-    }
-  mesh.points = std::move(points);
-  flagged = std::move(flags);
+  const std::vector<int> vertex = number_by_first_use(p.tris, mesh.points.size());
+  mesh.points = rearranged(mesh.points, vertex);
+  flagged = rearranged(flagged, vertex);
 }
 
 /// Divides the long edges of flat triangles at their third vertices, at most one for each triangle that

@@ -22,6 +22,7 @@ LIMITS = {
     "eigen": (0, "includes of Eigen outside lib/numeric"),
     "against": (0, "includes against the order of modules"),
     "inner": (0, "includes of a module's inner headers by another"),
+    "names": (0, "names of classes that two headers give"),
     "modules": (0, "modules without a header of their name, or not in the order"),
 }
 

@@ -269,7 +269,7 @@ TEST(PlaneMetric, FrameUndoesTheLogarithm) {
     Chart chart = square(4, [&](Vec2 p) { return Vec3{3 * p.x, p.y + shear * p.x, 2 * p.x}; });
     std::vector<double> size(chart.uv.size(), 0.5);
     SizeMetric field(chart, size);
-    Frame f = frame_of(field.at({3, 0.2, 0.3, 0.5}).metric);
+    MetricFactor f = factor_of(field.at({3, 0.2, 0.3, 0.5}).metric);
     for (Vec2 d : {Vec2{1, 0}, Vec2{0, 1}, Vec2{1, 1}, Vec2{2, -1}}) {
       double l = norm(Vec3{3 * d.x, d.y + shear * d.x, 2 * d.x}) / 0.5;
       EXPECT_NEAR(norm(f.to(d)), l, 1e-12 * l);

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/resolve/plane_mesh.h"
+#include "lib/resolve/plane_triangulation.h"
 
 #include "lib/core/fan.h"
 
 namespace meshpipe {
 
-void PlaneMesh::clear() {
+void PlaneTriangulation::clear() {
   tris.clear();
   opposite.clear();
   line.clear();
 }
 
-int PlaneMesh::add_triangle() {
+int PlaneTriangulation::add_triangle() {
   tris.push_back({-1, -1, -1});
   opposite.resize(3 * tris.size(), -1);
   line.resize(3 * tris.size(), -1);
   return (int)tris.size() - 1;
 }
 
-void PlaneMesh::set(int t, const Tri& corners) {
+void PlaneTriangulation::set(int t, const Tri& corners) {
   tris[t] = corners;
   for (int v : corners) {
     if (v >= (int)at.size()) at.resize(v + 1 + v / 2);
@@ -26,24 +26,24 @@ void PlaneMesh::set(int t, const Tri& corners) {
   }
 }
 
-void PlaneMesh::link(int h, int outer, int on_line) {
+void PlaneTriangulation::link(int h, int outer, int on_line) {
   opposite[h] = outer;
   line[h] = on_line;
   if (outer >= 0) opposite[outer] = h, line[outer] = on_line;
 }
 
-void PlaneMesh::fix(int h, int on_line) {
+void PlaneTriangulation::fix(int h, int on_line) {
   if (fixed(h)) return;
   line[h] = on_line;
   if (opposite[h] >= 0) line[opposite[h]] = on_line;
 }
 
-int PlaneMesh::leaving(int p) const {
+int PlaneTriangulation::leaving(int p) const {
   const int t = at[p];
   return 3 * t + (tris[t][0] == p ? 0 : tris[t][1] == p ? 1 : 2);
 }
 
-int PlaneMesh::half_edge(int p, int q) const {
+int PlaneTriangulation::half_edge(int p, int q) const {
   int found = -1;
   for_each_spoke(opposite, leaving(p), [&](int h) {
     if (to(h) == q) found = h;
@@ -53,7 +53,7 @@ int PlaneMesh::half_edge(int p, int q) const {
   return found;
 }
 
-void PlaneMesh::flip(int h) {
+void PlaneTriangulation::flip(int h) {
   //     c            c        t = abc, s = bad become
   //   / t \        / | \      t = dca: the new diagonal first, s = cdb
   //  a --- b  ->  a t|s b
@@ -72,7 +72,7 @@ void PlaneMesh::flip(int h) {
   link(3 * s + 2, bc.first, bc.second);
 }
 
-void PlaneMesh::split_triangle(int t, int p) {
+void PlaneTriangulation::split_triangle(int t, int p) {
   const auto [a, b, c] = tris[t];
   const int u = add_triangle(), v = add_triangle();
   for (const auto& [k, to] : {std::pair{1, u}, {2, v}}) link(3 * to, opposite[3 * t + k], line[3 * t + k]);
@@ -84,7 +84,7 @@ void PlaneMesh::split_triangle(int t, int p) {
   link(3 * v + 1, 3 * t + 2, -1);
 }
 
-void PlaneMesh::split_edge(int h, int p) {
+void PlaneTriangulation::split_edge(int h, int p) {
   // half-edge h = ab of t = abc, o = ba of s = bad: to apc, pbc, bpd, pad
   const int o = opposite[h], on_line = line[h], t = h / 3;
   const int a = from(h), b = to(h), c = apex(h), u = add_triangle();

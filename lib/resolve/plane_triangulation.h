@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 /// Triangles with half-edges as in lib/core/mesh.h, on points that are numbered elsewhere.
-struct PlaneMesh {
+struct PlaneTriangulation {
   std::vector<Tri> tris;
   std::vector<int> opposite;
   std::vector<int> line;  ///< per half-edge: the line it is fixed on, or -1
