@@ -6,6 +6,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
@@ -59,13 +60,6 @@ bool is_closed(Mesh mesh) {
   return !edges.empty();
 }
 
-double distance_to_edge(const Mesh& mesh, int h, Vec3 p) {
-  const Vec3 a = mesh.points[origin(mesh.tris, h)], along = mesh.points[target(mesh.tris, h)] - a;
-  const double square = dot(along, along);
-  const double t = square > 0 ? std::clamp(dot(p - a, along) / square, 0.0, 1.0) : 0;
-  return norm(a + t * along - p);
-}
-
 void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
   const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
   const std::vector<int>* patch = s.face.has("patch") ? &s.face.get<int>("patch") : nullptr;
@@ -74,7 +68,9 @@ void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
     const int g = opposite[h];
     const bool patches = g >= 0 && patch && (*patch)[h / 3] != (*patch)[g / 3];
     const bool crease = g >= 0 && !patches && model && ((*model)[h / 3] >> h % 3 & 1);
-    if (!(g < 0 || patches || crease) || distance_to_edge(s, h, place) > reach) continue;
+    if (!(g < 0 || patches || crease) ||
+        distance_to_segment(place, s.points[origin(s.tris, h)], s.points[target(s.tris, h)]) > reach)
+      continue;
     d.at_border |= g < 0;
     d.at_patch_border |= patches;
     d.at_crease |= crease;

@@ -9,6 +9,7 @@
 #include "lib/core/original_triangles.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
+#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/lift/lift.h"
@@ -84,12 +85,6 @@ void find_needles(Findings& f, const Connectivity& result, const Surface& refere
       f.worst_unforced = t;
 }
 
-bool close_to_segment(Vec3 p, Vec3 a, Vec3 b, double distance) {
-  const Vec3 d = b - a;
-  const double dd = dot(d, d), t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0;
-  return norm(lerp(a, b, t) - p) <= distance;
-}
-
 }  // namespace
 
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree) {
@@ -129,7 +124,7 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
       const Tri& v = mesh.tris[t];
       const Vec3 &x = mesh.points[v[0]], &y = mesh.points[v[1]], &z = mesh.points[v[2]];
       const double edge = (norm(x - y) + norm(y - z) + norm(z - x)) / 3;
-      close[t] = close_to_segment(1.0 / 3 * (x + y + z), a, b, edge);
+      close[t] = distance_to_segment(1.0 / 3 * (x + y + z), a, b) <= edge;
     });
   };
   for (const Line& l : lines.lines) {

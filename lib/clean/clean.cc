@@ -8,6 +8,7 @@
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
 #include "lib/core/intersect.h"
+#include "lib/core/spatial_order.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
@@ -48,20 +49,6 @@ bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanRep
   r.opposite.clear();
   drop(r, gone);
   return true;
-}
-
-/// Drops vertices that no triangle uses, and numbers the others by first use.
-void number_by_first_use(Repair& r) {
-  std::vector<int> number(r.vertex.size(), -1), vertex;
-  for (Tri& t : r.tris)
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = (int)vertex.size();
-        vertex.push_back(r.vertex[v]);
-      }
-      v = number[v];
-    }
-  r.vertex = std::move(vertex);
 }
 
 /// Whether the repairs undid each other: copies of vertices were welded and split again, and the triangles
@@ -220,10 +207,8 @@ void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanRe
     report.welded = report.welded_near = 0;
     return;
   }
-  if (renumber) number_by_first_use(r);
-  std::vector<Vec3> points(r.vertex.size());
-  for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points[r.vertex[v]];
-  surface.points = std::move(points);
+  if (renumber) r.vertex = rearranged(r.vertex, number_by_first_use(r.tris, r.vertex.size()));
+  surface.points = rearranged(surface.points, r.vertex);
   surface.tris = std::move(r.tris);
   surface.face.erase("model");
   take_rows(surface.vertex, r.vertex);
@@ -315,18 +300,15 @@ void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {
   int n = 0;
   const std::vector<char> gone = find_crumbs(surface, input, n);
   if (n == 0) return;
-  Repair r;
+  std::vector<Tri> tris;
+  std::vector<int> face;
   for (int t = 0; t < (int)gone.size(); ++t)
-    if (!gone[t]) r.tris.push_back(surface.tris[t]), r.face.push_back(t);
-  r.vertex.resize(surface.points.size());
-  std::iota(r.vertex.begin(), r.vertex.end(), 0);
-  number_by_first_use(r);
-  std::vector<Vec3> points;
-  for (int v : r.vertex) points.push_back(surface.points[v]);
-  surface.points = std::move(points);
-  surface.tris = std::move(r.tris);
-  take_rows(surface.vertex, r.vertex);
-  take_rows(surface.face, r.face);
+    if (!gone[t]) tris.push_back(surface.tris[t]), face.push_back(t);
+  const std::vector<int> vertex = number_by_first_use(tris, surface.points.size());
+  surface.points = rearranged(surface.points, vertex);
+  surface.tris = std::move(tris);
+  take_rows(surface.vertex, vertex);
+  take_rows(surface.face, face);
   report.resolved.crumbs = n;
   report.components -= n;
 }

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "lib/clean/repair.h"
+#include "lib/core/spatial_order.h"
 
 namespace meshpipe {
 
@@ -96,20 +97,13 @@ Remark parse_remark(const std::string& text) {
 
 Surface offending_faces(const CleanReport& report, const Mesh& input) {
   Surface s;
-  std::vector<int> number(input.points.size(), -1), patch, origin;
+  std::vector<int> patch, origin;
   for (const OffendingFace& c : report.offending) {
-    Tri t = input.tris[c.triangle];
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = (int)s.points.size();
-        s.points.push_back(input.points[v]);
-      }
-      v = number[v];
-    }
-    s.tris.push_back(t);
+    s.tris.push_back(input.tris[c.triangle]);
     patch.push_back((int)c.fault + 1);
     origin.push_back(c.triangle);
   }
+  s.points = rearranged(input.points, number_by_first_use(s.tris, input.points.size()));
   s.vertex.rows = s.points.size();
   s.face.set("patch", std::move(patch));
   s.face.set("origin", std::move(origin));

@@ -103,22 +103,27 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The box of points, and the largest of their coordinates.
 struct Extent {
-  double far = 0, lo[3], hi[3];
-  Extent() {
-    std::fill_n(lo, 3, std::numeric_limits<double>::infinity());
-    std::fill_n(hi, 3, -std::numeric_limits<double>::infinity());
-  }
+  double far = 0;
+  Vec3 lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
   void add(const Vec3& p) {
-    const double x[3] = {p.x, p.y, p.z};
-    for (int k = 0; k < 3; ++k) {
-      far = std::max(far, std::abs(x[k]));
-      lo[k] = std::min(lo[k], x[k]);
-      hi[k] = std::max(hi[k], x[k]);
-    }
+    far = std::max({far, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
-  double size() const { return std::max({0.0, hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
+  double size() const { return std::max({0.0, hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
 };
+
+/// That of the points that triangles use.
+Extent extent_of(const Mesh& mesh) {
+  Extent e;
+  for (const Tri& t : mesh.tris)
+    for (int v : t) e.add(mesh.points[v]);
+  return e;
+}
 
 }  // namespace
 
@@ -127,9 +132,7 @@ void expect_measurable(const Mesh& mesh) {
   Extent of_points;
   for (const Vec3& p : mesh.points) of_points.add(p);
   if (of_points.far <= most && of_points.size() >= least) return;
-  Extent e;  // only the points that are used count
-  for (const Tri& t : mesh.tris)
-    for (int v : t) e.add(mesh.points[v]);
+  const Extent e = extent_of(mesh);
   char text[128];
   if (e.far > most)
     std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g",
@@ -143,15 +146,8 @@ void expect_measurable(const Mesh& mesh) {
 }
 
 double diagonal(const Mesh& mesh) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Vec3 lo{inf, inf, inf}, hi{-inf, -inf, -inf};
-  for (const Tri& t : mesh.tris)
-    for (int v : t) {
-      const Vec3& p = mesh.points[v];
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    }
-  return mesh.tris.empty() ? 0 : norm(hi - lo);
+  const Extent e = extent_of(mesh);
+  return mesh.tris.empty() ? 0 : norm(e.hi - e.lo);
 }
 
 double total_area(const Mesh& mesh) {

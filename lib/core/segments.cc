@@ -13,12 +13,6 @@ int ray_crossing(Vec2 p, Vec2 from, Vec2 to) {
   return 0;
 }
 
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
-  const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0., 1.) : 0;
-  return norm(a + t * d - p);
-}
-
 bool meet(const Segment& s, const Segment& t) {
   // two segments that leave a common end overlap if they leave it in the same direction
   auto overlap = [](Vec2 common, Vec2 a, Vec2 b) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Segments in the plane: which of them meet, and how often they wind around a point; exact signs.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -42,7 +43,13 @@ class SegmentTree {
 /// Turns of one segment as seen from p: the crossings of the ray from p along +x, counted upwards.
 int ray_crossing(Vec2 p, Vec2 from, Vec2 to);
 
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b);
+/// Distance of p from the segment from a to b, in the plane or in space.
+template <class Point>
+double distance_to_segment(Point p, Point a, Point b) {
+  const Point d = b - a;
+  const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0., 1.) : 0;
+  return norm(a + t * d - p);
+}
 
 /// True if two segments meet elsewhere than at one common end.
 bool meet(const Segment& s, const Segment& t);

@@ -63,6 +63,19 @@ std::vector<int> new_rows(const std::vector<int>& order) {
   return row;
 }
 
+std::vector<int> number_by_first_use(std::vector<Tri>& tris, std::size_t n) {
+  std::vector<int> number(n, -1), vertex;
+  for (Tri& t : tris)
+    for (int& v : t) {
+      if (number[v] < 0) {
+        number[v] = (int)vertex.size();
+        vertex.push_back(v);
+      }
+      v = number[v];
+    }
+  return vertex;
+}
+
 SpatialOrder spatial_order(const Mesh& mesh) {
   SpatialOrder order{along_curve(mesh.points), std::vector<int>(mesh.tris.size())};
   const std::vector<int> row = new_rows(order.vertices);

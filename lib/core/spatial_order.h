@@ -16,6 +16,9 @@ SpatialOrder spatial_order(const Mesh& mesh);
 /// Returns the new row of every old one.
 std::vector<int> new_rows(const std::vector<int>& order);
 
+/// Numbers the vertices of n that triangles use by first use. Returns the former number of each.
+std::vector<int> number_by_first_use(std::vector<Tri>& tris, std::size_t n);
+
 template <class T>
 std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& order) {
   std::vector<T> moved;

@@ -82,21 +82,11 @@ Place SurfaceWalk::closest(const Place& from, Vec3 target, bool through_features
       int g = beyond[3 * place.face + (i + 1) % 3];
       if (g >= 0) look(g / 3);
     } else {
-      // at a corner: all triangles around it, both ways where the fan is open
+      // at a corner: all triangles around it
       const int i = b[0] > 0 ? 0 : b[1] > 0 ? 1 : 2;
-      const int start = 3 * place.face + i;
-      int h = start;
-      do {
-        int g = beyond[prev(h)];
-        if (g < 0) break;
-        look(g / 3);
-        h = g;
-      } while (h != start);
-      if (h != start || beyond[prev(start)] < 0)
-        for (int g = beyond[start]; g >= 0; g = beyond[next(g)]) {
-          look(g / 3);
-          if (next(g) == start) break;
-        }
+      for_each_spoke(beyond, 3 * place.face + i, [&](int h) {
+        if (h / 3 != place.face) look(h / 3);
+      });
     }
     if (closer >= best * (1 - 1e-12)) break;
     best = closer;
@@ -144,18 +134,10 @@ std::vector<int> SurfaceWalk::lines_at(int t, int i) const {
   auto look = [&](int h) {
     if (beyond_[h] < 0) found.push_back(h);
   };
-  const int start = 3 * t + i;
-  int h = start;
-  do {
+  for_each_spoke(opposite_, 3 * t + i, [&](int h) {
     look(h);
     look(prev(h));
-    h = opposite_[prev(h)];
-  } while (h >= 0 && h != start);
-  for (int e = start; h < 0 && opposite_[e] >= 0;) {
-    e = next(opposite_[e]);
-    look(e);
-    look(prev(e));
-  }
+  });
   return found;
 }
 

@@ -31,10 +31,12 @@ constexpr double spacing = 1.5;  ///< target lengths between creases, on average
 constexpr double sliver = 0.06;
 constexpr double slender = 0.05;     ///< height over length: other triangles have normals of their own
 constexpr double widest_band = 0.5;  ///< times `sliver`, to either side
-constexpr double far_turn = 30;      ///< times further across an edge, for each 1 - cosine of its angle
-constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
-constexpr double long_chain = 5;     ///< mean edges of the input
-constexpr double short_chain = 3;    ///< target lengths, or mean edges of the input
+/// Times further across an edge, for each 1 - cosine of its angle. Creases of 12 CAD surfaces are the same
+/// from 30 to 120; below it two of them lack some.
+constexpr double far_turn = 30;
+constexpr double rounding = 3e-6;  ///< of the diagonal: single-precision coordinates, with a margin
+constexpr double long_chain = 5;   ///< mean edges of the input
+constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
 constexpr double elongated =
     1.5;  ///< mean edge over that of equal triangles: long edges are no measure of width
 constexpr double short_rim = 0.5;      ///< the same of the rim of a hole
@@ -362,29 +364,6 @@ void parse_angles(const std::string& text, FeatureOptions& options) {
   if (error != std::errc() || after != end ||
       !(0 < options.weak && options.weak <= options.strong && options.strong < 180))
     throw BadUsage("--feature-angle " + text + " is not auto, none, A or A,B with 0 < B <= A < 180 degrees");
-}
-
-std::vector<Vec3> sound_normals(const Connectivity& surface) {
-  constexpr int most_steps = 16;  // through thin neighbors
-  const double least_height = rounding * diagonal(surface.mesh);
-  const int n = surface.n_tris();
-  std::vector<Vec3> normal(n);
-  std::vector<int> heir(n, -1);  // the triangle whose normal is taken
-  for (int t = 0; t < n; ++t) {
-    const Vec3 a = surface.area_vector(t);
-    int longest = 3 * t;
-    for (int h : {3 * t + 1, 3 * t + 2})
-      if (surface.length(h) > surface.length(longest)) longest = h;
-    normal[t] = normalized(a);
-    if (norm(a) >= least_height * surface.length(longest)) continue;
-    heir[t] = surface.opposite[longest] >= 0 ? surface.opposite[longest] / 3 : -1;
-  }
-  for (int t = 0; t < n; ++t) {
-    int u = t;
-    for (int steps = 0; heir[u] >= 0 && steps < most_steps; ++steps) u = heir[u];
-    normal[t] = normal[u];
-  }
-  return normal;
 }
 
 std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {

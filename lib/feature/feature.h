@@ -37,13 +37,9 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<int>* given = nullptr);
 
-/// Returns unit normals of the triangles. One too thin for single-precision coordinates takes the normal of
-/// the neighbor across its longest edge.
-std::vector<Vec3> sound_normals(const Connectivity& surface);
-
 /// Returns unit normals of the triangles. Those thinner than `thin` and a twentieth of their length take that
 /// of the nearest other triangle across them, where the band of such triangles is at most 3 `thin` wide, and
-/// those too thin for single-precision coordinates in any case.
+/// those too thin for single-precision coordinates in any case (`thin` 0: only these).
 std::vector<Vec3> side_normals(const Connectivity& surface, double thin);
 
 }  // namespace meshpipe

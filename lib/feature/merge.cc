@@ -93,7 +93,7 @@ void merge_automatically(PatchMerge& merge, const Surface& surface, double h, do
   if (n < 2) return;
   const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
   const Connectivity sides{surface, opposite};
-  const std::vector<Vec3> normal = sound_normals(sides);
+  const std::vector<Vec3> normal = side_normals(sides, 0);
   const auto& label = surface.face.get<int>("patch");
   std::vector<int> patch(label.size());
   std::vector<double> area(n, 0), open(n, 0);  // open: length on the mesh border

@@ -169,7 +169,7 @@ CurvedSurface::CurvedSurface(const Surface& reference) : reference_(reference) {
   const std::vector<int> opposite = opposite_halfedges(whole_.tris, static_cast<int>(whole_.points.size()));
   const Connectivity whole{whole_, opposite};
   const std::vector<char> feature = feature_edges(reference, whole, below_);
-  const std::vector<Vec3> normal = Corners(whole, feature).normals(sound_normals(whole));
+  const std::vector<Vec3> normal = Corners(whole, feature).normals(side_normals(whole, 0));
   const FeatureCurves curves(whole, feature);
   off_.resize(opposite.size());
   for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {

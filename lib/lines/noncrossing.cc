@@ -277,29 +277,25 @@ void Refinement::examine_nesting(int part, const Drawing& d, const SegmentTree& 
     for_piece(part, d, i, [&](Vec2 a, Vec2 b) { turns += ray_crossing(x, a, b); });
     return turns != 0;
   };
+  auto expect = [&](Vec2 x, const std::vector<int>& weight, int turns) {
+    if (tree.winding(x, weight) == turns) return true;
+    for (int i = 0; i < n; ++i)
+      if (weight[i] && between(i, x)) ask(i);
+    return false;
+  };
   std::vector<int> weight = d.weight;
   for (int l = 0; l < loops; ++l) {
     for (int i = 0; i < n; ++i)
       if (loop[i] == l) weight[i] = 0;
-    const Vec2 x = d.segments[first[l]].p;
-    if (tree.winding(x, weight) != (chain_area[l] > 0 ? 0 : 1))
-      for (int i = 0; i < n; ++i)
-        if (weight[i] && between(i, x)) ask(i);
+    expect(d.segments[first[l]].p, weight, chain_area[l] > 0 ? 0 : 1);
     for (int i = 0; i < n; ++i)
       if (loop[i] == l) weight[i] = 1;
   }
-  for (int i = 0; i < n; ++i) {
-    if (loop[i] >= 0 || d.source[i].index > 0) continue;
-    const Vec2 x = lerp(d.segments[i].p, d.segments[i].q, 0.5);
-    if (tree.winding(x, d.weight) == 1) continue;
-    ask(i);
-    for (int j = 0; j < n; ++j)
-      if (loop[j] >= 0 && between(j, x)) ask(j);
-  }
-  for (const Vec2& x : inside_[part])
-    if (tree.winding(x, d.weight) != 1)
-      for (int j = 0; j < n; ++j)
-        if (loop[j] >= 0 && between(j, x)) ask(j);
+  for (int i = 0; i < n; ++i)
+    if (loop[i] < 0 && d.source[i].index == 0 &&
+        !expect(lerp(d.segments[i].p, d.segments[i].q, 0.5), d.weight, 1))
+      ask(i);
+  for (const Vec2& x : inside_[part]) expect(x, d.weight, 1);
 }
 
 /// Halves segments of a line in measure; one with a single inner vertex is cut there, so that refinement

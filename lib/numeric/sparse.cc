@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -18,43 +17,14 @@
 namespace meshpipe {
 namespace {
 
-/// Entries to compressed columns: two stable counting passes (by row, then by column), then equal places
-/// added up.
+/// Takes the entries, whose memory a factorization may need.
 template <class Scalar>
 Eigen::SparseMatrix<Scalar> compress(int n, std::vector<Entry<Scalar>> entries) {
-  auto sort_by = [n](const std::vector<Entry<Scalar>>& from, int Entry<Scalar>::*key,
-                     std::vector<int>& start) {
-    start.assign(n + 1, 0);
-    for (const Entry<Scalar>& e : from) ++start[e.*key + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Entry<Scalar>> to(from.size());
-    std::vector<int> place(start.begin(), start.end() - 1);
-    for (const Entry<Scalar>& e : from) to[place[e.*key]++] = e;
-    return to;
-  };
-  std::vector<int> start;
-  entries = sort_by(entries, &Entry<Scalar>::row, start);
-  entries = sort_by(entries, &Entry<Scalar>::col, start);
-
+  std::vector<Eigen::Triplet<Scalar>> triplets;
+  triplets.reserve(entries.size());
+  for (const Entry<Scalar>& e : entries) triplets.emplace_back(e.row, e.col, e.value);
   Eigen::SparseMatrix<Scalar> m(n, n);
-  m.resizeNonZeros((Eigen::Index)entries.size());
-  int* column = m.outerIndexPtr();
-  int* row = m.innerIndexPtr();
-  Scalar* value = m.valuePtr();
-  int k = 0;
-  for (int c = 0; c < n; ++c) {
-    column[c] = k;
-    for (int e = start[c]; e < start[c + 1]; ++e) {
-      if (k > column[c] && row[k - 1] == entries[e].row) {
-        value[k - 1] += entries[e].value;
-      } else {
-        row[k] = entries[e].row;
-        value[k++] = entries[e].value;
-      }
-    }
-  }
-  column[n] = k;
-  m.resizeNonZeros(k);
+  m.setFromTriplets(triplets.begin(), triplets.end());
   return m;
 }
 

@@ -8,6 +8,7 @@
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
+#include "lib/shape/split_triangle.h"
 
 namespace meshpipe {
 namespace {
@@ -65,22 +66,6 @@ void add_disk(Mesh& mesh, Ring rim, double radius, double z, bool down) {
     for (std::size_t t = first; t < mesh.tris.size(); ++t) std::swap(mesh.tris[t][1], mesh.tris[t][2]);
 }
 
-/// The k^2 triangles of a triangle whose point number (i, j) is point(i, j), i + j <= k.
-template <class F>
-void add_split_triangle(Mesh& mesh, int k, F&& point) {
-  const int first = (int)mesh.points.size();
-  for (int j = 0; j <= k; ++j)
-    for (int i = 0; i <= k - j; ++i) mesh.points.push_back(point(i, j));
-  for (int j = 0, row = first; j < k; ++j) {
-    const int above = row + k - j + 1;
-    for (int i = 0; i < k - j; ++i) {
-      mesh.tris.push_back({row + i, row + i + 1, above + i});
-      if (i + 1 < k - j) mesh.tris.push_back({row + i + 1, above + i + 1, above + i});
-    }
-    row = above;
-  }
-}
-
 }  // namespace
 
 Mesh tube(double aspect, int n, bool closed) {
@@ -112,12 +97,9 @@ Mesh sphere(int n) {
   const int k = std::max(1, (int)std::ceil(std::sqrt(n / 20.0)));
   Mesh mesh;
   for (const Tri& f : face)
-    add_split_triangle(mesh, k, [&](int i, int j) {
-      // summed in the order of the corners' numbers, so that both faces of an edge find the same point
-      std::pair<int, int> terms[3] = {{f[0], k - i - j}, {f[1], i}, {f[2], j}};
-      std::sort(terms, terms + 3);
+    add_split_triangle(mesh, k, f, [&](const CornerShares& shares) {
       Vec3 p;
-      for (auto [c, weight] : terms) p = p + (double)weight * corner[c];
+      for (auto [c, share] : shares) p = p + (double)share * corner[c];
       return normalized(p);
     });
   weld(mesh);

@@ -9,6 +9,7 @@
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/random.h"
+#include "lib/core/spatial_order.h"
 #include "lib/core/topology.h"
 #include "lib/shape/shape.h"
 
@@ -52,21 +53,9 @@ void coarsen(Mesh& mesh, int count, const std::vector<float>& fineness) {
         edit.collapse(h, edit.from(h));
     }
   mesh.tris.clear();
-  std::vector<int> to(p.size(), -1);
-  std::vector<Vec3> points;
-  for (std::size_t t = 0; t < edit.tris.size(); ++t) {
-    if (edit.dead((int)t)) continue;
-    Tri tri = edit.tris[t];
-    for (int& v : tri) {
-      if (to[v] < 0) {
-        to[v] = (int)points.size();
-        points.push_back(p[v]);
-      }
-      v = to[v];
-    }
-    mesh.tris.push_back(tri);
-  }
-  p = std::move(points);
+  for (std::size_t t = 0; t < edit.tris.size(); ++t)
+    if (!edit.dead((int)t)) mesh.tris.push_back(edit.tris[t]);
+  p = rearranged(p, number_by_first_use(mesh.tris, p.size()));
 }
 
 /// Multiplies the fineness of vertices near the triangles that cross in a coarser mesh of the same surface.

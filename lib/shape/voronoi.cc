@@ -11,6 +11,7 @@
 #include "lib/core/random.h"
 #include "lib/core/weld.h"
 #include "lib/shape/shape.h"
+#include "lib/shape/split_triangle.h"
 
 namespace meshpipe {
 namespace {
@@ -154,28 +155,6 @@ std::vector<Plane> body(bool ball, int n_facets) {
   return facets;
 }
 
-/// Adds the k^2 triangles of a triangle on points of their own. Points on an edge are the same for all
-/// triangles there: summed in the order of the corners' numbers.
-void add_split_triangle(Mesh& mesh, int k, const std::vector<Vec3>& corners, Tri t) {
-  auto point = [&](int i, int j) {
-    std::pair<int, int> terms[3] = {{t[0], k - i - j}, {t[1], i}, {t[2], j}};
-    std::sort(terms, terms + 3);
-    Vec3 p;
-    for (auto [c, weight] : terms) p = p + (double)weight / k * corners[c];
-    return p;
-  };
-  auto add = [&](Vec3 a, Vec3 b, Vec3 c) {
-    const int first = (int)mesh.points.size();
-    for (Vec3 p : {a, b, c}) mesh.points.push_back(p);
-    mesh.tris.push_back({first, first + 1, first + 2});
-  };
-  for (int j = 0; j < k; ++j)
-    for (int i = 0; i < k - j; ++i) {
-      add(point(i, j), point(i + 1, j), point(i, j + 1));
-      if (i + j + 1 < k) add(point(i + 1, j), point(i + 1, j + 1), point(i, j + 1));
-    }
-}
-
 }  // namespace
 
 Mesh voronoi(int seeds, bool ball, int n, int seed) {
@@ -214,8 +193,12 @@ Mesh voronoi(int seeds, bool ball, int n, int seed) {
     }
     corners.push_back(middle);
     for (std::size_t e = 0; e < number.size(); ++e)
-      add_split_triangle(mesh, k, corners,
-                         {number[e], number[(e + 1) % number.size()], (int)corners.size() - 1});
+      add_split_triangle(mesh, k, {number[e], number[(e + 1) % number.size()], (int)corners.size() - 1},
+                         [&](const CornerShares& shares) {
+                           Vec3 p;
+                           for (auto [c, share] : shares) p = p + (double)share / k * corners[c];
+                           return p;
+                         });
   }
   weld(mesh);
   return mesh;

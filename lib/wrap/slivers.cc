@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "lib/core/edit_mesh.h"
+#include "lib/core/spatial_order.h"
 #include "lib/wrap/valid.h"
 
 namespace meshpipe {
@@ -171,21 +172,10 @@ void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing,
     }
   }
   // without gaps
-  std::vector<int> number(n_points, -1);
-  Mesh result;
-  for (int t = 0; t < (int)m.tris.size(); ++t) {
-    if (m.dead(t)) continue;
-    Tri tri = m.tris[t];
-    for (int& v : tri) {
-      if (number[v] < 0) {
-        number[v] = (int)result.points.size();
-        result.points.push_back(mesh.points[v]);
-      }
-      v = number[v];
-    }
-    result.tris.push_back(tri);
-  }
-  mesh = std::move(result);
+  mesh.tris.clear();
+  for (int t = 0; t < (int)m.tris.size(); ++t)
+    if (!m.dead(t)) mesh.tris.push_back(m.tris[t]);
+  mesh.points = rearranged(mesh.points, number_by_first_use(mesh.tris, mesh.points.size()));
 }
 
 }  // namespace meshpipe
