@@ -183,12 +183,19 @@ Regions make_admissible(const Component& c, std::vector<int>& label, int seed,
   return {};
 }
 
-/// Joins neighbors, those with the longest shared border first, while their union maps to the plane.
+/// The parts that one comes to: what is too long will be cut in two.
+int parts_of(const Region& r) { return r.faces == 0 ? 0 : r.aspect() > limit::aspect ? 2 : 1; }
+
+/// Joins neighbors, those with the longest shared border first, while their union maps to the plane and comes
+/// to fewer parts.
 Regions merge(const Component& c, std::vector<int>& label, Regions regions) {
   Joiner joiner({c.mesh, c.opposite}, label, std::move(regions));
+  const std::vector<Region>& region = joiner.regions().region;
   auto weight = [&](int h) { return (double)c.weight[h]; };
-  join_neighbors(joiner, {c.mesh, c.opposite}, label, weight,
-                 [&](int a, int b) { return joiner.joined(a, b).maps_to_the_plane(); });
+  join_neighbors(joiner, {c.mesh, c.opposite}, label, weight, [&](int a, int b) {
+    const Region r = joiner.joined(a, b);
+    return r.maps_to_the_plane() && parts_of(r) < parts_of(region[a]) + parts_of(region[b]);
+  });
   return joiner.regions();
 }
 
@@ -212,6 +219,7 @@ Labeling finish(const Component& c, std::vector<int> label, int seed) {
   r = merge(c, label, std::move(r));
   for (const SharedBorder& s : shared_borders(c, label, r)) l.cost += (std::int64_t)s.length;
   l.cost += bridge_cost(c, label, r);
+  for (const Region& region : r.region) l.cut_parts += parts_of(region);
   l.parts = separate_pieces({c.mesh, c.opposite}, label);
   l.label = std::move(label);
   return l;
@@ -265,7 +273,7 @@ Labeling search(const Component& c, bool homology, int seed) {
     return label;
   };
   Labeling best;
-  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.parts > enough);
+  for (int tried = 0; tried < most_trials + sides && (best.parts == 0 || best.cut_parts > enough);
        tried += batch) {
     Labeling found[batch];
     auto try_one = [&](int i) { found[i] = finish(c, candidate(tried + i), seed + tried + i); };
@@ -274,7 +282,7 @@ Labeling search(const Component& c, bool homology, int seed) {
       if (l.parts > 0 && (best.parts == 0 || l < best)) best = std::move(l);
     add_progress(c.share * batch / (most_trials + sides));
   }
-  if (genus > 0 && (homology || best.parts > genus + 2)) {
+  if (genus > 0 && (homology || best.cut_parts > genus + 2)) {
     const auto loops = handle_loops({c.mesh, c.opposite}, genus);
     if ((int)loops.size() == genus) {
       Labeling l = finish(c, label_by_sides({c.mesh, c.opposite}, loops), seed);

@@ -26,12 +26,15 @@ struct Component {
 /// Without weights and aggregates, which are made when they are needed.
 Component make_component(ConnectedPart part, const Region& whole);
 
-/// How a labeling compares: fewer parts first, then the cheaper cut.
+/// How a labeling compares: fewer parts in the end first, then the cheaper cut.
 struct Labeling {
   std::vector<int> label;  ///< 0..parts-1
   int parts = 0;
+  int cut_parts = 0;  ///< with those that are too long counted twice, since they will be cut
   std::int64_t cost = 0;
-  bool operator<(const Labeling& o) const { return std::pair(parts, cost) < std::pair(o.parts, o.cost); }
+  bool operator<(const Labeling& o) const {
+    return std::pair(cut_parts, cost) < std::pair(o.cut_parts, o.cost);
+  }
 };
 
 /// Tries several numbers of parts, balances and seeds; those of a large component on a coarse model of it.

@@ -23,6 +23,8 @@ constexpr double snap = 0.1;
 /// round, so that a part no neighbor can take becomes one of its own.
 constexpr double fragment = 0.01;
 constexpr int fragment_triangles = 20;
+/// Aspect ratio (Region::aspect) above which a part counts as two: eta_max of the paper's eq. (5).
+constexpr double aspect = 4;
 
 // Of a map, when its part is cut again.
 
