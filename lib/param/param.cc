@@ -35,34 +35,6 @@ double quantile(std::vector<double>& values, double q) {
   return *at;
 }
 
-/// Solves again, with positive weights, for the inner vertices at most `rings` triangles away from one that
-/// is inverted; all others stay.
-void solve_patches(const SubMesh& part, const Disk& disk, int rings, std::vector<Vec2>& uv) {
-  std::vector<char> fixed(uv.size(), 1), near(uv.size(), 0);
-  for (const Tri& t : part.tris)
-    if (orient2d(uv[t[0]], uv[t[1]], uv[t[2]]) <= 0)
-      for (int v : t) near[v] = 1;
-  for (int ring = 0; ring < rings; ++ring) {
-    std::vector<char> grown = near;
-    for (const Tri& t : part.tris)
-      if (near[t[0]] || near[t[1]] || near[t[2]])
-        for (int v : t) grown[v] = 1;
-    near.swap(grown);
-  }
-  for (std::size_t v = 0; v < uv.size(); ++v) fixed[v] = !near[v];
-  for (const auto& loop : disk.loops)
-    for (int h : loop) fixed[origin(part.tris, h)] = 1;
-  std::vector<Tri> tris;
-  std::vector<double> weights;
-  for (const Tri& t : part.tris) {
-    if (fixed[t[0]] && fixed[t[1]] && fixed[t[2]]) continue;
-    tris.push_back(t);
-    for (double w : cotangent_weights(part.points[t[0]], part.points[t[1]], part.points[t[2]], 0.01))
-      weights.push_back(std::min(w, 50.0));
-  }
-  solve_dirichlet(tris, weights, fixed, uv);
-}
-
 /// A map to try where the one asked for, and its repair, is not one-to-one.
 struct Fallback {
   MapKind kind;
@@ -263,13 +235,6 @@ class Search {
             extend_border(part_, round(), disk_, Weights::finite_element, uv, &report_.time);
         if (count_inverted(part_.tris, again) < count_inverted(part_.tris, uv)) uv = std::move(again);
         if (valid_map(uv) || stars(uv)) return true;
-      }
-      for (int rings : {2, 6}) {
-        std::vector<Vec2> again = uv;
-        solve_patches(part_, disk_, rings, again);
-        if (!stars(again)) continue;
-        uv = std::move(again);
-        return true;
       }
       std::vector<Vec2> again = extend_border(part_, round(), disk_, Weights::cotangent, uv, &report_.time);
       if (!valid_map(again) && !stars(again)) return false;
