@@ -124,6 +124,7 @@ class OneSided {
     return most;
   }
   std::vector<int> doubtful_triangles();
+  /// Returns the pieces that are not near enough; of the others only `upper` is raised.
   std::vector<Piece> doubtful_pieces(std::span<const int> triangles);
   void set_upper(Piece& piece) const;
   double from_triangle(Vec3 p, int face) const;
@@ -256,16 +257,32 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
   }
   for (int t : triangles)
     for (int v : from_.tris[t]) found(near[v], from_.points[v], t);
-  std::vector<Piece> pieces(faces);
-#pragma omp parallel for schedule(dynamic, 64) if (faces > chunk)
-  for (int i = 0; i < faces; ++i) {
-    const Tri& t = from_.tris[triangles[i]];
-    for (int k = 0; k < 3; ++k) {
-      pieces[i].corner[k] = from_.points[t[k]];
-      pieces[i].near[k] = near[t[k]];
+  // most are near enough: only the others are kept, since pieces are large
+  constexpr int few = 1024;
+  const int parts = (faces + few - 1) / few;
+  std::vector<std::vector<Piece>> kept(parts);
+  std::vector<double> settled(parts, 0);
+#pragma omp parallel for schedule(dynamic) if (parts > 1)
+  for (int part = 0; part < parts; ++part)
+    for (int i = part * few; i < std::min(faces, (part + 1) * few); ++i) {
+      const Tri& t = from_.tris[triangles[i]];
+      Piece p;
+      for (int k = 0; k < 3; ++k) p.corner[k] = from_.points[t[k]], p.near[k] = near[t[k]];
+      p.face = triangles[i];
+      set_upper(p);
+      if (p.upper > enough(p))
+        kept[part].push_back(p);
+      else
+        settled[part] = std::max(settled[part], p.upper);
     }
-    pieces[i].face = triangles[i];
-    set_upper(pieces[i]);
+  std::vector<Piece> pieces;
+  std::size_t count = 0;
+  for (const auto& k : kept) count += k.size();
+  pieces.reserve(count);
+  for (int part = 0; part < parts; ++part) {
+    upper = std::max(upper, settled[part]);
+    pieces.insert(pieces.end(), kept[part].begin(), kept[part].end());
+    kept[part] = {};
   }
   return pieces;
 }

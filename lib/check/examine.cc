@@ -151,14 +151,18 @@ namespace {
 
 /// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
 /// case.
-void find_intersections(Findings& f, Mesh mesh, const Bvh& mesh_tree, Mesh reference,
+void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& given,
                         const Bvh& reference_tree, bool sheets_meet) {
-  auto find = [&](Mesh& m, const Bvh& tree) {
-    return sheets_meet ? sheet_intersections(m, tree) : self_intersections(m, tree);
+  Mesh joined[2];
+  auto find = [&](Mesh& copy, const Mesh& surface, const Bvh& tree) {
+    if (!sheets_meet) return self_intersections(surface, tree);
+    copy = surface;
+    return sheet_intersections(copy, tree);
   };
-  f.intersections = find(mesh, mesh_tree);
+  f.intersections = find(joined[0], mesh, mesh_tree);
   if (f.intersections.empty() && !sheets_meet) return;
-  const auto before = find(reference, reference_tree);
+  const auto before = find(joined[1], given, reference_tree);
+  const Mesh& reference = sheets_meet ? joined[1] : given;
   f.reference_intersections = (int)before.size();
   f.reference_crossings = (int)std::count_if(before.begin(), before.end(), [&](const auto& pair) {
     const Tri &a = reference.tris[pair.first], &b = reference.tris[pair.second];
@@ -167,7 +171,8 @@ void find_intersections(Findings& f, Mesh mesh, const Bvh& mesh_tree, Mesh refer
                          [&](int w) { return reference.points[v] == reference.points[w]; });
     });
   });
-  f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, before));
+  f.new_intersections =
+      new_intersections(sheets_meet ? joined[0] : mesh, f.intersections, contacts(reference, before));
 }
 
 /// Measures the distances of borders, and of borders and model edges where both surfaces know theirs.

@@ -106,6 +106,7 @@ Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   const double extent = std::max({half.x, half.y, half.z});
   if (extent > 0) scale_ = 1 / extent;
   std::vector<Item> items(n);
+#pragma omp parallel for schedule(static) if (n > 2 * task_size)
   for (int t = 0; t < n; ++t) {
     const Tri& v = mesh.tris[t];
     items[t] = {own_units(1.0 / 3 * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]])), t};
