@@ -61,7 +61,7 @@ bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::
     });
   }
   return short_enough && (shape_after <= limits.shape || shape_after <= shape_before) &&
-         !folds(cosine_before, cosine_after);
+         (limits.may_fold || !folds(cosine_before, cosine_after));
 }
 
 /// Takes `gone` and its copies out, each along its edge of the line where sheets meet.

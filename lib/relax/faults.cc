@@ -77,19 +77,27 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.of_reference = all - (int)found.pairs.size();
 }
 
-void find_folds(const State& s, Known& known, Fault& found) {
+/// The edges, each by one half-edge, at which the mesh folds and the reference does not.
+std::vector<int> folded_edges(const State& s, Known& known) {
   const EditMesh& m = s.mesh;
   std::vector<Vec3> normal(m.tris.size());
   for (int t = 0; t < (int)normal.size(); ++t)
     if (!m.dead(t)) normal[t] = s.face_normal(t);
+  std::vector<int> folded;
   for (int h = 0; h < (int)m.opp.size(); ++h) {
     const int g = m.opp[h];
     if (g < h || m.dead(h / 3) || !turn_back(normal[h / 3], normal[g / 3])) continue;
-    if (!faces_one_way(s.points[m.from(h)], s.points[m.to(h)], normal[h / 3], normal[g / 3], known.reference,
-                       known.tree()))
-      continue;
+    if (faces_one_way(s.points[m.from(h)], s.points[m.to(h)], normal[h / 3], normal[g / 3], known.reference,
+                      known.tree()))
+      folded.push_back(h);
+  }
+  return folded;
+}
+
+void find_folds(const State& s, Known& known, Fault& found) {
+  for (int h : folded_edges(s, known)) {
     ++found.folds;
-    found.triangles.insert(found.triangles.end(), {h / 3, g / 3});
+    found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
   }
 }
 
@@ -326,10 +334,9 @@ void refine_at(State& s, const Fault& fault) {
     for (int v : around) improve_vertex(s, v);
 }
 
-/// How far a patch is from good: pairs that intersect where the reference does not, and distances over what
-/// is bearable, there and from places of the reference.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean,
-                  const std::optional<Mesh>& intersections) {
+/// How far a patch is from good: folds and pairs that intersect where the reference does not, and distances
+/// over what is bearable, there and from places of the reference.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known) {
   double sum = 0;
   std::vector<std::pair<int, int>> pairs;
   std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
@@ -352,8 +359,8 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean,
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
-  if (intersections && !pairs.empty()) pairs = new_intersections(mesh, pairs, *intersections);
-  return sum + rules::pair_weight * (double)pairs.size();
+  if (known.intersections && !pairs.empty()) pairs = new_intersections(mesh, pairs, *known.intersections);
+  return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
 Fault find_faults(const State& s, Known& known) {
@@ -367,7 +374,7 @@ Fault find_faults(const State& s, Known& known) {
 }
 
 /// Tries all edits where refinement did not help, and takes the best of each place.
-void repair_at(State& s, const Fault& fault, const std::optional<Mesh>& intersections) {
+void repair_at(State& s, const Fault& fault, Known& known) {
   struct Item {
     int t, other;
     std::vector<Vec3> missed;
@@ -379,6 +386,7 @@ void repair_at(State& s, const Fault& fault, const std::optional<Mesh>& intersec
     for (const auto& [t, p] : fault.missed)
       if (t == i.t || t == i.other) i.missed.push_back(p);
   const double mean = mean_size(s);
+  known.tree();  // before threads ask for it
   auto around = [&](const Item& item, std::vector<int> before) {
     if (!before.empty() || s.mesh.dead(item.t)) return before;
     std::vector<int> found = triangles_around(s, item.t, rules::thorough_rings);
@@ -391,7 +399,7 @@ void repair_at(State& s, const Fault& fault, const std::optional<Mesh>& intersec
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
     return repaired(s, triangles, true,
                     {[&](const State& patch) {
-                       return objective(patch) + faultiness(patch, item.missed, mean, intersections);
+                       return objective(patch) + faultiness(patch, item.missed, mean, known);
                      },
                      true});
   };
@@ -426,7 +434,7 @@ Intersections remove_faults(State& s, Samples& samples) {
       s = best->first;
       known.forget();
     }
-    repair_at(s, best->second, known.intersections);
+    repair_at(s, best->second, known);
     ++repairs;
   }
   s = std::move(best->first);

@@ -9,8 +9,8 @@ bool try_edit(State& s, const Edit& edit, bool may_fold) {
   if (edit.kind == Edit::split)
     return split_edge(s, edit.h, edit.at) || (may_fold && split_edge(s, edit.h, edit.at, true));
   if (edit.kind == Edit::collapse)
-    return ((s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.gone)) &&
-           collapse_edge(s, edit.h, edit.gone, rules::on_trial);
+    return (may_fold || (s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.gone)) &&
+           collapse_edge(s, edit.h, edit.gone, may_fold ? rules::at_fault : rules::on_trial);
   const bool may = may_flip(s, edit.h);
   if (may) flip_edge(s, edit.h);
   return may;

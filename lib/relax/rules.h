@@ -7,9 +7,10 @@
 
 namespace meshpipe::rules {
 
-/// Limits of a collapse: the worst triangle and the longest edge that it may leave.
+/// Limits of a collapse: the worst triangle and the longest edge that it may leave, and may it fold?
 struct Collapse {
   double shape, length;
+  bool may_fold = false;
 };
 
 // normals
@@ -52,6 +53,7 @@ constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};
 constexpr Collapse near_corners{1e9, 1.6};  // needles between three of them go with the last one only
 constexpr Collapse kept_border{2000, 3};    // almost anything, to have no new vertex on it
 constexpr Collapse on_trial{1e9, 2};        // the objective judges
+constexpr Collapse at_fault{1e9, 8, true};        // the same: a needle at a corner may take in those next to it
 constexpr double same_place = 1e-6;         // length: copies of a vertex this close are at the same place
 constexpr double open_seam = 1e-3;          // length: borders this close are two sides of a seam
 
