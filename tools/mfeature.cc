@@ -212,7 +212,10 @@ void mark(Io& io, Options& o) {
   const double tolerance = meets ? 0 : tolerance_of(o, length, diagonal(surface));
   DefeatureOptions narrow{tolerance, o.keep_boundary};
   if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
-  if (defeature(io, stream, narrow, before, given)) marked = features();
+  if (defeature(io, stream, narrow, before, given)) {
+    o.again = true;
+    marked = features();
+  }
   report(io, marked);
   io.write(stream);
 }

@@ -247,8 +247,8 @@ double roughness(const Network& net, const Chain& chain) {
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
 /// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
 /// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
-/// if it is made of planes.
-void keep_designed(Network& net, double strong, double weak) {
+/// if it is made of planes; or if one of the triangles flagged in `known` is in it.
+void keep_designed(Network& net, double strong, double weak, const std::vector<std::uint8_t>& known) {
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
   std::vector<double> sharp(n, 0), smooth(n, 0), between(n, 0), area(n, 0);
@@ -274,14 +274,15 @@ void keep_designed(Network& net, double strong, double weak) {
       if (net.strong[h]) counted += net.length(h);
     smooth[component[chain[0] / 3]] += counted;
   }
-  const std::vector<char> planes =
-      made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
+  std::vector<char> designed = made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
+  for (std::size_t t = 0; t < known.size(); ++t)
+    if (known[t]) designed[component[t]] = 1;
   for (int h = 0; h < m; ++h) {
     if (!net.on[h]) continue;
     const int c = component[h / 3];
-    const bool designed = planes[c] || smooth[c] >= design_share * sharp[c] ||
-                          (between[c] < gap * sharp[c] && area[c] > spacing * net.size * sharp[c]);
-    if (!designed) net.set(h, 0);
+    const bool kept = designed[c] || smooth[c] >= design_share * sharp[c] ||
+                      (between[c] < gap * sharp[c] && area[c] > spacing * net.size * sharp[c]);
+    if (!kept) net.set(h, 0);
   }
 }
 
@@ -426,7 +427,8 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options, con
     choose(net, strong, weak);
     if (options.mode == FeatureOptions::automatic) {
       prune(net, std::numeric_limits<double>::infinity());
-      keep_designed(net, strong, weak);
+      keep_designed(net, strong, weak,
+                    options.again ? surface.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>());
       drop_small_pieces(net);
     } else {
       prune(net, net.shortest);

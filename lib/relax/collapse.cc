@@ -64,6 +64,22 @@ bool leaves_sound(const State& s, int h, int gone, const Kept& at, const rules::
          (limits.may_fold || !folds(cosine_before, cosine_after));
 }
 
+/// Would taking these vertices out along these edges leave two borders between the same two vertices? So does
+/// a slit of a sheet, in which another one ends, with its last vertex but the ends.
+bool closes_slit(const State& s, const std::vector<std::pair<int, int>>& edges) {
+  const EditMesh& m = s.mesh;
+  auto kept = [&](const std::pair<int, int>& e) {
+    return m.from(e.first) == e.second ? m.to(e.first) : m.from(e.first);
+  };
+  bool closes = false;
+  for (const auto& a : edges)
+    for (const auto& b : edges) {
+      if (a.second >= b.second || kept(a) != kept(b)) continue;
+      m.neighbors(a.second, [&](int v) { closes = closes || (v != kept(a) && m.joined(b.second, v)); });
+    }
+  return closes;
+}
+
 /// Takes `gone` and its copies out, each along its edge of the line where sheets meet.
 bool collapse_copies(State& s, int h, int gone, const rules::Collapse& limits) {
   const EditMesh& m = s.mesh;
@@ -75,6 +91,7 @@ bool collapse_copies(State& s, int h, int gone, const rules::Collapse& limits) {
         !leaves_sound(s, e, v, {s.place[kept], p, s.normal[kept]}, limits))
       return false;
   }
+  if (closes_slit(s, edges)) return false;
   for (const auto& [e, v] : edges) remove_vertex(s, e, v);
   return !edges.empty();
 }

@@ -41,7 +41,8 @@ Surface strips() {
 }
 
 struct Strips {
-  Strips() : surface(strips()), reference(surface), lifted(lifted_of(surface)), s(started()) {}
+  explicit Strips(Surface of = strips())
+      : surface(std::move(of)), reference(surface), lifted(lifted_of(surface)), s(started()) {}
   State started() {
     LiftedMesh mesh = lifted;
     return start_state(mesh, reference, {}, {}, true);
@@ -101,6 +102,43 @@ TEST(Copies, AnEdgeIsSplitAndCollapsedInAllSheets) {
   EXPECT_EQ(m.s.mesh.live, 3 * 24);
   for (int v : {n, n + 1, n + 2}) EXPECT_LT(m.s.mesh.out[v], 0);
   EXPECT_FALSE(collapse_edge(m.s, m.edge(0, 1), 0, {1e9, 3}));
+}
+
+//  a fin stands on the slit from b to d of a sheet, whose middle vertex c is there for each of its sides
+//   +--+--+--+--+
+//   |  | above  |
+//   +--b--c--d--+
+//   |  | below  |
+//   +--+--+--+--+
+TEST(Copies, ASlitKeepsAVertexBetweenItsEnds) {
+  Surface s;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = 0; i <= 4; ++i) s.points.push_back({(double)i, (double)j, 0});
+  constexpr int below = 7, above = 15;  // c
+  s.points.push_back(s.points[below]);
+  auto square = [&](int a, int b, int c, int d) {
+    s.tris.push_back({a, b, c});
+    s.tris.push_back({a, c, d});
+  };
+  auto upper = [&](int v) { return v == below ? above : v; };
+  for (int i = 0; i < 4; ++i) {
+    square(i, i + 1, i + 6, i + 5);
+    square(upper(i + 5), upper(i + 6), i + 11, i + 10);
+  }
+  const int fin = (int)s.points.size();
+  for (int k : {0, 1})
+    for (int i = 1; i <= 3; ++i) s.points.push_back({(double)i, 0, (double)k});
+  for (int i = fin; i < fin + 2; ++i) square(i, i + 1, i + 4, i + 3);
+  s.vertex.rows = s.points.size();
+  s.vertex.set("size", std::vector<double>(s.points.size(), 2));
+  s.face.set("patch", std::vector<int>(s.tris.size(), 1));
+  Strips m(std::move(s));
+  ASSERT_EQ(m.copies(below), 3);
+  for (int c : {below, above, fin + 1}) m.s.hold[c] = slides;
+  EXPECT_FALSE(collapse_edge(m.s, m.edge(below, below - 1), below, {1e9, 9}));
+  ASSERT_TRUE(split_edge(m.s, m.edge(below + 1, below)));
+  EXPECT_TRUE(collapse_edge(m.s, m.edge(fin + 6, below), fin + 6, {1e9, 9}));
+  EXPECT_EQ(m.copies(below), 3);
 }
 
 /// Edges inside a sheet that another one has, too.
