@@ -9,8 +9,9 @@
 
 namespace meshpipe {
 namespace {
-constexpr int most_steps = 10000;  ///< from triangle to triangle, or along a line
-}
+constexpr int most_steps = 10000;   ///< from triangle to triangle, or along a line
+constexpr double rounding = 1e-12;  ///< of barycentric coordinates: where they were computed, 0 is 1e-17
+}  // namespace
 
 double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
                const std::vector<int>& opposite, int& t, double enough) {
@@ -99,7 +100,7 @@ Place SurfaceWalk::across(const Place& p) const {
   const double b[3] = {p.b0, p.b1, p.b2};
   for (int i = 0; i < 3; ++i) {
     const int h = 3 * p.face + i, g = opposite_[h];
-    if (b[(i + 2) % 3] > 0 || beyond_[h] >= 0 || g < 0) continue;
+    if (b[(i + 2) % 3] > rounding || beyond_[h] >= 0 || g < 0) continue;
     Place q{g / 3, 0, 0, 0};
     double* c[3] = {&q.b0, &q.b1, &q.b2};
     *c[g % 3] = b[(i + 1) % 3];
@@ -162,9 +163,9 @@ Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
   const double b[3] = {from.b0, from.b1, from.b2};
   int line = -1;
   for (int i = 0; i < 3; ++i)
-    if (b[(i + 2) % 3] <= 0 && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
+    if (b[(i + 2) % 3] <= rounding && beyond_[3 * from.face + i] < 0) line = 3 * from.face + i;
   for (int i = 0; i < 3; ++i) {
-    if (b[i] < 1) continue;
+    if (b[i] < 1 - rounding) continue;
     // at a vertex, which may be the end of several lines: the one that leaves it towards the target
     double nearest = 1e300, t;
     for (int h : lines_at(from.face, i))
@@ -174,7 +175,10 @@ Place SurfaceWalk::slide(const Place& from, Vec3 target) const {
 }
 
 Place SurfaceWalk::slide(const Place& from, const Place& to, Vec3 target) const {
-  auto corner = [](const Place& p) { return p.b0 >= 1 ? 0 : p.b1 >= 1 ? 1 : p.b2 >= 1 ? 2 : -1; };
+  auto corner = [](const Place& p) {
+    const double one = 1 - rounding;
+    return p.b0 >= one ? 0 : p.b1 >= one ? 1 : p.b2 >= one ? 2 : -1;
+  };
   if (corner(from) < 0 || corner(to) < 0) return slide(from, target);
   const int a = mesh_.tris[from.face][corner(from)], b = mesh_.tris[to.face][corner(to)];
   double nearest = 1e300;

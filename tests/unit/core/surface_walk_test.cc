@@ -44,6 +44,14 @@ TEST(SurfaceWalk, StopsAtTheBorderAndAtWalls) {
   EXPECT_NEAR(norm(x - Vec3{2, 0.5, 1.5}), 0, 1e-15);
 }
 
+// the border from 0 to 4 of the strip, on which rounding has left the places
+TEST(SurfaceWalk, SlidesFromPlacesThatRoundingHasLeftNextToALine) {
+  const Mesh m = strip(4);
+  const SurfaceWalk walk(m, {});
+  for (const Place& from : {Place{0, 0.6, 0.4, 1e-17}, Place{0, 1 - 1e-15, 1e-15, 0}})
+    EXPECT_NEAR(norm(walk.point(walk.slide(from, {1.5, 0.1, 0})) - Vec3{1.5, 0, 0}), 0, 1e-12);
+}
+
 // corners 0 and 1, joined by the border over 2; 3 between them is joined with both and with 4 above by model
 // edges
 TEST(SurfaceWalk, BetweenTwoCornersItSlidesOnTheLineThatJoinsThem) {
