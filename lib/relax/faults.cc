@@ -269,7 +269,10 @@ bool is_forced(const State& s, int t, double k) {
     const Vec3 p = s.points[m.from(h)];
     if (!m.hard[h] || !m.hard[prev(h)] || s.hold[m.from(h)] != fixed) continue;
     const double half = std::sin(0.5 * angle(s.points[m.to(h)] - p, s.points[m.apex(h)] - p));
-    if (half < rules::sharp_half && k >= rules::leaning * 4 * half * (1 - half)) return true;
+    const double isosceles = 4 * half * (1 - half);
+    if (half < rules::sharp_half && k >= rules::leaning * isosceles &&
+        (k > rules::failing_kappa || isosceles <= rules::failing_kappa))
+      return true;
   }
   return false;
 }
@@ -397,13 +400,13 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     return found;
   };
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
-    return repaired(s, triangles, true,
-                    {[&](const State& patch) {
-                       return objective(patch) + faultiness(patch, item.missed, mean, known);
-                     },
-                     true});
+    return repaired(
+        s, triangles, true,
+        {[&](const State& patch) { return objective(patch) + faultiness(patch, item.missed, mean, known); },
+         true});
   };
-  change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+  int n = change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+  if (getenv("DBG")) fprintf(stderr, "items %d adopted %d\n", (int)items.size(), n);
 }
 
 }  // namespace
@@ -418,6 +421,10 @@ Intersections remove_faults(State& s, Samples& samples) {
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
     if (better) best = {s, found};
+    if (getenv("DBG"))
+      fprintf(stderr, "round %d repairs %d pairs %d folds %d tris %d excess %g better %d live %d most %g\n",
+              round, repairs, (int)found.pairs.size(), found.folds, (int)found.triangles.size(), found.excess,
+              better, s.mesh.live, most);
     if (found.none()) break;
     if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
         s.mesh.live <= most) {

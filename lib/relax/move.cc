@@ -283,8 +283,11 @@ bool slide_vertex(State& s, int v) {
   const Place place = place_at(step);
   const Vec3 p = walk.point(place);
   if (star.energy_on_line(p, size) > now * (1 - rules::least_gain)) return false;
-  for (const Vec3& end : {ahead, behind})
-    if (norm(end - p) > std::max(rules::longest_segment * size, norm(end - x))) return false;
+  for (const Vec3& end : {ahead, behind}) {
+    if (norm(end - p) <= std::max(rules::longest_segment * size, norm(end - x))) continue;
+    const Vec3 middle = lerp(end, p, 0.5);
+    if (norm(walk.point(walk.slide(place, middle)) - middle) > rules::straight * size) return false;
+  }
   const std::vector<CopyPlace> places = places_at(s, v, place, p);
   for (const CopyPlace& c : places) put(s, c.at, c.place, p, c.normal);
   return !places.empty();

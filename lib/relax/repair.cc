@@ -51,10 +51,14 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
   return edits;
 }
 
-/// Tries each edit on a copy of `from`, where only what it disturbs moves. All are smoothed once, the better
-/// third settles a little, and the best of them quite.
+/// Tries each edit on a copy of `from`, where only what it disturbs moves; at faults also none, where all
+/// moves. All are smoothed once, the better third settles a little, and the best of them quite.
 std::vector<Trial> try_all(State from, const std::vector<Edit>& edits, const Judge& judge) {
   std::vector<Trial> trials;
+  if (judge.may_fold) {
+    trials.push_back({0, from});
+    settle(trials.back().state, rules::sweeps_to_settle);
+  }
   rest(from);
   State copy = from;
   for (const Edit& e : edits) {

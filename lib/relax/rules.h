@@ -27,7 +27,8 @@ constexpr double line_relaxation = 1.3;  // factor: the same along a line, where
 constexpr double longest_step = 0.5;     // length: beyond it the star is another
 constexpr int halvings = 3;              // tries: a step that does not help at a quarter will not
 constexpr double flat = 1e-3;  // area over the target's: below it Newton's model of a triangle is wrong
-constexpr double longest_segment = 1.2;  // length: a longer segment of a line cuts its bends
+constexpr double longest_segment = 1.2;  // length: a longer segment of a line cuts its bends,
+constexpr double straight = 0.02;        // length: unless its middle is this near to the line
 constexpr double probe = 0.1,
                  reach = 0.4;        // of the shorter segment: where a slide looks, and the farthest it goes
 constexpr double least_gain = 1e-4;  // of the energy: what a slide must gain
@@ -53,7 +54,7 @@ constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};
 constexpr Collapse near_corners{1e9, 1.6};  // needles between three of them go with the last one only
 constexpr Collapse kept_border{2000, 3};    // almost anything, to have no new vertex on it
 constexpr Collapse on_trial{1e9, 2};        // the objective judges
-constexpr Collapse at_fault{1e9, 8, true};        // the same: a needle at a corner may take in those next to it
+constexpr Collapse at_fault{1e9, 8, true};  // the same: a needle at a corner may take in those next to it
 constexpr double same_place = 1e-6;         // length: copies of a vertex this close are at the same place
 constexpr double open_seam = 1e-3;          // length: borders this close are two sides of a seam
 
@@ -108,8 +109,8 @@ constexpr double stale_share = 0.1;   // of the triangles: more that are new are
 constexpr double growth = 1.6,
                  few = 100;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int fault_repairs = 3, few_faults = 100;  // rounds, and places: of more the sizes are at fault
-constexpr double far_weight = 10, pair_weight = 5;  // of the objective
+constexpr int fault_repairs = 10, few_faults = 100;  // rounds, and places: of more the sizes are at fault
+constexpr double far_weight = 10, pair_weight = 5;   // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples

@@ -30,6 +30,7 @@ constexpr double flat_triangle = 1e-7;  ///< height over length, below which rou
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
 constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
 constexpr double least_piece = 1e-4;    ///< of an edge: bounds the measurements of one
+constexpr double corner_turn = 0.35;  ///< radians: a line that turns by more may come near others there only
 
 double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
 
@@ -96,6 +97,13 @@ class Measure {
     return found;
   }
   const Bvh& tree() const { return tree_; }
+  /// Does the line of h turn at its start? For half-edges on lines.
+  bool turns(int h) const {
+    const int g = before_[h];
+    auto along = [&](int e) { return surface_.point(surface_.to(e)) - surface_.point(surface_.from(e)); };
+    return g >= 0 && angle(along(g), along(h)) > corner_turn;
+  }
+  int before(int h) const { return before_[h]; }
   bool is_line(int h) const {
     return surface_.is_border(h) || surface_.is_model(h) || surface_.is_model(surface_.opposite[h]);
   }
@@ -338,6 +346,9 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
           for (int k = 0; k < pieces; ++k)
             measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, length, search, found[c]);
+          if (line && measure.turns(h))
+            for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
+              if (x.size < infinite) found[c].push_back(x);
         }
     }
   }
