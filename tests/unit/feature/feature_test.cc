@@ -97,7 +97,8 @@ TEST(Feature, AStaircaseOfVoxelsIsNoDesign) {
 //      \_/   \_/
 TEST(Feature, ShortCreasesAreDesignIfTheyAreFarApartAndNothingIsBetweenSmoothAndSharp) {
   auto pits = [](int i, int j) {
-    return 0.2 * std::sin(0.5 * i) * std::sin(0.5 * j) + (i % 8 % 7 && j % 8 % 7 && i % 8 < 5 && j % 8 < 5 ? -2.0 : 0.0);
+    return 0.2 * std::sin(0.5 * i) * std::sin(0.5 * j) +
+           (i % 8 % 7 && j % 8 % 7 && i % 8 < 5 && j % 8 < 5 ? -2.0 : 0.0);
   };
   Surface s = terrain(40, 40, pits);
   EXPECT_GT(mark_features(s, automatic).crease_edges, 500);
@@ -105,7 +106,8 @@ TEST(Feature, ShortCreasesAreDesignIfTheyAreFarApartAndNothingIsBetweenSmoothAnd
   coarse.size = 3;
   EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
   //  the same with dunes between: every angle is there
-  Surface dunes = terrain(40, 40, [&](int i, int j) { return pits(i, j) + 1.2 * std::sin(0.9 * i) * std::sin(0.7 * j); });
+  Surface dunes =
+      terrain(40, 40, [&](int i, int j) { return pits(i, j) + 1.2 * std::sin(0.9 * i) * std::sin(0.7 * j); });
   EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
 }
 
