@@ -247,7 +247,7 @@ double roughness(const Network& net, const Chain& chain) {
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
 /// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
 /// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
-/// if it is made of planes; or if one of the triangles flagged in `known` is in it.
+/// if it is made of planes; or if creases were kept in it before, as the model edges `known` say.
 void keep_designed(Network& net, double strong, double weak, const std::vector<std::uint8_t>& known) {
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
@@ -275,8 +275,8 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
     smooth[component[chain[0] / 3]] += counted;
   }
   std::vector<char> designed = made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
-  for (std::size_t t = 0; t < known.size(); ++t)
-    if (known[t]) designed[component[t]] = 1;
+  for (int h = 0; !known.empty() && h < m; ++h)
+    if (known[h / 3] >> h % 3 & 1 && !net.patch[h] && !net.given[h]) designed[component[h / 3]] = 1;
   for (int h = 0; h < m; ++h) {
     if (!net.on[h]) continue;
     const int c = component[h / 3];

@@ -17,7 +17,7 @@ struct FeatureOptions {
   double size = 0;                ///< target edge length; 0: the mean edge length
   /// First and last of the patches that cap ends: their borders do not show that the rest is designed.
   int first_cap = 0, last_cap = -1;
-  bool again = false;  ///< components that have model edges now look designed
+  bool again = false;  ///< components that have creases as model edges now look designed
 };
 
 /// Sets mode and angles from "auto", "none", "A" or "A,B" (degrees; B is A / 2 by default). Throws: BadUsage.

@@ -86,6 +86,20 @@ TEST(Feature, ARidgeFromBorderToBorderIsDesignAndNoiseIsNot) {
   EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
 }
 
+TEST(Feature, WhatHadCreasesStaysDesignAndPatchBordersAreNone) {
+  std::mt19937 random(1);
+  Surface s = terrain(40, 40, [&](int, int) { return random() * 2e-10; });
+  std::vector<int> patch(3200, 1);
+  for (int t = 1600; t < 3200; ++t) patch[t] = 2;
+  s.face.set("patch", patch);
+  EXPECT_EQ(mark_features(s, automatic).patch_edges, 40);
+  FeatureOptions again;
+  again.again = true;
+  EXPECT_EQ(mark_features(s, again).crease_edges, 0);
+  EXPECT_GT(mark_features(s, angles(40, 20)).crease_edges, 200);
+  EXPECT_GT(mark_features(s, again).crease_edges, 200);
+}
+
 TEST(Feature, AStaircaseOfVoxelsIsNoDesign) {
   // heights in whole steps along a slanted plane: all edges sharp, all chains short
   Surface s = terrain(40, 40, [](int i, int j) { return 1.5 * ((i + 2 * j) / 4); });
