@@ -4,11 +4,14 @@
 #include "formats/stream/line_tables.h"
 #include "formats/stream/region_tables.h"
 #include "formats/stream/second_order.h"
+#include "formats/stream/tile_tables.h"
 #include "lib/clean/clean.h"
 #include "lib/lift/lift.h"
 #include "lib/relax/relax.h"
 #include "tools/common.h"
 #include "tools/on_reference.h"
+#include "tools/relax_shards.h"
+#include "tools/report/relax_report.h"
 
 using namespace meshpipe;
 
@@ -18,6 +21,7 @@ struct Options {
   RelaxOptions relax;
   std::string reference;
   bool accept = false;
+  RelaxShards shards;
 };
 
 /// The reference from a file, with the columns that earlier stages would have written.
@@ -32,33 +36,42 @@ Surface reference_from(const Stream& file, std::size_t triangles) {
   return s;
 }
 
-/// Describes the pairs of the result that intersect where the reference does not; empty if there are none.
-std::string left_over(const RelaxReport& r, const LiftedMesh& mesh) {
-  if (r.intersections.empty()) return "";
-  const auto [s, t] = r.intersections.front();
-  const Vec3 p = mesh.points[mesh.tris[s][0]];
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "%zu pairs of triangles still intersect where the reference does not, the first: %d and %d at "
-      "(%.6g %.6g %.6g)",
-      r.intersections.size(), s, t, p.x, p.y, p.z);
-  return text;
-}
+/// What is optimized: see relax.
+struct Task {
+  LiftedMesh mesh;
+  Surface reference;
+  std::vector<int> kinds;
+  std::vector<char> corners;
+};
 
-void put(Io& io, const RelaxReport& r, std::size_t triangles) {
-  io.report["corners_merged"] = r.corners_merged;
-  io.report["triangles"] = triangles;
-  io.report["kappa_mean"] = r.kappa_mean;
-  io.report["kappa_min"] = r.kappa_min;
-  io.report["tries"] = r.tries;
-  io.report["volume_error"] = r.volume_error;
-  io.report["splits"] = r.splits;
-  io.report["collapses"] = r.collapses;
-  io.report["flips"] = r.flips;
-  io.report["moves"] = r.moves;
-  io.report["intersections"] = r.intersections;
-  io.report["intersections_of_reference"] = r.intersections_of_reference;
+/// Takes the task from the stream, and the options that it brings.
+Task read_task(Io& io, Options& o) {
+  Stream& stream = io.stream;
+  Task task;
+  Surface& reference = task.reference;
+  if (o.reference.empty()) {
+    task.mesh = read_lifted(stream);
+    reference = read_reference(stream);
+    expect_measurable(reference);
+    const Lines lines = read_lines(stream);
+    for (const Line& l : lines.lines) {
+      task.kinds.push_back(l.kind);
+      o.relax.keep_border = o.relax.keep_border || l.kept;
+    }
+    task.corners = line_corners(reference, lines);
+    o.relax.sheets_meet = has_sheets(stream);
+    if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
+    o.relax.target_triangles = stream.asked_triangles;
+    return task;
+  }
+  clean(stream.surface);
+  reference = reference_from(io.read(o.reference), stream.surface.tris.size());
+  task.mesh = place_on(stream.surface, reference);
+  task.corners = model_corners(reference);
+  write_reference(stream, reference);
+  if (stream.find("line_use"))  // lines on another surface
+    for (const char* table : {"line", "line_use", "line_vertex"}) stream.erase(table);
+  return task;
 }
 
 }  // namespace
@@ -69,58 +82,50 @@ int main(int argc, char** argv) {
     app.add_option("--sweeps", o.relax.sweeps, "rounds of flips, moves and count keeping (default 4)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
-    app.add_option("--reference", o.reference, "relax any mesh on this surface")->type_name("FILE");
+    auto* reference =
+        app.add_option("--reference", o.reference, "relax any mesh on this surface")->type_name("FILE");
+    app.add_option("--tile", o.relax.tile,
+                   "optimize meshes of more than 4 N triangles in tiles of N at most (default 250000)")
+        ->check(CLI::Range(100, 100000000))
+        ->type_name("N");
     app.add_flag("--accept", o.accept, "write the mesh even when triangles still intersect")
         ->group("Reports");
+    auto* shards =
+        app.add_option("--shards", o.shards.count, "cut into N shards of tiles, as jobs of their own")
+            ->check(CLI::Range(1, 100000))
+            ->type_name("N");
+    auto* into =
+        app.add_option("--into", o.shards.into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
+    auto* join = app.add_option("--join", o.shards.from, "join what was made of the shards in this directory")
+                     ->type_name("DIR");
+    shards->needs(into), into->needs(shards);
+    for (CLI::Option* option : {shards, into, join}) option->group("Shards")->excludes(reference);
   };
   auto body = [&](Io& io) {
+    const bool in_shards = o.shards.count > 0 || !o.shards.from.empty();
     Stream& stream = io.read();
-    LiftedMesh mesh;
-    Surface reference;
-    std::vector<int> kinds;
-    std::vector<char> corners;
-    if (o.reference.empty()) {
-      mesh = read_lifted(stream);
-      reference = read_reference(stream);
-      expect_measurable(reference);
-      const Lines lines = read_lines(stream);
-      for (const Line& l : lines.lines) {
-        kinds.push_back(l.kind);
-        o.relax.keep_border = o.relax.keep_border || l.kept;
-      }
-      corners = line_corners(reference, lines);
-      o.relax.sheets_meet = has_sheets(stream);
-      if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
-      o.relax.target_triangles = stream.asked_triangles;
-    } else {
-      clean(stream.surface);
-      reference = reference_from(io.read(o.reference), stream.surface.tris.size());
-      mesh = place_on(stream.surface, reference);
-      corners = model_corners(reference);
-      write_reference(stream, reference);
-      if (stream.find("line_use"))  // lines on another surface
-        for (const char* table : {"line", "line_use", "line_vertex"}) stream.erase(table);
+    if (has_tiles(stream)) {
+      if (in_shards || !o.reference.empty())
+        throw BadUsage("the input is a shard, which is neither cut nor joined");
+      return relax_shard(io, o.relax.sweeps);
     }
-    stream.surface = {};  // written anew later; frees its memory now
-    const RelaxReport r = relax(mesh, reference, kinds, corners, o.relax);
-    const std::string exceptions =
-        write_on_reference(stream, mesh, reference, stream.find("mid_vertex") != nullptr);
+    Task task = read_task(io, o);
+    LiftedMesh& mesh = task.mesh;
+    const Surface& reference = task.reference;
+    bool second_order = stream.find("mid_vertex") != nullptr;
+    std::optional<RelaxReport> r;
+    if (in_shards || is_between_passes(stream)) {
+      r = relax_by_shards(io, mesh, {reference, task.kinds, task.corners, o.relax}, o.shards, second_order);
+      if (!r) return;
+    } else {
+      stream.surface = {};  // written anew later; frees its memory now
+      r = relax(mesh, reference, task.kinds, task.corners, o.relax);
+    }
+    const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);
     if (!exceptions.empty()) io.say(exceptions);
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)",
-                  mesh.tris.size(), r.kappa_mean, r.kappa_min, r.splits, r.collapses, r.flips);
-    io.say(text);
-    constexpr double much = 0.03;
-    if (const double asked = o.relax.target_triangles;
-        std::abs((double)mesh.tris.size() - asked) > much * asked && asked > 0)
-      io.say("narrow places of the model keep it from the " + std::to_string(stream.asked_triangles) +
-             " triangles asked for");
-    if (r.corners_merged > 0)
-      io.say(std::to_string(r.corners_merged) +
-             " corners merged with another that was nearer than a twentieth of the size");
-    put(io, r, mesh.tris.size());
-    const std::string missed = left_over(r, mesh);
+    for (const std::string& line : relax_lines(*r, mesh.tris.size(), stream.asked_triangles)) io.say(line);
+    io.report.update(relax_record(*r, mesh.tris.size()));
+    const std::string missed = left_over(*r, mesh);
     if (!missed.empty() && !o.accept) throw GoalMissed(missed);
     if (!missed.empty()) io.say("accepted: " + missed);
     io.write(stream);

@@ -1,43 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join
 // them.
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "formats/stream/shards.h"
 #include "tools/common.h"
-#include "tools/files.h"
+#include "tools/shard_files.h"
 
 using namespace meshpipe;
 
 namespace {
-
-/// Writes the stream as other programs have made it: the history stays.
-void write_as_it_is(Io& io, const Stream& stream) {
-  io.ascii |= stream.ascii && !io.binary;
-  if (io.output == "-" && !io.ascii && ::isatty(STDOUT_FILENO))
-    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  io.wrote_to_stdout = io.output == "-";
-  io.write_to(io.output, stream);
-  if (io.output != "-") io.finished_file = io.output;
-}
 
 /// Writes each shard into a directory, which is made if it is not there, as 1.ply, 2.ply, ... The stream
 /// itself stays as it is.
 void cut(Io& io, int count, const std::string& directory) {
   const Stream& whole = io.read();
   const std::vector<std::vector<int>> shares = share_out(whole, count);
-  std::error_code no;
-  std::filesystem::create_directories(directory, no);
-  if (no) throw CannotWrite(directory + ": " + no.message());
+  make_directory(directory);
   const std::vector<char> kept =
       whole.surface.vertex.has("size") ? kept_vertices(whole) : std::vector<char>();
   std::size_t largest = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const Stream shard = cut_shard(whole, number_shard(whole, shares[i]), kept);
     largest = std::max(largest, shard.surface.tris.size());
-    io.write_to(directory + '/' + std::to_string(i + 1) + ".ply", shard);
+    io.write_to(shard_name(directory, i), shard);
   }
   io.say(std::to_string(shares.size()) + " shards of " + std::to_string(whole.surface.tris.size()) +
          " triangles in " + std::to_string(whole.need("part", "mpartition").rows) +
@@ -45,18 +29,6 @@ void cut(Io& io, int count, const std::string& directory) {
   io.report["shards"] = shares.size();
   io.report["largest"] = largest;
   write_as_it_is(io, whole);
-}
-
-/// Returns the streams in a directory, 1.ply, 2.ply, ...
-std::vector<std::string> shards_in(const std::string& directory) {
-  std::vector<std::string> names;
-  for (std::error_code no;;) {
-    std::string name = directory + '/' + std::to_string(names.size() + 1) + ".ply";
-    if (!std::filesystem::exists(name, no)) break;
-    names.push_back(std::move(name));
-  }
-  if (names.empty()) throw BadInput(directory + "/1.ply: No such file or directory");
-  return names;
 }
 
 void join(Io& io, const std::string& directory) {

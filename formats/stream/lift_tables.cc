@@ -50,7 +50,10 @@ void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& verte
 LiftedMesh read_lifted(const Stream& stream) {
   const int n_faces = static_cast<int>(stream.need("ref_face", "mlift").rows);
   const int n_lines = static_cast<int>(stream.need("line", "mlines").rows);
-  const Surface& s = stream.surface;
+  return lifted_from(stream.surface, n_faces, n_lines);
+}
+
+LiftedMesh lifted_from(const Surface& s, int n_faces, int n_lines) {
   if (!s.vertex.has("ref_face"))
     throw NotAdmissible("the vertices have no place on a reference; run mlift first");
   LiftedMesh mesh;
@@ -58,6 +61,7 @@ LiftedMesh read_lifted(const Stream& stream) {
   mesh.tris = s.tris;
   const auto& face = s.vertex.get<int>("ref_face");
   const auto &b1 = s.vertex.get<double>("b1"), &b2 = s.vertex.get<double>("b2");
+  const std::vector<double>* b0 = s.vertex.has("b0") ? &s.vertex.get<double>("b0") : nullptr;
   mesh.kind = s.vertex.get<int>("kind");
   mesh.line = s.vertex.get<int>("line");
   mesh.size = s.vertex.get<double>("size");
@@ -75,7 +79,7 @@ LiftedMesh read_lifted(const Stream& stream) {
     if (mesh.line[v] < -1 || mesh.line[v] >= n_lines)
       bad("is on line " + std::to_string(mesh.line[v]) + ", but there are " + std::to_string(n_lines));
     if (!(mesh.size[v] > 0)) bad("has size " + std::to_string(mesh.size[v]) + ", but sizes are positive");
-    mesh.place.push_back({face[v], 1 - b1[v] - b2[v], b1[v], b2[v]});
+    mesh.place.push_back({face[v], b0 ? (*b0)[v] : 1 - b1[v] - b2[v], b1[v], b2[v]});
   }
   mesh.patch = s.face.get<int>("patch");
   mesh.part = s.face.get<int>("part");
@@ -83,7 +87,7 @@ LiftedMesh read_lifted(const Stream& stream) {
   return mesh;
 }
 
-void write_lifted(Stream& stream, const LiftedMesh& mesh) {
+Surface surface_from(const LiftedMesh& mesh) {
   Surface s;
   s.points = mesh.points;
   s.tris = mesh.tris;
@@ -100,10 +104,15 @@ void write_lifted(Stream& stream, const LiftedMesh& mesh) {
   s.vertex.set("b2", std::move(b2));
   s.vertex.set("kind", mesh.kind);
   s.vertex.set("line", mesh.line);
-  interpolate_data(stream, mesh, s.vertex);
   s.face.set("patch", mesh.patch);
   s.face.set("part", mesh.part);
   s.face.set("model", mesh.model);
+  return s;
+}
+
+void write_lifted(Stream& stream, const LiftedMesh& mesh) {
+  Surface s = surface_from(mesh);
+  interpolate_data(stream, mesh, s.vertex);
   stream.surface = std::move(s);
   stream.erase("mid_vertex");
 }

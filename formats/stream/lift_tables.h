@@ -10,6 +10,12 @@ namespace meshpipe {
 /// Throws: NotAdmissible if mlift has not run; BadInput with the row of a wrong index or weight.
 LiftedMesh read_lifted(const Stream& stream);
 
+/// The mesh of a surface that has its columns, on a reference of `faces` triangles, with `lines` lines.
+/// Throws: BadInput with the row of a wrong index or weight.
+LiftedMesh lifted_from(const Surface& surface, int faces, int lines);
+/// The mesh as a surface with its columns.
+Surface surface_from(const LiftedMesh& mesh);
+
 /// Replaces `vertex` and `face` by the mesh and drops table mid_vertex. Vertex data of the input is
 /// interpolated from the reference. Requires write_reference before.
 void write_lifted(Stream& stream, const LiftedMesh& mesh);

@@ -228,20 +228,6 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
   return report;
 }
 
-/// What is done to the tiles of a mesh.
-struct Pass {
-  const Surface& reference;
-  const std::vector<int>& line_kind;
-  const std::vector<char>& corner;
-  const RelaxOptions& options;
-  double sample_size = 0;  ///< see feature_samples
-  double mean_size = 0;    ///< of the mesh
-  double goal = 1;         ///< triangles to come to, per triangle
-  bool to_count = false;   ///< is the goal what was asked for?
-  bool repair = false;     ///< attend to places and remove faults; else optimize
-  double share = 1;        ///< of the work that is shown, per tile
-};
-
 /// Drops the samples that are nearer to other triangles of the whole than to the tile.
 void keep_own(const State& s, const Mesh& others, double size, Samples& samples) {
   const double enough = rules::missed * size;
@@ -278,13 +264,91 @@ void finish_tile(State& s, const Ordered& ordered, Tile& tile) {
   tile.faces = {}, tile.excess = {}, tile.corner = {};
 }
 
-/// Returns what was done, and the tries.
-RelaxReport relax_tile(Tile& tile, const Pass& pass) {
+void add(RelaxCounts& sum, const RelaxCounts& r) {
+  sum.splits += r.splits, sum.collapses += r.collapses, sum.flips += r.flips, sum.moves += r.moves;
+  sum.corners_merged += r.corners_merged;
+  sum.tries = std::max(sum.tries, r.tries);
+}
+
+std::vector<int> all_triangles(const Mesh& mesh) {
+  std::vector<int> all(mesh.tris.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// The tiles of a region of a mesh, to be cut one by one.
+struct Tiles {
+  Tiles(const TiledMesh& mesh, const std::vector<int>& region, int most, const TiledRelax& relax, bool repair)
+      : whole(mesh),
+        by(relax),
+        boxes(split_into_boxes(mesh.mesh, region, most)),
+        at_vertex(triangles_at_vertices(mesh.mesh)),
+        faces(around_tiles(mesh.mesh, boxes, rules::around_tile, &relax.reference)) {
+    if (repair) others = around_tiles(mesh.mesh, boxes, rules::around_tile, nullptr);
+  }
+  int size() const { return (int)boxes.size(); }
+  Tile cut(int i) const {
+    return cut_tile(whole, at_vertex, by.reference, by.corner, boxes, faces, others, i);
+  }
+
+  const TiledMesh& whole;
+  const TiledRelax& by;
+  std::vector<std::vector<int>> boxes;
+  Lists at_vertex, faces, others;
+};
+
+/// Makes a pass over the tiles of a region, from the second `round` on over their seams only, without another
+/// look at the number of triangles.
+void relax_region(const TiledRelax& by, TiledMesh& whole, std::vector<int> region, TilePass pass, int round,
+                  RelaxCounts& counts) {
+  for (; round < rules::seam_rounds && !region.empty(); ++round) {
+    if (round > 0) pass.goal = 1, pass.to_count = false;
+    const int most = round + 1 < rules::seam_rounds ? by.options.tile : (int)region.size();
+    std::vector<Tile> relaxed;
+    {
+      const Tiles tiles(whole, region, most, by, pass.repair);
+      relaxed.resize(tiles.size());
+      parallel_for(tiles.size(), [&](int i) {
+        relaxed[i] = tiles.cut(i);
+        relax_tile(relaxed[i], by.line_kind, pass);
+      });
+    }
+    for (const Tile& tile : relaxed) add(counts, tile.counts);
+    const std::vector<int> seams = replace_tiles(whole, std::move(relaxed));
+    region = triangles_near(whole.mesh, seams, rules::seam_rings);
+  }
+}
+
+/// Repairs where tiles intersect that do not know each other. Returns what still intersects.
+Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& counts) {
+  std::optional<Mesh> known;
+  for (int round = 0;; ++round) {
+    const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), by.options.tile);
+    Intersections found{crossings_of_boxes(whole.mesh, boxes, rules::around_seams)};
+    if (found.pairs.empty()) return found;
+    if (!known) known = contacts(by.reference, self_intersections(by.reference));
+    const int all = (int)found.pairs.size();
+    found.pairs = new_intersections(whole.mesh, found.pairs, *known);
+    found.of_reference = all - (int)found.pairs.size();
+    if (found.pairs.empty() || round == rules::crossing_rounds) return found;
+    std::vector<int> corners;
+    for (const auto& [s, t] : found.pairs)
+      for (int u : {s, t})
+        corners.insert(corners.end(), whole.mesh.tris[u].begin(), whole.mesh.tris[u].end());
+    sort_unique(corners);
+    relax_region(by, whole, triangles_near(whole.mesh, corners, rules::crossing_rings), by.pass(whole, true),
+                 0, counts);
+  }
+}
+
+}  // namespace
+
+void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& pass) {
   const double goal = pass.goal * (double)tile.mesh.tris.size();
   const Ordered ordered(tile.mesh, tile.slice);
   tile.slice = {};
-  State s = start_state(tile.mesh, *ordered.on, pass.line_kind, ordered.of_points(tile.corner));
-  s.keep_border = pass.options.keep_border;
+  State s = start_state(tile.mesh, *ordered.on, line_kind, ordered.of_points(tile.corner));
+  s.keep_border = pass.keep_border;
   s.whole.mean_size = pass.mean_size;
   s.whole.share = pass.share;
   s.whole.rim_excess.resize(s.points.size());
@@ -295,7 +359,7 @@ RelaxReport relax_tile(Tile& tile, const Pass& pass) {
     if (tile.hold[row] == frozen && s.labels.line[v] >= 0) s.normal[v] = {};  // perhaps a model edge
     s.refinement[v] = tile.refinement[row];
   }
-  RelaxReport report;
+  int tries = 1;
   if (pass.repair) {
     Samples samples{feature_samples(*ordered.on, pass.sample_size), {}};
     keep_own(s, tile.others, pass.sample_size, samples);
@@ -305,115 +369,81 @@ RelaxReport relax_tile(Tile& tile, const Pass& pass) {
   } else {
     coarse_rounds(s);
     if (pass.to_count)
-      report.tries = optimize_to_count(s, pass.options.sweeps, goal, nullptr);
+      tries = optimize_to_count(s, pass.sweeps, goal, nullptr);
     else
-      optimize(s, pass.options.sweeps, goal, nullptr);
+      optimize(s, pass.sweeps, goal, nullptr);
   }
   finish_tile(s, ordered, tile);
-  static_cast<RelaxCounts&>(report) = s.counts;
-  return report;
+  tile.counts = s.counts;
+  tile.counts.tries = tries;
 }
 
-void add(RelaxReport& sum, const RelaxReport& r) {
-  sum.splits += r.splits, sum.collapses += r.collapses, sum.flips += r.flips, sum.moves += r.moves;
-  sum.corners_merged += r.corners_merged;
-  sum.tries = std::max(sum.tries, r.tries);
+bool uses_tiles(const LiftedMesh& mesh, const RelaxOptions& options) {
+  return (double)mesh.tris.size() > 4.0 * options.tile && !options.sheets_meet && options.sheets.empty();
 }
 
-/// Makes a pass over the tiles of a region, then over their seams, without another look at the number of
-/// triangles.
-void relax_region(TiledMesh& whole, std::vector<int> region, Pass pass, RelaxReport& report) {
-  pass.mean_size = size_for_count(total_area(whole.mesh), (double)whole.mesh.tris.size());
-  for (int round = 0; round < rules::seam_rounds && !region.empty(); ++round) {
-    const int most = round + 1 < rules::seam_rounds ? pass.options.tile : (int)region.size();
-    const std::vector<std::vector<int>> boxes = split_into_boxes(whole.mesh, region, most);
-    const int n = (int)boxes.size();
-    const Lists at_vertex = triangles_at_vertices(whole.mesh);
-    const Lists faces = around_tiles(whole.mesh, boxes, rules::around_tile, &pass.reference),
-                others = pass.repair ? around_tiles(whole.mesh, boxes, rules::around_tile, nullptr) : Lists();
-    std::vector<Tile> tiles(n);
-    std::vector<RelaxReport> reports(n);
-    parallel_for(n, [&](int i) {
-      tiles[i] = cut_tile(whole, at_vertex, pass.reference, pass.corner, boxes, faces, others, i);
-      reports[i] = relax_tile(tiles[i], pass);
-    });
-    for (const RelaxReport& r : reports) add(report, r);
-    const std::vector<int> seams = replace_tiles(whole, std::move(tiles));
-    region = triangles_near(whole.mesh, seams, rules::seam_rings);
-    pass.goal = 1, pass.to_count = false;
-  }
-}
-
-std::vector<int> all_triangles(const Mesh& mesh) {
-  std::vector<int> all(mesh.tris.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
-/// Repairs where tiles intersect that do not know each other. Returns what still intersects.
-Intersections part_tiles(TiledMesh& whole, const Pass& pass, RelaxReport& report) {
-  std::optional<Mesh> known;
-  for (int round = 0;; ++round) {
-    const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), pass.options.tile);
-    Intersections found{crossings_of_boxes(whole.mesh, boxes, rules::around_seams)};
-    if (found.pairs.empty()) return found;
-    if (!known) known = contacts(pass.reference, self_intersections(pass.reference));
-    const int all = (int)found.pairs.size();
-    found.pairs = new_intersections(whole.mesh, found.pairs, *known);
-    found.of_reference = all - (int)found.pairs.size();
-    if (found.pairs.empty() || round == rules::crossing_rounds) return found;
-    std::vector<int> corners;
-    for (const auto& [s, t] : found.pairs)
-      for (int u : {s, t})
-        corners.insert(corners.end(), whole.mesh.tris[u].begin(), whole.mesh.tris[u].end());
-    sort_unique(corners);
-    relax_region(whole, triangles_near(whole.mesh, corners, rules::crossing_rings), pass, report);
-  }
-}
-
-/// Optimizes a large mesh tile by tile, each on its slice of the reference, then along their seams; the same
-/// to remove faults.
-RelaxReport relax_tiles(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
-                        const std::vector<char>& corner, const RelaxOptions& options) {
+TiledMesh as_tiled(LiftedMesh mesh) {
   const std::size_t n = mesh.points.size();
   TiledMesh whole{std::move(mesh), std::vector<Hold>(n), std::vector<double>(n, 1)};
-  {
-    const std::vector<int> opposite = opposite_halfedges(whole.mesh.tris, (int)n);
-    std::vector<char> on_border(n);
-    for (int h = 0; h < (int)opposite.size(); ++h)
-      if (opposite[h] < 0) on_border[origin(whole.mesh.tris, h)] = 1;
-    hold_seams(
-        whole.mesh.points, on_border, [&](int v) { return whole.mesh.size[v]; }, whole.hold);
-  }
+  const std::vector<int> opposite = opposite_halfedges(whole.mesh.tris, (int)n);
+  std::vector<char> on_border(n);
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] < 0) on_border[origin(whole.mesh.tris, h)] = 1;
+  hold_seams(
+      whole.mesh.points, on_border, [&](int v) { return whole.mesh.size[v]; }, whole.hold);
+  return whole;
+}
+
+TilePass TiledRelax::pass(const TiledMesh& whole, bool repair) const {
   const double live = (double)whole.mesh.tris.size();
   const double natural =
       reference.vertex.has("size") ? count_for_size(reference, reference.vertex.get<double>("size")) : live;
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
-  Pass pass{reference, line_kind, corner, options};
-  pass.sample_size = size_for_count(total_area(reference), target);
-  pass.goal = target / live;
+  TilePass pass{options.sweeps, options.keep_border, repair};
   pass.to_count = options.target_triangles > 0;
+  pass.goal = target / live;
+  pass.sample_size = size_for_count(total_area(reference), target);
+  pass.mean_size = size_for_count(total_area(whole.mesh), live);
   pass.share = 0.8 * options.tile / live;
-  RelaxReport report;
-  for (bool repair : {false, true}) {
-    pass.repair = repair;
-    relax_region(whole, all_triangles(whole.mesh), pass, report);
-  }
-  const Intersections left = part_tiles(whole, pass, report);
-  report.intersections = left.pairs, report.intersections_of_reference = left.of_reference;
-  mesh = std::move(whole.mesh);
-  return report;
+  return pass;
 }
 
-}  // namespace
+void TiledRelax::cut(const TiledMesh& whole, const TilePass& pass,
+                     const std::function<void(Tile)>& take) const {
+  const Tiles tiles(whole, all_triangles(whole.mesh), options.tile, *this, pass.repair);
+  for (int i = 0; i < tiles.size(); ++i) take(tiles.cut(i));
+}
+
+void TiledRelax::join(TiledMesh& whole, std::vector<Tile> tiles, TilePass pass, RelaxCounts& counts) const {
+  for (const Tile& tile : tiles) add(counts, tile.counts);
+  const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), options.tile);
+  for (std::size_t i = 0; i < tiles.size(); ++i) tiles[i].triangles = boxes.at(i);
+  const std::vector<int> seams = replace_tiles(whole, std::move(tiles));
+  relax_region(*this, whole, triangles_near(whole.mesh, seams, rules::seam_rings), pass, 1, counts);
+}
+
+RelaxReport TiledRelax::finish(TiledMesh& whole, int passes, const RelaxCounts& counts) const {
+  RelaxReport report;
+  static_cast<RelaxCounts&>(report) = counts;
+  for (int i = passes; i < 2; ++i)
+    relax_region(*this, whole, all_triangles(whole.mesh), pass(whole, i == 1), 0, report);
+  const Intersections left = part_tiles(*this, whole, report);
+  report.intersections = left.pairs, report.intersections_of_reference = left.of_reference;
+  set_quality(report, whole.mesh);
+  return report;
+}
 
 RelaxReport relax(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
                   const std::vector<char>& corners, const RelaxOptions& options) {
   if (mesh.tris.empty()) throw NotAdmissible("the mesh has no triangles");
-  const bool tiled =
-      (int)mesh.tris.size() > 4 * options.tile && !options.sheets_meet && options.sheets.empty();
-  RelaxReport report = (tiled ? relax_tiles : relax_whole)(mesh, original, line_kind, corners, options);
-  set_quality(report, mesh);
+  if (!uses_tiles(mesh, options)) {
+    RelaxReport report = relax_whole(mesh, original, line_kind, corners, options);
+    set_quality(report, mesh);
+    return report;
+  }
+  TiledMesh whole = as_tiled(std::move(mesh));
+  RelaxReport report = TiledRelax{original, line_kind, corners, options}.finish(whole, 0, {});
+  mesh = std::move(whole.mesh);
   return report;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization of a mesh on its reference surface, across every interface that is not a model edge.
 #pragma once
+#include <functional>
 #include <utility>
 
 #include "lib/lift/lift.h"
@@ -26,6 +27,7 @@ struct RelaxOptions {
 struct RelaxCounts {
   int splits = 0, collapses = 0, flips = 0, moves = 0;
   int corners_merged = 0;  ///< corners of the model merged with one much nearer than the size
+  int tries = 1;           ///< optimizations that it took to meet the target count, at most 4
 };
 
 struct RelaxReport : RelaxCounts {
@@ -34,7 +36,6 @@ struct RelaxReport : RelaxCounts {
   int intersections_of_reference = 0;  ///< pairs of the result that intersect where the reference does, too
   double kappa_min = 0, kappa_mean = 0;
   double volume_error = 0;  ///< of regions between sheets: the largest relative difference of a volume
-  int tries = 1;            ///< optimizations that it took to meet the target count, at most 4
 };
 
 /// Flips, collapses, splits and moves until the mesh is regular, judged in space. Vertices stay on the
@@ -47,5 +48,68 @@ struct RelaxReport : RelaxCounts {
 /// Returns: the same bytes at any number of threads.
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner = {}, const RelaxOptions& options = {});
+
+/// How a vertex may move. From `fixed` on it does not.
+enum Hold : char {
+  loose,
+  slides,    ///< along a border or model edge
+  fixed,     ///< a corner
+  anchored,  ///< at a feature that the mesh would miss
+  frozen,    ///< at the rim of a patch or tile
+  paired     ///< on an open seam
+};
+
+/// A mesh with what its vertices remember from one pass over its tiles to the next.
+struct TiledMesh {
+  LiftedMesh mesh;
+  std::vector<Hold> hold;          ///< anchored, fixed or paired; loose: as the lines hold it
+  std::vector<double> refinement;  ///< factor on the size, below 1 where triangles intersected
+};
+
+/// Triangles of a mesh as a mesh of its own. Vertices that other triangles have, too, are frozen.
+struct Tile : TiledMesh {
+  std::vector<int> triangles, vertices;        ///< their rows in the whole; -1: a new vertex
+  std::vector<int> excess;                     ///< of each frozen vertex, in the whole: see excess
+  std::vector<std::pair<int, int>> model_rim;  ///< model edges between frozen vertices, rows of the whole
+  Mesh others;                                 ///< triangles of the whole around it
+  Surface slice;                               ///< of the reference
+  std::vector<int> faces;                      ///< its rows in the reference
+  std::vector<char> corner;  ///< per vertex of the slice, see relax; empty if none are known
+  RelaxCounts counts;        ///< of what was done to it
+};
+
+/// What is done to the tiles of a mesh: first they are optimized, in a second pass repaired.
+struct TilePass {
+  int sweeps = 4;
+  bool keep_border = false;
+  bool repair = false;
+  bool to_count = false;   ///< is the goal what was asked for?
+  double goal = 1;         ///< triangles to come to, per triangle
+  double sample_size = 0;  ///< distance of the samples of features
+  double mean_size = 0;    ///< of the mesh
+  double share = 1;        ///< of the work that is shown, per tile
+};
+
+/// The optimization of a large mesh in steps, with tiles that may be jobs of their own. Arguments as in
+/// relax, which does the same, to the bit, to a mesh for which `uses_tiles`.
+struct TiledRelax {
+  const Surface& reference;
+  const std::vector<int>& line_kind;
+  const std::vector<char>& corner;
+  const RelaxOptions& options;
+
+  TilePass pass(const TiledMesh& whole, bool repair) const;
+  /// Calls `take` for each tile of the mesh, in their order.
+  void cut(const TiledMesh& whole, const TilePass& pass, const std::function<void(Tile)>& take) const;
+  /// Replaces the mesh by its tiles, relaxed and in their order, and makes the same pass over their seams.
+  void join(TiledMesh& whole, std::vector<Tile> tiles, TilePass pass, RelaxCounts& counts) const;
+  /// Makes the passes that are left of two, after so far `passes`, and repairs where tiles intersect.
+  RelaxReport finish(TiledMesh& whole, int passes, const RelaxCounts& counts) const;
+};
+bool uses_tiles(const LiftedMesh& mesh, const RelaxOptions& options);
+TiledMesh as_tiled(LiftedMesh mesh);
+/// Optimizes or repairs a tile. Afterwards its places are rows of the whole reference, and its slice is
+/// empty.
+void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& pass);
 
 }  // namespace meshpipe

@@ -45,16 +45,6 @@ struct Reference {
   std::vector<Vec3> normals;  ///< at the vertices, not of unit length
 };
 
-/// How a vertex may move. From `fixed` on it does not.
-enum Hold : char {
-  loose,
-  slides,    ///< along a border or model edge
-  fixed,     ///< a corner
-  anchored,  ///< at a feature that the mesh would miss
-  frozen,    ///< at the rim of a patch or tile
-  paired     ///< on an open seam
-};
-
 /// A change of connectivity: of the edge of half-edge h.
 struct Edit {
   enum Kind { flip, split, collapse } kind;

@@ -2,27 +2,9 @@
 // Tiles of a large mesh: pieces that are optimized by themselves, with held rims, on the slice of the
 // reference below them; for lib/relax/ only.
 #pragma once
-#include "lib/relax/state.h"
+#include "lib/relax/relax.h"
 
 namespace meshpipe {
-
-/// A mesh with what its vertices remember from one pass over its tiles to the next.
-struct TiledMesh {
-  LiftedMesh mesh;
-  std::vector<Hold> hold;          ///< anchored, fixed or paired; loose: as the lines hold it
-  std::vector<double> refinement;  ///< see State
-};
-
-/// Triangles of a mesh as a mesh of its own. Vertices that other triangles have, too, are frozen.
-struct Tile : TiledMesh {
-  std::vector<int> triangles, vertices;        ///< their rows in the whole
-  std::vector<int> excess;                     ///< of each frozen vertex, in the whole: see excess
-  std::vector<std::pair<int, int>> model_rim;  ///< model edges between frozen vertices, rows of the whole
-  Mesh others;                                 ///< triangles of the whole around it
-  Surface slice;                               ///< of the reference
-  std::vector<int> faces;                      ///< its rows in the reference
-  std::vector<char> corner;  ///< per vertex of the slice, see relax; empty if none are known
-};
 
 /// Distributes triangles to boxes of at most `most` of them, by splits across their longest extent. Returns
 /// their rows, ascending in each box.

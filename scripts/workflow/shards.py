@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Remeshes a surface of a cohort; a large one in steps, with maps and plane meshes made in shards as jobs of their own.
+"""Remeshes a surface of a cohort; a large one in steps, with maps, plane meshes and the tiles of mrelax made in shards as jobs of
+their own.
 
 usage: shards.py STEP NAME SURFACE RECORD.json FORMAT SHARDS [options of mremesh]
 
-The steps are begin, map-1 ... map-SHARDS, middle, plane-1 ... plane-SHARDS and end; with 0 SHARDS only end. Each leaves a file
-of its name in the folder `shards` next to RECORD.json. `end` leaves what run.py does, to the byte, and removes the intermediates.
+The steps are begin, map-1 ... map-SHARDS, middle, plane-1 ... plane-SHARDS, lift, relax-1 ... relax-SHARDS, seams, repair-1 ...
+repair-SHARDS and end; with 0 SHARDS only end. Each leaves a file of its name in the folder `shards` next to RECORD.json. `end`
+leaves what run.py does, to the byte, and removes the intermediates. Where the result is too small for tiles of mrelax, there is
+nothing to do from `relax-1` to `repair-SHARDS`.
 If a step fails, the later ones do nothing, and `end` remeshes the surface at once: the outcome and its reason are those of mremesh.
 """
 import glob
@@ -53,12 +56,18 @@ class Steps:
     def chain(self, *stages):
         call("mremesh", "-q", *self.options, "--keep", self.stages, *stages, "--", self.surface)
 
-    def cut(self, stage, kind):
+    def cut(self, kind, command, source, result="/dev/null"):
         for folder in (kind, kind + "-done"):
             shutil.rmtree(os.path.join(self.folder, folder), ignore_errors=True)
             os.makedirs(os.path.join(self.folder, folder))
-        call("mshard", "-q", "--shards", str(self.shards), "--into", os.path.join(self.folder, kind), self.stage(stage),
-             "-o", "/dev/null")
+        call(*command, "--shards", str(self.shards), "--into", os.path.join(self.folder, kind), source, "-o", result)
+
+    def has_tiles(self):
+        return os.path.exists(os.path.join(self.folder, "relax", "1.ply"))
+
+    def half(self):
+        """Returns the file of the mesh between the two passes over its tiles."""
+        return os.path.join(self.folder, "repair", "half.ply")
 
     def join(self, stage, kind, result):
         call("mshard", "-q", "--join", os.path.join(self.folder, kind + "-done"), self.stage(stage), "-o", result)
@@ -73,7 +82,7 @@ class Steps:
         if step == "begin":
             shutil.rmtree(self.stages, ignore_errors=True)
             self.chain("--to", "multiscale")
-            self.cut("multiscale", "map")
+            self.cut("map", ["mshard", "-q"], self.stage("multiscale"))
         elif kind == "map":
             self.work(kind, "mparam", number)
         elif step == "middle":
@@ -82,11 +91,23 @@ class Steps:
             call(*command, "--resume", result + ".part.ply", "-o", result)
             os.remove(result + ".part.ply")
             self.chain("--from", "size", "--to", "lines")
-            self.cut("lines", "plane")
+            self.cut("plane", ["mshard", "-q"], self.stage("lines"))
         elif kind == "plane":
             self.work(kind, "mmesh2d", number)
-        elif step == "end":
+        elif step == "lift":
             self.join("lines", "plane", self.program("mmesh2d")[1])
+            self.chain("--from", "lift", "--to", "lift")
+            self.cut("relax", self.program("mrelax")[0], self.stage("lift"))
+        elif kind in ("relax", "repair"):
+            self.work(kind, "mrelax", number)
+        elif step == "seams" and self.has_tiles():
+            command = [*self.program("mrelax")[0], "--join", os.path.join(self.folder, "relax-done")]
+            self.cut("repair", command, self.stage("lift"), self.half())
+        elif step == "end" and self.has_tiles():
+            command, result = self.program("mrelax")
+            call(*command, "--accept", "--join", os.path.join(self.folder, "repair-done"), self.half(), "-o", result)
+        elif step in ("seams", "end"):
+            pass
         else:
             sys.exit(__doc__)
 
@@ -108,10 +129,10 @@ def main(step, *arguments):
     if step != "end":
         open(os.path.join(steps.folder, step), "w", encoding="utf-8").close()
         return 0
-    rest = [] if os.path.exists(failed) else ["--keep", steps.stages, "--from", "lift"]
+    rest = [] if os.path.exists(failed) else ["--keep", steps.stages, "--from", "check" if steps.has_tiles() else "relax"]
     status = run.main(name, surface, record, extension, *options, more=rest)
     if status == 0:
-        for folder in ("stages", "map", "map-done", "plane", "plane-done"):
+        for folder in ("stages", *(kind + done for kind in ("map", "plane", "relax", "repair") for done in ("", "-done"))):
             shutil.rmtree(os.path.join(steps.folder, folder), ignore_errors=True)
     return status
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tiles of a mesh as streams, on which mrelax works as jobs of their own, and the mesh between two passes.
+#pragma once
+#include "formats/stream.h"
+#include "lib/relax/relax.h"
+
+namespace meshpipe {
+
+/// Some tiles of a mesh, with what it takes to relax them.
+struct TileShard {
+  std::vector<int> numbers;    ///< of the tiles in the whole, ascending
+  std::vector<Tile> tiles;     ///< without `triangles`
+  std::vector<int> line_kind;  ///< of all lines of the whole
+  TilePass pass;
+  bool relaxed = false;
+};
+
+/// Returns whether the stream has tiles, table `tile`.
+inline bool has_tiles(const Stream& stream) { return stream.find("tile") != nullptr; }
+
+/// Puts tiles into a stream, from which all tables are dropped: their meshes are its surface.
+void write_tiles(Stream& stream, const TileShard& shard);
+
+/// Reads what write_tiles wrote. Throws: BadInput if the rows of a table are not those of the tiles.
+TileShard read_tiles(const Stream& stream);
+
+/// Returns the tiles from all shards in their order, relaxed. `read` returns a shard by its name.
+/// Throws: BadInput, with a shard's name, for one that is none of this mesh and pass, tiles that are missing,
+/// doubled or not relaxed, and shards that were not made by `by`.
+std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int tiles, const TilePass& pass,
+                             const Provenance& by, const std::vector<std::string>& names,
+                             const std::function<Stream(const std::string&)>& read);
+
+/// What a stream knows of its mesh between two passes.
+struct BetweenPasses {
+  RelaxCounts counts;
+  bool second_order = false;
+};
+/// Returns whether the stream is between two passes: table `relaxing`.
+inline bool is_between_passes(const Stream& stream) { return stream.find("relaxing") != nullptr; }
+/// Requires write_reference before.
+void write_tiled(Stream& stream, const TiledMesh& mesh, const BetweenPasses& between);
+TiledMesh read_tiled(const Stream& stream, BetweenPasses& between);
+
+}  // namespace meshpipe

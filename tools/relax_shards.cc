@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/relax_shards.h"
+
+#include "formats/stream/lift_tables.h"
+#include "formats/stream/tile_tables.h"
+#include "lib/core/error.h"
+#include "lib/core/parallel.h"
+#include "tools/shard_files.h"
+
+namespace meshpipe {
+namespace {
+
+int tiles_of(const TiledMesh& whole, const RelaxOptions& options) {
+  return ((int)whole.mesh.tris.size() + options.tile - 1) / options.tile;
+}
+
+/// Writes the tiles into a directory, neighbors in one shard.
+void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const RelaxShards& to) {
+  const int tiles = tiles_of(whole, relax.options), count = std::min(to.count, tiles);
+  make_directory(to.into);
+  const TilePass pass = relax.pass(whole, repair);
+  int next = 0, shard = 0;
+  TileShard some;
+  relax.cut(whole, pass, [&](Tile tile) {
+    some.numbers.push_back(next++);
+    some.tiles.push_back(std::move(tile));
+    if (next < (long long)(shard + 1) * tiles / count) return;
+    some.line_kind = relax.line_kind, some.pass = pass;
+    Stream stream;
+    stream.history = io.stream.history, stream.remarks = io.stream.remarks;
+    stream.ascii = io.stream.ascii;
+    write_tiles(stream, some);
+    io.write_to(shard_name(to.into, shard++), stream);
+    some = {};
+  });
+  io.say(std::to_string(count) + (count == 1 ? " shard of " : " shards of ") + std::to_string(tiles) +
+         " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
+  io.report["shards"] = count;
+  io.report["tiles"] = tiles;
+}
+
+}  // namespace
+
+void relax_shard(Io& io, int sweeps) {
+  TileShard shard = read_tiles(io.stream);
+  if (shard.relaxed) throw NotAdmissible("these tiles are relaxed; join them by mrelax --join");
+  if (shard.pass.sweeps != sweeps)
+    throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(shard.pass.sweeps));
+  io.stream.surface = {}, io.stream.tables.clear();  // frees its memory now
+  const int n = (int)shard.tiles.size();
+  parallel_for(n, [&](int i) { relax_tile(shard.tiles[i], shard.line_kind, shard.pass); });
+  shard.relaxed = true;
+  std::size_t triangles = 0;
+  for (const Tile& tile : shard.tiles) triangles += tile.mesh.tris.size();
+  io.say(std::to_string(n) + (n == 1 ? " tile, " : " tiles, ") + std::to_string(triangles) + " triangles");
+  io.report["tiles"] = n;
+  io.report["triangles"] = triangles;
+  write_tiles(io.stream, shard);
+  io.write(io.stream);
+}
+
+std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
+                                           const RelaxShards& shards, bool& second_order) {
+  Stream& stream = io.stream;
+  BetweenPasses between{{}, second_order};
+  const bool optimized = is_between_passes(stream);
+  if (optimized && shards.from.empty())
+    throw NotAdmissible("the mesh is between two passes over its tiles; expected --join DIR");
+  if (!optimized && !uses_tiles(mesh, relax.options)) {
+    if (!shards.from.empty()) throw NotAdmissible("the mesh has no tiles; run mrelax without --join");
+    io.say(std::to_string(mesh.tris.size()) + " triangles are optimized at once: no shards");
+    io.report["shards"] = 0;
+    write_as_it_is(io, stream);
+    return {};
+  }
+  TiledMesh whole = optimized ? read_tiled(stream, between) : as_tiled(std::move(mesh));
+  second_order = between.second_order;
+  if (shards.from.empty()) {
+    cut(io, whole, relax, false, shards);
+    write_as_it_is(io, stream);
+    return {};
+  }
+  if (optimized && shards.count > 0) throw BadUsage("--shards: this is the last pass");
+  stream.surface = {};  // written anew later; frees its memory now
+  const TilePass pass = relax.pass(whole, optimized);
+  relax.join(whole,
+             join_tiles(whole, (int)relax.reference.tris.size(), tiles_of(whole, relax.options), pass,
+                        {io.program, "", io.arguments}, shards_in(shards.from),
+                        [&](const std::string& name) { return io.read(name); }),
+             pass, between.counts);
+  if (shards.count > 0) {
+    cut(io, whole, relax, true, shards);
+    write_tiled(stream, whole, between);
+    write_as_it_is(io, stream);
+    return {};
+  }
+  stream.erase("relaxing");
+  const RelaxReport report = relax.finish(whole, optimized ? 2 : 1, between.counts);
+  mesh = std::move(whole.mesh);
+  return report;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shard_files.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "lib/core/error.h"
+
+namespace meshpipe {
+
+void make_directory(const std::string& directory) {
+  std::error_code no;
+  std::filesystem::create_directories(directory, no);
+  if (no) throw CannotWrite(directory + ": " + no.message());
+}
+
+std::string shard_name(const std::string& directory, std::size_t shard) {
+  return directory + '/' + std::to_string(shard + 1) + ".ply";
+}
+
+std::vector<std::string> shards_in(const std::string& directory) {
+  std::vector<std::string> names;
+  for (std::error_code no;;) {
+    std::string name = shard_name(directory, names.size());
+    if (!std::filesystem::exists(name, no)) break;
+    names.push_back(std::move(name));
+  }
+  if (names.empty()) throw BadInput(directory + "/1.ply: No such file or directory");
+  return names;
+}
+
+void write_as_it_is(Io& io, const Stream& stream) {
+  io.ascii |= stream.ascii && !io.binary;
+  if (io.output == "-" && !io.ascii && ::isatty(STDOUT_FILENO))
+    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
+  io.wrote_to_stdout = io.output == "-";
+  io.write_to(io.output, stream);
+  if (io.output != "-") io.finished_file = io.output;
+}
+
+}  // namespace meshpipe

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The files of shards: DIR/1.ply, DIR/2.ply, ...
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/io.h"
+
+namespace meshpipe {
+
+/// Makes a directory if it is not there. Throws: CannotWrite.
+void make_directory(const std::string& directory);
+
+/// Returns the name of a shard's file; the first is shard 0.
+std::string shard_name(const std::string& directory, std::size_t shard);
+
+/// Returns the names of all shards in a directory. Throws: BadInput if there are none.
+std::vector<std::string> shards_in(const std::string& directory);
+
+/// Writes the stream as other programs have made it: the history stays.
+void write_as_it_is(Io& io, const Stream& stream);
+
+}  // namespace meshpipe
