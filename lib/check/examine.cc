@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "lib/check/check.h"
+#include "lib/core/chord.h"
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
@@ -149,6 +150,42 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
 
 namespace {
 
+/// Returns the pairs of triangles of which one has a chord for an edge and the other lies along it, sorted.
+std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
+  constexpr double rounding = 1e-6;  // sine: of vertices that were put on a plane
+  auto opposite = [&](int h) { return c.opposite[h]; };
+  auto hard = [&](int h) { return c.is_border(h) || c.is_model(h); };
+  std::vector<char> on_line(c.n_vertices(), 0);
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (c.is_model(h)) on_line[c.from(h)] = on_line[c.to(h)] = 1;
+  std::vector<std::pair<int, int>> pairs;
+  for (int h = 0; h < c.n_half_edges(); ++h) {
+    if (!on_line[c.from(h)] || !on_line[c.to(h)] || hard(h)) continue;
+    const int t = triangle_along(c.mesh.tris, c.mesh.points, opposite, hard, h, c.point(c.to(h)), rounding);
+    if (t >= 0) pairs.push_back({std::min(h / 3, t), std::max(h / 3, t)});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+/// Adds the chords to the intersections, and to the new ones unless the reference has some there.
+void find_chords(Findings& f, const Connectivity& result, const Surface& given) {
+  auto add = [](const auto& more, auto& pairs) {
+    pairs.insert(pairs.end(), more.begin(), more.end());
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  };
+  const auto found = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
+  if (found.empty()) return;
+  add(found, f.intersections);
+  Mesh known;
+  if (f.reference.sound()) {
+    const std::vector<int> opposite = opposite_halfedges(given.tris, (int)given.points.size());
+    known = contacts(given, chord_pairs({given, opposite, model_of(given)}));
+  }
+  add(new_intersections(result.mesh, found, known), f.new_intersections);
+}
+
 /// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
 /// case.
 void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& given,
@@ -219,6 +256,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
   find_intersections(f, result, mesh_tree, reference, reference_tree, sheets_meet);
+  find_chords(f, mesh, given);
   add_progress(0.3);
   f.folds = find_folds(mesh, reference, reference_tree);
   const std::vector<double> edges = mean_edges(result);

@@ -5,13 +5,28 @@
 namespace meshpipe {
 namespace {
 
+/// Would the edges of `gone` that become edges of `kept` be chords?
+bool makes_chord(const State& s, int h, int gone, int kept) {
+  const EditMesh& m = s.mesh;
+  const int c = m.apex(h), d = m.opp[h] < 0 ? -1 : m.apex(m.opp[h]);
+  if (!s.hold[kept]) return false;
+  bool found = false;
+  m.star(gone, [&](int e) {
+    const int v = m.to(e);
+    if (found || !s.hold[v] || v == kept || v == c || v == d || m.hard[e]) return;
+    found = starts_chord(s, next(e), s.points[kept]) ||
+            (!m.hard[h] && starts_chord(s, m.from(h) == kept ? h : next(h), s.points[v]));
+  });
+  return found;
+}
+
 /// May `gone` go as far as the connectivity and what is held are concerned?
 bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
   const EditMesh& m = s.mesh;
   if (s.hold[kept] == frozen) return false;  // may be joined outside the patch
   if (merge ? s.hold[gone] != fixed : s.hold[gone] >= fixed || (s.hold[gone] == slides && !m.hard[h]))
     return false;
-  if (!m.can_collapse(h, gone, merge)) return false;
+  if (!m.can_collapse(h, gone, merge) || makes_chord(s, h, gone, kept)) return false;
   const int g = m.opp[h];
   if (g < 0) return true;
   const int c = m.apex(h), d = m.apex(g);

@@ -405,8 +405,7 @@ void repair_at(State& s, const Fault& fault, Known& known) {
         {[&](const State& patch) { return objective(patch) + faultiness(patch, item.missed, mean, known); },
          true});
   };
-  int n = change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
-  if (getenv("DBG")) fprintf(stderr, "items %d adopted %d\n", (int)items.size(), n);
+  change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
 }
 
 }  // namespace
@@ -421,10 +420,6 @@ Intersections remove_faults(State& s, Samples& samples) {
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
     if (better) best = {s, found};
-    if (getenv("DBG"))
-      fprintf(stderr, "round %d repairs %d pairs %d folds %d tris %d excess %g better %d live %d most %g\n",
-              round, repairs, (int)found.pairs.size(), found.folds, (int)found.triangles.size(), found.excess,
-              better, s.mesh.live, most);
     if (found.none()) break;
     if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
         s.mesh.live <= most) {

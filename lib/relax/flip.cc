@@ -115,7 +115,9 @@ bool may_flip(const State& s, int h) {
   return !folds(std::min(s.cosine(a, b, c), s.cosine(b, a, d)),
                 std::min(s.cosine(a, d, c), s.cosine(b, c, d))) &&
          !(s.hold[c] == frozen ? m.joined(d, c) : m.joined(c, d)) &&  // the rim may meet itself in a vertex
-         !joined_elsewhere(s, c, d);
+         !joined_elsewhere(s, c, d) &&
+         !(s.hold[c] && s.hold[d] &&
+           (starts_chord(s, prev(h), s.points[d]) || starts_chord(s, prev(g), s.points[c])));
 }
 
 void flip_edge(State& s, int h) {

@@ -20,6 +20,11 @@ int end_on_line(const State& s, int a, int b);
 /// `most`.
 void split_long(State& s, double above, double most);
 
+/// Would an edge from the origin of half-edge `spoke` to q be a chord? See lib/core/chord.h.
+bool starts_chord(const State& s, int spoke, Vec3 q);
+/// Splits chords, where a vertex next to them is loose.
+void split_chords(State& s);
+
 // --- collapse.cc ---
 
 /// Takes the vertex `gone` of the edge of h out, into the edge's other end, or into the middle if that end is
@@ -42,7 +47,7 @@ void remove_irregular(State& s);
 
 // --- flip.cc ---
 
-/// May the edge of h be flipped? Not if that folds a triangle or bends the surface more.
+/// May the edge of h be flipped? Not if that folds a triangle, bends the surface more or makes a chord.
 bool may_flip(const State& s, int h);
 void flip_edge(State& s, int h);
 /// Neighbors that v has beyond the regular number: 6 inside, 4 on a border.

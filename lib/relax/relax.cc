@@ -41,6 +41,7 @@ void hold_seams(const std::vector<Vec3>& points, const std::vector<char>& on_bor
 
 /// Removes what is far too short or long, before anything else.
 void coarse_rounds(State& s) {
+  split_chords(s);
   for (int i = 0; i < rules::coarse_rounds; ++i) {
     merge_corners(s);
     collapse_short_segments(s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <initializer_list>
 
+#include "lib/core/chord.h"
 #include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
@@ -103,6 +104,32 @@ void split_long(State& s, double above, double most) {
     if (s.mesh.live >= most) break;
     if (s.length(h) > above) split_edge(s, h);
   }
+}
+
+bool starts_chord(const State& s, int spoke, Vec3 q) {
+  const EditMesh& m = s.mesh;
+  return triangle_along(
+             m.tris, s.points, [&](int h) { return m.opp[h]; }, [&](int h) { return m.hard[h] != 0; }, spoke,
+             q, rules::along_plane) >= 0;
+}
+
+void split_chords(State& s) {
+  const EditMesh& m = s.mesh;
+  auto is_held = [&](int v) { return s.hold[v] != loose; };
+  bool again = true;
+  while (std::exchange(again, false))
+    for (int h = 0; h < (int)m.opp.size(); ++h) {
+      const int g = m.opp[h];
+      if (m.dead(h / 3) || g < h || m.hard[h] || !is_held(m.from(h)) || !is_held(m.to(h))) continue;
+      if (is_held(m.apex(h)) && is_held(m.apex(g))) continue;  // the place would be sought on the cap
+      if (!starts_chord(s, h, s.points[m.to(h)]) && !starts_chord(s, g, s.points[m.to(g)])) continue;
+      const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(g);
+      const bool unfolded = std::min(s.cosine(a, d, c), s.cosine(b, c, d)) > 0;
+      if (unfolded && !m.joined(c, d) && m.valence(a) > 3 && m.valence(b) > 3)
+        flip_edge(s, h), again = true;
+      else
+        again = split_edge(s, h) || again;
+    }
 }
 
 }  // namespace meshpipe

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lib/core/cut.h"
+#include "lib/core/intersect.h"
 #include "lib/core/original_triangles.h"
 #include "lib/core/weld.h"
 #include "lib/shape/shape.h"
@@ -79,6 +80,32 @@ TEST(check, quality_is_that_of_the_definitions) {
   EXPECT_NEAR(q.kappa_mean, sum / (double)m.tris.size(), 1e-6);
   EXPECT_NEAR(q.min_angle, least, 1e-9);
   EXPECT_NEAR(q.max_angle, largest, 1e-9);
+}
+
+// A tube with a rhombus for a section and a cap: between its sharp corners 1 and 3, the cap has an edge. The
+// result has the chord 0 2 below it, where rounding keeps it apart from the cap.
+TEST(check, chords_of_a_rim_intersect_its_cap) {
+  Surface reference = surface_of(
+      Mesh{{{0, -1, 0}, {3, 0, 0}, {0, 1, 0}, {-3, 0, 0}, {3, 0, -2}, {0, -1, -2}, {0, 1, -2}, {-3, 0, -2}},
+           {{0, 1, 3},
+            {1, 2, 3},
+            {1, 0, 4},
+            {2, 1, 4},
+            {0, 5, 4},
+            {2, 4, 6},
+            {2, 6, 7},
+            {2, 7, 3},
+            {3, 7, 0},
+            {0, 7, 5}}});
+  reference.face.set("model", std::vector<std::uint8_t>{5, 3, 1, 1, 0, 0, 0, 4, 4, 0});
+  Surface result = reference;
+  for (int v : {0, 2}) result.points[v].z = -1e-8;
+  EXPECT_EQ(examine(result, reference, nullptr, 10).new_intersections.size(), 0u);
+  result.tris[2] = {0, 4, 2}, result.tris[3] = {0, 2, 1};  // 1 4 becomes 0 2
+  result.face.set("model", std::vector<std::uint8_t>{5, 3, 0, 6, 0, 0, 0, 4, 4, 0});
+  EXPECT_TRUE(self_intersections(result).empty());
+  EXPECT_GT(examine(result, reference, nullptr, 10).new_intersections.size(), 0u);
+  EXPECT_EQ(examine(result, result, nullptr, 10).new_intersections.size(), 0u);
 }
 
 TEST(check, cuts_are_undone) {

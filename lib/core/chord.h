@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chords: edges between two vertices of one rim that lie on the plane triangles across the rim, as an edge of
+// a tube does that runs straight over the tube's cap. The exact predicates of lib/core/intersect.h see a
+// contact there or none, as the rounding of the vertices has it; volume meshers refuse both.
+#pragma once
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// Does the segment from p to q leave p along the triangle p, y, z: between its sides, at an angle to its
+/// plane of no more than this sine?
+inline bool leaves_along(Vec3 p, Vec3 q, Vec3 y, Vec3 z, double sine) {
+  const Vec3 e = q - p, n = cross(y - p, z - p);
+  return std::abs(dot(e, n)) <= sine * norm(e) * norm(n) && dot(cross(y - p, e), n) >= 0 &&
+         dot(cross(e, z - p), n) >= 0 && dot(n, n) > 0;
+}
+
+/// Returns a triangle around the origin p of half-edge `spoke` along which the segment from p to q leaves, of
+/// those that hard edges separate from the spoke's triangle; -1 if there is none.
+/// `opposite(h)`: -1 at borders; `hard(h)`: is the edge of h a model edge or a border?
+template <class Opposite, class Hard>
+int triangle_along(const std::vector<Tri>& tris, const std::vector<Vec3>& points, Opposite opposite,
+                   Hard hard, int spoke, Vec3 q, double sine) {
+  const Vec3 p = points[origin(tris, spoke)];
+  int first = spoke;  // the first spoke of its sector, clockwise
+  while (!hard(first))
+    if ((first = next(opposite(first))) == spoke) return -1;
+  bool outside = false;
+  int h = first;
+  auto along = [&] {
+    return outside && leaves_along(p, q, points[target(tris, h)], points[origin(tris, prev(h))], sine);
+  };
+  do {
+    if (along()) return h / 3;
+    outside = outside || hard(prev(h));
+    h = opposite(prev(h));
+  } while (h >= 0 && h != first);
+  outside = true;
+  for (h = h < 0 ? opposite(first) : -1; h >= 0; h = opposite(h)) {
+    h = next(h);
+    if (along()) return h / 3;
+  }
+  return -1;
+}
+
+}  // namespace meshpipe
