@@ -59,10 +59,10 @@ constexpr double same_place = 1e-6;         // length: copies of a vertex this c
 constexpr double open_seam = 1e-3;          // length: borders this close are two sides of a seam
 
 // flips (flip.cc)
-constexpr double sound_for_valence = 3;  // shape: what a flip for the valence may leave
-constexpr double shape_gain = 0.9;       // of the worse shape: smaller gains go back and forth
-constexpr double along_plane = 1e-3;     // sine: an edge at this angle to a triangle lies on it
-constexpr double bend = 0.9;             // cosine: 26 degrees across the new edge are always allowed
+constexpr double sound_for_valence = 3;          // shape: what a flip for the valence may leave
+constexpr double shape_gain = 0.9;               // of the worse shape: smaller gains go back and forth
+constexpr double along_plane = 1e-3;             // sine: an edge at this angle to a triangle lies on it
+constexpr double bend = 0.9;                     // cosine: 26 degrees across the new edge are always allowed
 constexpr int half_edges_worth_threads = 30000;  // below it starting threads takes longer than a look at them
 constexpr double sound_for_smoothing = 4;        // shape: smoothing repairs better ones
 constexpr int dislocation_depth = 3;  // flips: each one more multiplies the search by the edges around
