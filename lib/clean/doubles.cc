@@ -54,40 +54,79 @@ std::vector<Quad> find_quads(const Repair& r, const std::vector<Vec3>& points) {
 
 enum Sheet : char { single, first, second };
 
-/// Drops the second sheets of contacts, except those that other triangles bound, in a complex of closed
-/// solids: as many triangles run in either direction along every edge.
-void drop_other_contacts(const Repair& r, const std::vector<char>& sheet, std::vector<char>& gone) {
+/// Contacts: sets of doubled triangles connected by edges, in complexes of triangles connected by edges.
+struct Contacts {
+  UnionFind complex, contact;
+  std::vector<char> open;     ///< per complex: not as many triangles run in either direction along every edge
+  std::vector<char> rim;      ///< per contact: both sheets end at an edge of no other triangle
+  std::vector<char> bounded;  ///< per contact: other triangles are at its edges
+};
+
+Contacts find_contacts(const Repair& r, const std::vector<char>& sheet, const std::vector<char>& gone) {
   const int n = (int)r.tris.size();
-  UnionFind complex(n), contact(n);
-  std::vector<char> open(n, 0), rim(n, 0), bounded(n, 0);  // first by one triangle of an edge, then by set
+  Contacts c{UnionFind(n), UnionFind(n), std::vector<char>(n, 0), std::vector<char>(n, 0), {}};
+  c.bounded = c.rim;
   for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
     int any = -1, last = -1, count = 0, doubled = 0, ascending = 0;
     bool both = false;
     for (EdgeUse e : uses) {
       const int h = half_edge(e), t = h / 3;
       if (gone[t]) continue;
-      if (count++) complex.join(t, any);
+      if (count++) c.complex.join(t, any);
       any = t;
       ascending += origin(r.tris, h) < target(r.tris, h);
       if (sheet[t] == single) continue;
       if (doubled++) {
-        contact.join(t, last);
+        c.contact.join(t, last);
         both = both || sheet[t] != sheet[last];
       }
       last = t;
     }
-    if (2 * ascending != count) open[any] = 1;
-    if (doubled && doubled < count) bounded[last] = 1;
-    if (count == 2 && both) rim[last] = 1;
+    if (2 * ascending != count) c.open[any] = 1;
+    if (doubled && doubled < count) c.bounded[last] = 1;
+    if (count == 2 && both) c.rim[last] = 1;
   });
   for (int t = 0; t < n; ++t) {
-    if (open[t]) open[complex.find(t)] = 1;
-    if (rim[t]) rim[contact.find(t)] = 1;
-    if (bounded[t]) bounded[contact.find(t)] = 1;
+    if (c.open[t]) c.open[c.complex.find(t)] = 1;
+    if (c.rim[t]) c.rim[c.contact.find(t)] = 1;
+    if (c.bounded[t]) c.bounded[c.contact.find(t)] = 1;
+  }
+  return c;
+}
+
+/// Drops both sheets of fins: contacts that end freely and are too small to be meant, as intersecting bodies
+/// in rounded coordinates leaves them, or of one triangle, as coarsening does.
+void drop_fins(const Repair& r, const std::vector<Vec3>& points, const std::vector<char>& sheet,
+               std::vector<char>& gone) {
+  constexpr double fin = 1e-6;  // of the area of all: the fins of bodies put together have 1e-8, or less
+  if (std::find(sheet.begin(), sheet.end(), second) == sheet.end()) return;
+  const int n = (int)r.tris.size();
+  Contacts c = find_contacts(r, sheet, gone);
+  std::vector<double> area(n, 0);
+  std::vector<int> size(n, 0);
+  double whole = 0;
+  for (int t = 0; t < n; ++t) {
+    const auto& [i, j, k] = r.tris[t];
+    const double a = norm(area_vector(points[r.vertex[i]], points[r.vertex[j]], points[r.vertex[k]]));
+    whole += a;
+    if (gone[t] || sheet[t] == single) continue;
+    area[c.contact.find(t)] += a;
+    ++size[c.contact.find(t)];
   }
   for (int t = 0; t < n; ++t) {
-    const int c = contact.find(t);
-    if (sheet[t] == second && (open[complex.find(t)] || rim[c] || !bounded[c])) gone[t] = 1;
+    const int k = c.contact.find(t);
+    const bool small = area[k] < fin * whole || size[k] == 2;
+    if (sheet[t] != single && c.rim[k] && c.bounded[k] && small) gone[t] = 1;
+  }
+}
+
+/// Drops the second sheets of contacts, except those that other triangles bound, in a complex of closed
+/// solids.
+void drop_other_contacts(const Repair& r, const std::vector<char>& sheet, std::vector<char>& gone) {
+  Contacts c = find_contacts(r, sheet, gone);
+  for (int t = 0; t < (int)r.tris.size(); ++t) {
+    const int k = c.contact.find(t);
+    if (sheet[t] == second && (c.open[c.complex.find(t)] || c.rim[k] || !c.bounded[k])) gone[t] = 1;
   }
 }
 
@@ -101,11 +140,17 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
   auto taken = [&](int t) { return gone[t] || sheet[t] != single; };
   for (const auto& [t, u] : same) {
     if (taken(u)) continue;
-    if (solids && !taken(t) && !same_orientation(r.tris[t], r.tris[u]))
+    if (!taken(t) && !same_orientation(r.tris[t], r.tris[u]))
       sheet[t] = first, sheet[u] = second;
     else
       gone[u] = 1;
   }
+  drop_fins(r, points, sheet, gone);
+  if (!solids)
+    for (char& s : sheet) {
+      if (s == second) gone[&s - sheet.data()] = 1;
+      s = single;
+    }
   if (sheets == CleanOptions::split) return 0;
   const std::vector<Quad> quads = find_quads(r, points);
   for (std::size_t i = 1; i < quads.size(); ++i) {
