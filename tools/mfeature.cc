@@ -130,9 +130,13 @@ bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<in
   const DefeatureReport r = remove_small_features(stream.surface, o, &given);
   report_removed(io, r, o.tolerance, stream);
   if (r.removed.empty()) return false;
-  std::erase_if(stream.names, [&](const Name& n) {
-    return n.dim == 2 && std::binary_search(r.vanished.begin(), r.vanished.end(), n.tag);
-  });
+  auto vanished = [&](int patch) { return std::binary_search(r.vanished.begin(), r.vanished.end(), patch); };
+  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && vanished(n.tag); });
+  if (has_sheets(stream)) {
+    std::vector<SheetPatch> sheets = read_sheets(stream);
+    std::erase_if(sheets, [&](const SheetPatch& s) { return vanished(s.patch); });
+    stream.set(sheet_table(sheets));
+  }
   stream.remarks.push_back(remark_of(r));
   drop_downstream(stream, Stage::parts);
   for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
@@ -204,13 +208,8 @@ void mark(Io& io, Options& o) {
   std::vector<int> given = given_edges(io, stream, o.edge_file);
   auto features = [&] { return mark_features(surface, o, before.empty() ? nullptr : &before, &given); };
   FeatureReport marked = features();
-  // what removes features moves borders of one sheet, and not those of the others that meet there
-  const bool meets = has_sheets(stream);
-  if (meets && o.tolerance != "auto" && o.tolerance != "0")
-    throw NotAdmissible("--tolerance " + o.tolerance +
-                        ": features of sheets that meet are not removed; use 0");
-  const double tolerance = meets ? 0 : tolerance_of(o, length, diagonal(surface));
-  DefeatureOptions narrow{tolerance, o.keep_boundary};
+  // a border that moved would part from those of the other sheets that meet there
+  DefeatureOptions narrow{tolerance_of(o, length, diagonal(surface)), o.keep_boundary || has_sheets(stream)};
   if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
   if (defeature(io, stream, narrow, before, given)) {
     o.again = true;

@@ -60,10 +60,10 @@ void flip(Repair& r, int t);
 /// non-manifold edges of the first call.
 void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options, CleanReport& report);
 
-/// Flags in `gone` the second copies of triangles (`same`: the first and a later one). Unless sheets are
-/// split, also pairs that divide a flat quadrangle along its other diagonal; if they are paired, both copies
-/// stay where two solids touch, as each is closed by its own. Returns the number of triangles with such a
-/// double.
+/// Flags in `gone` the second copies of triangles (`same`: the first and a later one), and both of fins too
+/// small to be meant. Unless sheets are split, also pairs that divide a flat quadrangle along its other
+/// diagonal; if they are paired, both copies stay where two solids touch, as each is closed by its own.
+/// Returns the number of triangles with such a double.
 int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
                  const std::vector<std::array<int, 2>>& same, CleanOptions::Sheets sheets,
                  std::vector<char>& gone);

@@ -705,6 +705,31 @@ TEST(Clean, SolidsThatTouchStayClosedEach) {
   }
 }
 
+//  a fin of two triangles on an edge of a cube, each there in both orientations: d high
+//     q-------p
+//     | \_    | d
+//   --a---\---b--
+TEST(Clean, TinyFinsVanishAndLargeOnesStay) {
+  for (const auto& [d, n_tris, dropped] : {std::array{1e-7, 2.0, 4.0}, {0.5, 2.0, 2.0}, {0.5, 1.0, 2.0}}) {
+    Surface s = cubes({{0, 0, 0}});
+    const Tri t = s.tris[0];
+    const Vec3 a = s.points[t[0]], b = s.points[t[1]], up = {-d, -d, -d};
+    const int p = (int)s.points.size(), q = p + 1;
+    s.points.push_back(b + up);
+    s.points.push_back(a + up);
+    const std::vector<Tri> fin = {{t[0], t[1], p}, {t[0], p, q}};
+    for (int i = 0; i < n_tris; ++i) {
+      s.tris.push_back(fin[i]);
+      s.tris.push_back({fin[i][1], fin[i][0], fin[i][2]});
+    }
+    s = surface(s.points, s.tris);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.duplicate, dropped);
+    EXPECT_EQ(r.opened_edges, dropped < 2 * n_tris);
+    EXPECT_EQ(s.tris.size(), 12 + 2 * n_tris - dropped);
+  }
+}
+
 TEST(Clean, SolidsMayShareAFaceAnEdgeOrAVertex) {
   for (const Vec3 shift : {Vec3{0, 1, 0}, Vec3{1, 1, 0}, Vec3{1, 1, 1}}) {
     const bool face = shift.x == 0;
