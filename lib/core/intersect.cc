@@ -236,8 +236,12 @@ Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
                                                    const std::vector<std::pair<int, int>>& pairs,
                                                    const Mesh& known) {
-  if (known.tris.empty()) return pairs;
-  const Bvh tree(known);
+  return pairs.empty() || known.tris.empty() ? pairs : new_intersections(mesh, pairs, Bvh(known));
+}
+
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Bvh& known) {
   std::vector<std::pair<int, int>> found;
   for (auto [s, t] : pairs) {
     double longest = 0;
@@ -248,7 +252,7 @@ std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
     std::vector<Vec3> places = contact(mesh, s, t);
     places.push_back(lerp(places[0], places[places.size() / 2], 0.5));
     const double near = 2 * longest;
-    const auto is_known = [&](Vec3 p) { return tree.nearest(p, 1e300, near).distance <= near; };
+    const auto is_known = [&](Vec3 p) { return known.nearest(p, 1e300, near).distance <= near; };
     if (std::none_of(places.begin(), places.end(), is_known)) found.push_back({s, t});
   }
   return found;

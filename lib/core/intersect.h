@@ -31,5 +31,9 @@ Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
                                                    const std::vector<std::pair<int, int>>& pairs,
                                                    const Mesh& known);
+/// The same with the contacts' tree at hand.
+std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
+                                                   const std::vector<std::pair<int, int>>& pairs,
+                                                   const Bvh& known);
 
 }  // namespace meshpipe

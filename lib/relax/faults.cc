@@ -17,7 +17,8 @@ struct Known {
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
-  std::optional<Mesh> intersections{};  ///< of the reference
+  std::optional<Mesh> contacts{};     ///< where the reference intersects itself
+  std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
 
   /// Forgets the mesh: call it before it becomes another.
@@ -67,13 +68,15 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   found.pairs = known.crossings.pairs;
   if (!s.copy.empty()) drop_contacts_of_sheets(s, found.pairs);
   if (found.pairs.empty()) return;
-  if (!known.intersections) {
+  if (!known.contacts) {
     Mesh joined = known.reference;
     if (!s.copy.empty()) join_borders(joined);
-    known.intersections = contacts(joined, self_intersections(joined));
+    known.contacts = contacts(joined, self_intersections(joined));
+    if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
   }
   const int all = (int)found.pairs.size();
-  found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.intersections);
+  if (known.contact_tree)
+    found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.contact_tree);
   found.of_reference = all - (int)found.pairs.size();
 }
 
@@ -362,7 +365,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
-  if (known.intersections && !pairs.empty()) pairs = new_intersections(mesh, pairs, *known.intersections);
+  if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
