@@ -32,7 +32,7 @@ bool clean_both(Surface& reference, Surface& result) {
 }  // namespace
 
 Findings compare(const Io& io, Stream& stream, const std::string& file, const Contract& contract, int samples,
-                 Surface& reference, double least_size) {
+                 Surface& reference, double least_size, const std::vector<ShareFindings>* shares) {
   Surface& result = stream.surface;
   const bool own = file.empty();
   Stream other;
@@ -50,7 +50,7 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
   Findings f = examine(result, reference, own ? &lines : nullptr, samples,
-                       required_distance(contract) - removed, meet, least_size);
+                       required_distance(contract) - removed, meet, least_size, shares);
   f.distance.bound += removed;
   if (meet)
     f.sheets = compare_sheets(reference, result, read_sheets(stream), own, f.reference_intersections == 0);
@@ -59,6 +59,10 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
   if (own || (!meet && patches.size() > 1))
     f.patch_faults = compare_patches(patches_of(reference, {}, namer(own ? stream : other)), patches);
   return f;
+}
+
+double distance_to_know(const Stream& stream, const Contract& contract, const Surface& reference) {
+  return required_distance(contract) - moved_in(stream) / diagonal(reference);
 }
 
 }  // namespace meshpipe

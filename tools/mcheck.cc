@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "formats/stream/check_tables.h"
 #include "lib/check/check.h"
+#include "tools/check_shards.h"
 #include "tools/common.h"
 #include "tools/compare.h"
 #include "tools/report/verdict.h"
@@ -18,6 +20,8 @@ struct Options {
   double max_error = 0;
   bool accept = false;
   int samples = 10000;
+  ShardFiles shards;
+  int tile = 250000;
 };
 
 void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
@@ -52,8 +56,13 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   Stream& stream = read(io, summary);
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
+  if (has_check_shares(stream)) return check_shard(io);
+  if (o.shards.count > 0) return cut_into_shards(io, o.shards, o.tile, o.samples, contract);
+  std::vector<ShareFindings> shares;
+  if (!o.shards.from.empty()) shares = read_checked(io, o.shards);
   Surface reference;
-  const Findings f = compare(io, stream, o.reference, contract, o.samples, reference, verdict.first_size());
+  const Findings f = compare(io, stream, o.reference, contract, o.samples, reference, verdict.first_size(),
+                             shares.empty() ? nullptr : &shares);
   verdict.outcome.mean_size = f.mean_size;
   verdict.outcome.triangles = (double)stream.surface.tris.size();
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
@@ -85,9 +94,9 @@ int main(int argc, char** argv) {
   std::optional<RoundFile> verdict;  // outlives the body, which may fail
   Summary summary;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--reference", o.reference,
-                   "the surface to compare with; without it the stream's own, from mlift")
-        ->type_name("FILE");
+    auto* reference = app.add_option("--reference", o.reference,
+                                     "the surface to compare with; without it the stream's own, from mlift")
+                          ->type_name("FILE");
     app.add_option("--require", o.require, "what must be met, see mcheck(1) (default " + o.require + ")")
         ->type_name("LIST");
     app.add_option("--max-error", o.max_error, "requires hausdorff=E, too")
@@ -107,6 +116,12 @@ int main(int argc, char** argv) {
         ->type_name("FILE");
     report("--tsv", o.tsv, "add the verdict to this table as a line, tab-separated")->type_name("FILE");
     report("--culprits", o.offending, "write the triangles at fault")->type_name("FILE");
+    app.add_option("--tile", o.tile,
+                   "triangles of a share (default 250000); results up to four times that have none")
+        ->check(CLI::Range(100, 100000000))
+        ->type_name("N")
+        ->group("Shards");
+    add_shard_options(app, o.shards, "of the check", reference);
   };
   const int status = run_tool(
       argc, argv, "mcheck",

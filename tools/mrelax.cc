@@ -21,7 +21,7 @@ struct Options {
   RelaxOptions relax;
   std::string reference;
   bool accept = false;
-  RelaxShards shards;
+  ShardFiles shards;
 };
 
 /// The reference from a file, with the columns that earlier stages would have written.
@@ -90,16 +90,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app.add_flag("--accept", o.accept, "write the mesh even when triangles still intersect")
         ->group("Reports");
-    auto* shards =
-        app.add_option("--shards", o.shards.count, "cut into N shards of tiles, as jobs of their own")
-            ->check(CLI::Range(1, 100000))
-            ->type_name("N");
-    auto* into =
-        app.add_option("--into", o.shards.into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
-    auto* join = app.add_option("--join", o.shards.from, "join what was made of the shards in this directory")
-                     ->type_name("DIR");
-    shards->needs(into), into->needs(shards);
-    for (CLI::Option* option : {shards, into, join}) option->group("Shards")->excludes(reference);
+    add_shard_options(app, o.shards, "of tiles", reference);
   };
   auto body = [&](Io& io) {
     const bool in_shards = o.shards.count > 0 || !o.shards.from.empty();

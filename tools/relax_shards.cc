@@ -5,7 +5,6 @@
 #include "formats/stream/tile_tables.h"
 #include "lib/core/error.h"
 #include "lib/core/parallel.h"
-#include "tools/shard_files.h"
 
 namespace meshpipe {
 namespace {
@@ -15,7 +14,7 @@ int tiles_of(const TiledMesh& whole, const RelaxOptions& options) {
 }
 
 /// Writes the tiles into a directory, neighbors in one shard.
-void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const RelaxShards& to) {
+void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const ShardFiles& to) {
   const int tiles = tiles_of(whole, relax.options), count = std::min(to.count, tiles);
   make_directory(to.into);
   const TilePass pass = relax.pass(whole, repair);
@@ -60,7 +59,7 @@ void relax_shard(Io& io, int sweeps) {
 }
 
 std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
-                                           const RelaxShards& shards, bool& second_order) {
+                                           const ShardFiles& shards, bool& second_order) {
   Stream& stream = io.stream;
   BetweenPasses between{{}, second_order};
   const bool optimized = is_between_passes(stream);

@@ -9,6 +9,19 @@
 
 namespace meshpipe {
 
+void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& what, CLI::Option* excluded) {
+  auto* count =
+      app.add_option("--shards", shards.count, "cut into N shards " + what + ", as jobs of their own")
+          ->check(CLI::Range(1, 100000))
+          ->type_name("N");
+  auto* into =
+      app.add_option("--into", shards.into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
+  auto* join = app.add_option("--join", shards.from, "join what was made of the shards in this directory")
+                   ->type_name("DIR");
+  count->needs(into), into->needs(count);
+  for (CLI::Option* option : {count, into, join}) option->group("Shards")->excludes(excluded);
+}
+
 void make_directory(const std::string& directory) {
   std::error_code no;
   std::filesystem::create_directories(directory, no);

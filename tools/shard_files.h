@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The files of shards: DIR/1.ply, DIR/2.ply, ...
 #pragma once
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "tools/io.h"
 
 namespace meshpipe {
+
+/// Where shards go, and where those come from that are to be joined.
+struct ShardFiles {
+  int count = 0;  ///< 0: none are cut
+  std::string into, from;
+};
+/// Adds --shards, --into and --join, which exclude another option. `what`: the shards are of.
+void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& what, CLI::Option* excluded);
 
 /// Makes a directory if it is not there. Throws: CannotWrite.
 void make_directory(const std::string& directory);

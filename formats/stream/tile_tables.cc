@@ -6,90 +6,13 @@
 #include <numeric>
 
 #include "formats/stream/lift_tables.h"
+#include "formats/stream/spans.h"
 #include "lib/core/error.h"
 
 namespace meshpipe {
 namespace {
 
 constexpr const char* writer = "mrelax --shards";
-
-template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
-/// Appends triangles, with the numbers of their vertices raised.
-void append_tris(std::vector<Tri>& to, const std::vector<Tri>& from, std::size_t first) {
-  for (const Tri& t : from)
-    to.push_back(
-        {t[0] + static_cast<int>(first), t[1] + static_cast<int>(first), t[2] + static_cast<int>(first)});
-}
-
-/// The rows of each tile in a table, one tile after the other.
-struct Span {
-  int first = 0, last = 0;
-  int size() const { return last - first; }
-  template <class T>
-  std::vector<T> of(const std::vector<T>& column) const {
-    return {column.begin() + first, column.begin() + last};
-  }
-};
-
-/// Returns the rows of the tiles by column `counts` of table `tile`.
-/// Throws: BadInput if they are not all of the `rows`.
-std::vector<Span> spans_of(const Table& tile, const char* counts, std::size_t rows) {
-  std::vector<Span> spans;
-  long long sum = 0;
-  for (int count : tile.get<int>(counts)) {
-    const long long first = sum;
-    sum += count;
-    if (count < 0 || sum > static_cast<long long>(rows)) break;
-    spans.push_back({static_cast<int>(first), static_cast<int>(sum)});
-  }
-  if (spans.size() != tile.rows || sum != static_cast<long long>(rows))
-    throw BadInput(std::string("column '") + counts + "' of table 'tile' counts others than the " +
-                   std::to_string(rows) + " that there are");
-  return spans;
-}
-
-/// Returns a tile's triangles with the numbers of its own vertices. Throws: BadInput for those of others.
-std::vector<Tri> tris_of(const std::vector<Tri>& tris, const Span& rows, const Span& vertices) {
-  std::vector<Tri> own = rows.of(tris);
-  for (std::size_t t = 0; t < own.size(); ++t)
-    for (int& v : own[t]) {
-      if (v < vertices.first || v >= vertices.last)
-        throw BadInput("triangle " + std::to_string(rows.first + static_cast<int>(t)) +
-                       " uses a vertex of another tile");
-      v -= vertices.first;
-    }
-  return own;
-}
-
-Table table_of(const char* name, const Mesh& mesh, bool of_points) {
-  Table table{name, 0, {}};
-  for (int i = 0; i < 3; ++i) {
-    std::vector<double> x;
-    std::vector<int> corner;
-    if (of_points)
-      for (Vec3 p : mesh.points) x.push_back(i == 0 ? p.x : i == 1 ? p.y : p.z);
-    else
-      for (const Tri& t : mesh.tris) corner.push_back(t[i]);
-    if (of_points)
-      table.set(std::string(1, "xyz"[i]), std::move(x));
-    else
-      table.set(std::string(1, "abc"[i]), std::move(corner));
-  }
-  return table;
-}
-
-Mesh mesh_from(const Table& points, const Table& faces) {
-  Mesh mesh;
-  const auto &x = points.get<double>("x"), &y = points.get<double>("y"), &z = points.get<double>("z");
-  const auto &a = faces.get<int>("a"), &b = faces.get<int>("b"), &c = faces.get<int>("c");
-  for (std::size_t i = 0; i < points.rows; ++i) mesh.points.push_back({x[i], y[i], z[i]});
-  for (std::size_t i = 0; i < faces.rows; ++i) mesh.tris.push_back({a[i], b[i], c[i]});
-  return mesh;
-}
 
 constexpr std::pair<const char*, int RelaxCounts::*> count_columns[] = {
     {"splits", &RelaxCounts::splits},

@@ -13,6 +13,7 @@
 #include "lib/check/needles.h"
 #include "lib/check/patches.h"
 #include "lib/check/quality.h"
+#include "lib/check/shares.h"
 #include "lib/check/sheets.h"
 #include "lib/check/soundness.h"
 #include "lib/lines/lines.h"
@@ -54,9 +55,15 @@ constexpr double most_deviation = 0.5;
 /// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
 /// `lines`: those that the result was made with, or null. `samples`, `most`: see distance_between.
 /// `sheets_meet`: border vertices at the same place are one. No size counts as smaller than `least_size`.
+/// `shares`: what was measured in shares, or null.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
                  double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false,
-                 double least_size = 0);
+                 double least_size = 0, const std::vector<ShareFindings>* shares = nullptr);
+
+/// Cuts the measurements of examine that take most time and memory into shares of at most `triangles`, which
+/// may be jobs of their own, and calls `take` for each: what `measure` returns for them is for examine.
+void cut_examination(const Surface& result, const Surface& reference, int triangles, int samples, double most,
+                     const TakeShare& take);
 
 /// Finds the half-edges, one of each edge, at which the result is folded: see lib/core/fold.h.
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);

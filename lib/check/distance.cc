@@ -72,7 +72,7 @@ struct Allowed {
 };
 
 /// One direction: the distances of one surface's points from the other.
-class OneSided {
+class OneSided : public OneWay {
  public:
   OneSided(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
            double diagonal, const Allowed& allowed)
@@ -85,12 +85,7 @@ class OneSided {
     deviation.ratio.assign(allowed.at.size(), 0);
   }
 
-  double largest = 0;  ///< found
-  Vec3 place;
   double known = 0;  ///< found on either side: what is not beyond it need not be known any better
-  double upper = 0;  ///< no point is farther
-  double mean = 0, rms = 0;
-  Deviation deviation;
 
   void sample(int samples);
   void bound(int budget);
@@ -327,6 +322,16 @@ void OneSided::bound(int budget) {
 }
 
 }  // namespace
+
+OneWay distance_from(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
+                     const OneWayOptions& options, std::span<const double> allowed) {
+  const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
+  OneSided side(from, from_tree, to, to_tree, options.diagonal,
+                {allowed, options.allowed_of_from, least, options.most > 0 ? options.most : infinity});
+  side.sample(options.samples);
+  side.bound(options.budget);
+  return std::move(static_cast<OneWay&>(side));
+}
 
 Distance distance_between(const Connectivity& reference, const Bvh& reference_tree, const Connectivity& mesh,
                           const Bvh& mesh_tree, int samples, std::span<const double> allowed, double most) {

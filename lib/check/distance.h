@@ -29,6 +29,24 @@ struct Distance {
   Deviation deviation;
 };
 
+/// What distance_between finds in one direction; lengths.
+struct OneWay {
+  double largest = 0;        ///< found
+  Vec3 place;                ///< of it
+  double upper = 0;          ///< no point is farther
+  double mean = 0, rms = 0;  ///< over the area
+  Deviation deviation;       ///< without `allowed`
+};
+struct OneWayOptions {
+  int samples, budget;   ///< points to measure the mean with, and to bound the distance
+  double diagonal;       ///< of the reference
+  double most;           ///< a length: a distance below it is bounded by it; 0: none
+  bool allowed_of_from;  ///< is `allowed` per triangle of the surface that is measured from?
+};
+/// Measures how far a surface is from another one. Requires: both have triangles.
+OneWay distance_from(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
+                     const OneWayOptions& options, std::span<const double> allowed);
+
 /// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
 /// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
 /// the diagonal, where these suffice, and to the distance `allowed` at each triangle of the mesh (none: any).

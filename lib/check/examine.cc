@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 #include "lib/check/check.h"
@@ -187,16 +188,16 @@ void find_chords(Findings& f, const Connectivity& result, const Surface& given) 
 }
 
 /// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
-/// case.
+/// case. `measured`: null if they are not known yet.
 void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& given,
-                        const Bvh& reference_tree, bool sheets_meet) {
+                        const Bvh& reference_tree, bool sheets_meet, const Measured* measured) {
   Mesh joined[2];
   auto find = [&](Mesh& copy, const Mesh& surface, const Bvh& tree) {
     if (!sheets_meet) return self_intersections(surface, tree);
     copy = surface;
     return sheet_intersections(copy, tree);
   };
-  f.intersections = find(joined[0], mesh, mesh_tree);
+  f.intersections = measured ? measured->intersections : find(joined[0], mesh, mesh_tree);
   if (f.intersections.empty() && !sheets_meet) return;
   const auto before = find(joined[1], given, reference_tree);
   const Mesh& reference = sheets_meet ? joined[1] : given;
@@ -226,10 +227,64 @@ void measure_curves(Findings& f, const Connectivity& result, const Mesh& referen
   f.features = curve_distance(reference_curves, curves) / unit;
 }
 
+/// The reference as the result is compared with it: before cuts, if that is sound.
+Mesh compared_reference(const Surface& given, Soundness& soundness) {
+  Mesh reference = before_cuts(given);
+  soundness = soundness_of(reference);
+  if (soundness.sound()) return reference;
+  soundness = soundness_of(given);
+  return given;
+}
+
+std::vector<double> sizes_or(const Surface& result, const std::vector<double>& otherwise) {
+  return result.vertex.has("size") ? result.vertex.get<double>("size") : otherwise;
+}
+
+/// Measures distances, of vertices over their mean edges.
+void measure_distances(Findings& f, const Surface& result, const Surface& given, const Connectivity& mesh,
+                       const Bvh& mesh_tree, const Connectivity& before, const Bvh& reference_tree,
+                       int samples, double most, double least_size, std::optional<Measured>& measured) {
+  const std::vector<double> edges = mean_edges(result);
+  f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
+  const std::vector<double> size = sizes_or(result, edges);
+  if (measured) {
+    f.off = std::move(measured->off);
+    f.distance = std::move(measured->distance);
+  } else {
+    f.off = vertex_distances(result, mesh_tree, before, reference_tree);
+    std::vector<double> smooth_off = f.off;
+    if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
+    for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
+    f.distance = distance_between(
+        before, reference_tree, mesh, mesh_tree, samples,
+        allowed_distances(result, size, smooth_off, std::max(least_size, f.mean_size)), most);
+  }
+  for (std::size_t v = 0; v < f.off.size(); ++v)
+    f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;
+  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
+                                      [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
+                     f.off.begin());
+}
+
+/// What is allowed of a result that does not lie on the smooth surface above its reference.
+std::vector<double> allowed_on_triangles(const Surface& result, double least_size) {
+  const double mean = size_for_count(total_area(result), (double)result.tris.size());
+  return allowed_distances(result, sizes_or(result, mean_edges(result)),
+                           std::vector<double>(result.points.size(), 0), std::max(least_size, mean));
+}
+
 }  // namespace
 
+void cut_examination(const Surface& result, const Surface& reference, int triangles, int samples, double most,
+                     const TakeShare& take) {
+  Soundness soundness;
+  const Mesh before = compared_reference(reference, soundness);
+  const double bounded = most < std::numeric_limits<double>::infinity() ? most * diagonal(before) : 0;
+  cut_check(result, before, allowed_on_triangles(result, 0), triangles, samples, bounded, take);
+}
+
 Findings examine(const Surface& result, const Surface& given, const Lines* lines, int samples, double most,
-                 bool sheets_meet, double least_size) {
+                 bool sheets_meet, double least_size, const std::vector<ShareFindings>* shares) {
   Findings f;
   Mesh reference;
   parallel_for(2, [&](int side) {
@@ -237,11 +292,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
       f.mesh = soundness_of(result);
       return;
     }
-    reference = before_cuts(given);
-    f.reference = soundness_of(reference);
-    if (f.reference.sound()) return;
-    reference = given;
-    f.reference = soundness_of(reference);
+    reference = compared_reference(given, f.reference);
   });
   const std::vector<std::uint8_t> no_bits;
   const bool marked = result.face.has("model"), reference_marked = given.face.has("model");
@@ -255,27 +306,17 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
 
   add_progress(0.2);
   const Bvh mesh_tree(result), reference_tree(reference);
-  find_intersections(f, result, mesh_tree, reference, reference_tree, sheets_meet);
+  std::optional<Measured> measured;
+  if (shares)
+    measured = join_findings(*shares, result, diagonal(reference), allowed_on_triangles(result, least_size));
+  find_intersections(f, result, mesh_tree, reference, reference_tree, sheets_meet,
+                     measured ? &*measured : nullptr);
   find_chords(f, mesh, given);
   add_progress(0.3);
-  f.folds = find_folds(mesh, reference, reference_tree);
-  const std::vector<double> edges = mean_edges(result);
-  f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
-  f.off = vertex_distances(result, mesh_tree, before, reference_tree);
-  std::vector<double> smooth_off = f.off;
-  if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
-  for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
-  f.distance = distance_between(
-      before, reference_tree, mesh, mesh_tree, samples,
-      allowed_distances(result, size.empty() ? edges : size, smooth_off, std::max(least_size, f.mean_size)),
-      most);
+  f.folds = measured ? measured->folds : find_folds(mesh, reference, reference_tree);
+  measure_distances(f, result, given, mesh, mesh_tree, before, reference_tree, samples, most, least_size,
+                    measured);
   add_progress(0.4);
-  for (std::size_t v = 0; v < f.off.size(); ++v)
-    f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;
-  f.farthest = (int)(std::max_element(f.off.begin(), f.off.end(),
-                                      [](double a, double b) { return !std::isnan(a) && !(b <= a); }) -
-                     f.off.begin());
-
   measure_curves(f, mesh, reference, given);
   find_needles(f, mesh, given);
   f.kappa_off_corners = f.quality.kappa_min;

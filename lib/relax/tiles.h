@@ -2,23 +2,12 @@
 // Tiles of a large mesh: pieces that are optimized by themselves, with held rims, on the slice of the
 // reference below them; for lib/relax/ only.
 #pragma once
+#include "lib/core/boxes.h"
 #include "lib/relax/relax.h"
 
 namespace meshpipe {
 
-/// Distributes triangles to boxes of at most `most` of them, by splits across their longest extent. Returns
-/// their rows, ascending in each box.
-std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vector<int>& triangles, int most);
-
-/// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].
-struct Lists {
-  std::vector<int> start, row;
-};
 Lists triangles_at_vertices(const Mesh& mesh);
-/// Returns for each of several tiles the triangles of the reference that are no farther from it than `reach`
-/// of its edges, and some others; where `reference` is null, triangles of the mesh that are not in the tile.
-Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
-                   const Mesh* reference);
 
 /// Cuts the tile with number `tile` of these boxes out, with the slice of the reference around it. `others`:
 /// the triangles of the mesh around it; empty: none.

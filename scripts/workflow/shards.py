@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Remeshes a surface of a cohort; a large one in steps, with maps, plane meshes and the tiles of mrelax made in shards as jobs of
-their own.
+"""Remeshes a surface of a cohort; a large one in steps, with maps, plane meshes, tiles of mrelax and measurements of mcheck made in
+shards as jobs of their own.
 
 usage: shards.py STEP NAME SURFACE RECORD.json FORMAT SHARDS [options of mremesh]
 
 The steps are begin, map-1 ... map-SHARDS, middle, plane-1 ... plane-SHARDS, lift, relax-1 ... relax-SHARDS, seams, repair-1 ...
-repair-SHARDS and end; with 0 SHARDS only end. Each leaves a file of its name in the folder `shards` next to RECORD.json. `end`
-leaves what run.py does, to the byte, and removes the intermediates. Where the result is too small for tiles of mrelax, there is
-nothing to do from `relax-1` to `repair-SHARDS`.
+repair-SHARDS, relaxed, check-1 ... check-SHARDS and end; with 0 SHARDS only end. Each leaves a file of its name in the folder
+`shards` next to RECORD.json. `end` leaves what run.py does, the result to the byte, and removes the intermediates. Where the
+result is too small for tiles of mrelax, there is nothing to do from `relax-1` to `check-SHARDS`.
 If a step fails, the later ones do nothing, and `end` remeshes the surface at once: the outcome and its reason are those of mremesh.
 """
 import glob
@@ -65,6 +65,12 @@ class Steps:
     def has_tiles(self):
         return os.path.exists(os.path.join(self.folder, "relax", "1.ply"))
 
+    def rest(self):
+        """Returns the options of mremesh for what is left."""
+        checked = os.path.join(self.folder, "check-done")
+        return ["--keep", self.stages, "--from", "check" if self.has_tiles() else "relax",
+                *(["--checked", checked] if os.path.exists(os.path.join(checked, "1.ply")) else [])]
+
     def half(self):
         """Returns the file of the mesh between the two passes over its tiles."""
         return os.path.join(self.folder, "repair", "half.ply")
@@ -103,12 +109,14 @@ class Steps:
         elif step == "seams" and self.has_tiles():
             command = [*self.program("mrelax")[0], "--join", os.path.join(self.folder, "relax-done")]
             self.cut("repair", command, self.stage("lift"), self.half())
-        elif step == "end" and self.has_tiles():
+        elif step == "relaxed" and self.has_tiles():
             command, result = self.program("mrelax")
             call(*command, "--accept", "--join", os.path.join(self.folder, "repair-done"), self.half(), "-o", result)
-        elif step in ("seams", "end"):
-            pass
-        else:
+            tile = command[command.index("--tile"):][:2] if "--tile" in command else []
+            self.cut("check", [*self.program("mcheck")[0], *tile], result)
+        elif kind == "check":
+            self.work(kind, "mcheck", number)
+        elif step not in ("seams", "relaxed"):
             sys.exit(__doc__)
 
 
@@ -122,17 +130,17 @@ def main(step, *arguments):
     if step == "begin" and os.path.exists(failed):
         os.remove(failed)
     try:
-        if not os.path.exists(failed):
+        if not os.path.exists(failed) and step != "end":
             steps.run(step)
     except Failed:
         open(failed, "w", encoding="utf-8").close()
     if step != "end":
         open(os.path.join(steps.folder, step), "w", encoding="utf-8").close()
         return 0
-    rest = [] if os.path.exists(failed) else ["--keep", steps.stages, "--from", "check" if steps.has_tiles() else "relax"]
+    rest = [] if os.path.exists(failed) else steps.rest()
     status = run.main(name, surface, record, extension, *options, more=rest)
     if status == 0:
-        for folder in ("stages", *(kind + done for kind in ("map", "plane", "relax", "repair") for done in ("", "-done"))):
+        for folder in ("stages", *(kind + done for kind in ("map", "plane", "relax", "repair", "check") for done in ("", "-done"))):
             shutil.rmtree(os.path.join(steps.folder, folder), ignore_errors=True)
     return status
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shares of a check as streams, on which mcheck works as jobs of their own.
+#pragma once
+#include "formats/stream.h"
+#include "lib/check/check.h"
+
+namespace meshpipe {
+
+/// Some shares of a check.
+struct CheckShard {
+  int all = 0;               ///< shares of the check
+  std::vector<int> numbers;  ///< of these, in the order of all
+  std::vector<CheckShare> shares;
+};
+
+/// Returns whether the stream has shares to be measured, table `check_share`.
+inline bool has_check_shares(const Stream& stream) { return stream.find("check_share") != nullptr; }
+
+/// Puts shares into a stream, from which all tables are dropped: their meshes are its surface.
+void write_shares(Stream& stream, const CheckShard& shard);
+/// Reads what write_shares wrote. Throws: BadInput if the rows of a table are not those of the shares.
+CheckShard read_shares(const Stream& stream);
+
+/// Puts what was measured of the shares into the stream, in place of everything else.
+void write_findings(Stream& stream, const CheckShard& shard, const std::vector<ShareFindings>& found);
+
+/// Returns what was measured of a stream's result in all shares, in their order. `read` returns a shard by
+/// its name. Throws: BadInput, with a shard's name, for one that is none of this result, or was not made by
+/// `by`, and for shares that are missing or doubled.
+std::vector<ShareFindings> join_checks(const Stream& whole, const Provenance& by,
+                                       const std::vector<std::string>& names,
+                                       const std::function<Stream(const std::string&)>& read);
+
+}  // namespace meshpipe

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/boxes.h"
+
+#include <algorithm>
+
+#include "lib/core/bvh.h"
+#include "lib/core/parallel.h"
+#include "lib/core/triangle_count.h"
+
+namespace meshpipe {
+namespace {
+
+struct Item {
+  Vec3 middle;  ///< three times
+  int triangle;
+};
+
+void split(std::vector<Item>::iterator first, std::vector<Item>::iterator last, std::ptrdiff_t most,
+           std::vector<std::vector<int>>& boxes) {
+  const std::ptrdiff_t n = last - first, count = (n + most - 1) / most;
+  if (count <= 1) {
+    std::vector<int>& box = boxes.emplace_back();
+    for (auto i = first; i != last; ++i) box.push_back(i->triangle);
+    std::sort(box.begin(), box.end());
+    return;
+  }
+  Box extent{first->middle, first->middle};
+  for (auto i = first; i != last; ++i) extent = join(extent, {i->middle, i->middle});
+  const Vec3 d = extent.hi - extent.lo;
+  double Vec3::*axis = d.x >= d.y && d.x >= d.z ? &Vec3::x : d.y >= d.z ? &Vec3::y : &Vec3::z;
+  const auto middle = first + n * (count / 2) / count;
+  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
+    return std::pair(a.middle.*axis, a.triangle) < std::pair(b.middle.*axis, b.triangle);
+  });
+  split(first, middle, most, boxes);
+  split(middle, last, most, boxes);
+}
+
+/// Cubes that fill the box of a mesh.
+class Grid {
+ public:
+  Grid(const Mesh& mesh, double side, double most) {
+    Box box = box_of(mesh, 0);
+    for (int t = 1; t < (int)mesh.tris.size(); ++t) box = join(box, box_of(mesh, t));
+    lo_ = box.lo;
+    const Vec3 d = box.hi - box.lo;
+    if (!(side > 1e-6 * norm(d))) side = std::max(1e-6 * norm(d), 1e-300);  // a mesh without area
+    while ((d.x / side + 1) * (d.y / side + 1) * (d.z / side + 1) > most) side *= 1.25;
+    side_ = side;
+    n_ = {(int)(d.x / side) + 1, (int)(d.y / side) + 1, (int)(d.z / side) + 1};
+  }
+  int size() const { return n_[0] * n_[1] * n_[2]; }
+  /// Calls f for the cubes that meet a box, or those at the border that are nearest.
+  template <class F>
+  void for_cubes(const Box& box, F f) const {
+    const std::array<int, 3> a = cube(box.lo), b = cube(box.hi);
+    for (int k = a[2]; k <= b[2]; ++k)
+      for (int j = a[1]; j <= b[1]; ++j)
+        for (int i = a[0]; i <= b[0]; ++i) f((k * n_[1] + j) * n_[0] + i);
+  }
+  /// The same for a triangle, halved until its pieces are no larger than cubes.
+  template <class F>
+  void for_cubes(Vec3 a, Vec3 b, Vec3 c, F f) const {
+    const double bc = norm(c - b), ca = norm(a - c), ab = norm(b - a), longest = std::max({bc, ca, ab});
+    if (longest <= side_) return for_cubes({lower(lower(a, b), c), upper(upper(a, b), c)}, f);
+    if (longest == ca) std::swap(b, c), std::swap(a, b);
+    if (longest == bc && longest != ca) std::swap(a, b), std::swap(b, c);
+    const Vec3 middle = lerp(a, b, 0.5);
+    for_cubes(a, middle, c, f);
+    for_cubes(middle, b, c, f);
+  }
+
+ private:
+  std::array<int, 3> cube(Vec3 p) const {
+    const Vec3 d = (1 / side_) * (p - lo_);
+    return {(int)std::clamp(d.x, 0.0, n_[0] - 1.0), (int)std::clamp(d.y, 0.0, n_[1] - 1.0),
+            (int)std::clamp(d.z, 0.0, n_[2] - 1.0)};
+  }
+  Vec3 lo_;
+  double side_;
+  std::array<int, 3> n_;
+};
+
+/// For each tile, the triangles of a mesh in cubes that it has, too, but not its own; `tile`: per triangle.
+Lists triangles_in_cubes(const Mesh& mesh, const Grid& grid, const Lists& tiles_at, int tiles,
+                         const std::vector<int>& own) {
+  constexpr int chunk = 1 << 14;
+  const int n = (int)mesh.tris.size(), chunks = (n + chunk - 1) / chunk;
+  std::vector<std::vector<std::pair<int, int>>> found(chunks);
+  parallel_for(chunks, [&](int k) {
+    std::vector<int> near;
+    for (int t = k * chunk; t < std::min(n, (k + 1) * chunk); ++t) {
+      const auto [a, b, c] = mesh.tris[t];
+      near.clear();
+      grid.for_cubes(mesh.points[a], mesh.points[b], mesh.points[c], [&](int cube) {
+        for_rows(tiles_at, cube, [&](int tile) {
+          if ((own.empty() || own[t] != tile) && std::find(near.begin(), near.end(), tile) == near.end())
+            near.push_back(tile);
+        });
+      });
+      for (int tile : near) found[k].push_back({tile, t});
+    }
+  });
+  return lists_of(tiles, [&](auto add) {
+    for (const auto& pairs : found)
+      for (const auto& [tile, t] : pairs) add(tile, t);
+  });
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vector<int>& triangles,
+                                               int most) {
+  std::vector<Item> items;
+  items.reserve(triangles.size());
+  for (int t : triangles) {
+    const auto [a, b, c] = mesh.tris[t];
+    items.push_back({mesh.points[a] + mesh.points[b] + mesh.points[c], t});
+  }
+  std::vector<std::vector<int>> boxes;
+  if (!items.empty()) split(items.begin(), items.end(), most, boxes);
+  return boxes;
+}
+
+Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
+                   const Mesh* reference) {
+  constexpr double edges_per_cube = 4;
+  const int tiles = (int)boxes.size(), n = (int)mesh.tris.size();
+  const Grid grid(mesh, edges_per_cube * size_for_count(total_area(mesh), n), std::max(1000.0, 0.5 * n));
+  std::vector<int> own(n, -1);
+  std::vector<std::vector<int>> cubes(tiles);
+  parallel_for(tiles, [&](int i) {
+    std::vector<char> seen(grid.size());
+    for (int t : boxes[i]) {
+      own[t] = i;
+      Box box = box_of(mesh, t);
+      const double r = reach * std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
+      box.lo = box.lo - Vec3{r, r, r}, box.hi = box.hi + Vec3{r, r, r};
+      grid.for_cubes(box, [&](int cube) {
+        if (!seen[cube]) seen[cube] = 1, cubes[i].push_back(cube);
+      });
+    }
+  });
+  const Lists tiles_at = lists_of(grid.size(), [&](auto add) {
+    for (int i = 0; i < tiles; ++i)
+      for (int cube : cubes[i]) add(cube, i);
+  });
+  return reference ? triangles_in_cubes(*reference, grid, tiles_at, tiles, {})
+                   : triangles_in_cubes(mesh, grid, tiles_at, tiles, own);
+}
+
+}  // namespace meshpipe
