@@ -115,7 +115,9 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     return norm(walk.point(to) - p) < rules::reached * s.target(v);
   };
   // a vertex on a line may know the other side of it
-  const bool same_side = dot(walk.normal(place), s.face_normal(t)) > rules::same_side;
+  const std::vector<int>* patches = s.reference->patches;
+  const bool same_side = dot(walk.normal(place), s.face_normal(t)) > rules::same_side &&
+                         (!patches || s.labels.patch.empty() || (*patches)[place.face] == s.labels.patch[t]);
   if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
   const double near_enough = std::max(deviation(before), least / size);

@@ -144,6 +144,7 @@ Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
     s.vertex.set("size", rearranged(surface.vertex.get<double>("size"), order.vertices));
   if (surface.face.has("model"))
     s.face.set("model", rearranged(surface.face.get<std::uint8_t>("model"), order.tris));
+  if (surface.face.has("patch")) s.face.set("patch", rearranged(surface.face.get<int>("patch"), order.tris));
   return s;
 }
 

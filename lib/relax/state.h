@@ -41,6 +41,7 @@ struct Reference {
 
   const Surface& surface;
   const std::vector<double>* sizes;  ///< null if the surface has none
+  const std::vector<int>* patches;   ///< the same
   const SurfaceWalk walk;
   std::vector<Vec3> normals;  ///< at the vertices, not of unit length
 };

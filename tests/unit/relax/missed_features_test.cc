@@ -61,6 +61,17 @@ TEST(MissedFeatures, APeakThatTheMeshCutsOffIsReachedOnce) {
   EXPECT_FALSE(reach_features(m.s, samples, rules::missed, rules::features));
 }
 
+// as a wall next to a cap may be nearest to the cap
+TEST(MissedFeatures, APeakOfAnotherPatchIsNotReached) {
+  Surface reference = peak();
+  reference.face.set("patch", std::vector<int>(6, 2));
+  Surface flat = cut_off();  // of patch 1
+  Drawn m(reference, &flat);
+  put_on_rim(m, reference);
+  Samples samples{feature_samples(m.reference, 1000), {}};
+  EXPECT_FALSE(reach_features(m.s, samples, rules::missed, rules::features));
+}
+
 TEST(Faults, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
   for (double height : {1.0, 3.0, 6.0}) {
     const Surface reference = peak(height);
