@@ -57,6 +57,8 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   if (has_check_shares(stream)) return check_shard(io);
+  if (stream.find("checked"))
+    throw NotAdmissible("this is what was measured of a shard; expected --join DIR");
   if (o.shards.count > 0) return cut_into_shards(io, o.shards, o.tile, o.samples, contract);
   std::vector<ShareFindings> shares;
   if (!o.shards.from.empty()) shares = read_checked(io, o.shards);

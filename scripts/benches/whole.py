@@ -21,12 +21,15 @@ result by mcheck or another evaluator.
   --bin DIR                programs (default build/bin)
   --threads N              for mremesh (default all)
   --json FILE              the same figures as JSON
+  --page FILE              a page in Markdown: CPU seconds and figures, and where each program is better than mremesh or worse
   --svg FILE               a picture: wall seconds against mean kappa, a color for each program, a mark for each surface
 """
 import html
 import json
 import math
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -210,6 +213,63 @@ def picture(rows, width=640, height=420):
     return "\n".join([*text, "</svg>\n"])
 
 
+PAGE = """# Next to other remeshers
+
+`{command}` has made this page.
+
+Every program got the same cleaned surface, and the edge length by which it comes nearest to the number of triangles that `mremesh`
+made. kappa is the shape measure of a triangle (1: equilateral, 0: degenerate), the distance is the two-sided Hausdorff distance
+over the diagonal; `mcheck` measures all of them. {runs}, on {machine}.{load}
+
+`mremesh` cleans and checks, which the others do not, and its time has both in it. It finds model edges and keeps them, as Gmsh
+does here with those above 40 degrees; further programs are given none. On the other hand CGAL is a library that can be called
+in place, and Gmsh meshes CAD itself, volumes, and elements of any order: where these are needed, they are the better choice.
+
+{summary}
+{table}"""
+# figure, title, format, whether more is better
+PAGE_COLUMNS = [("cpu", "CPU s", "{:.1f}", False), ("kappa_mean", "mean kappa", "{:.3f}", True), ("kappa_min", "least", "{:.3f}", True),
+                ("min_angle", "least angle", "{:.1f}", True), ("hausdorff", "distance", "{:.1e}", False),
+                ("self_intersections", "crossings", "{:.0f}", False), ("megabytes", "MB", "{:.0f}", False)]
+
+
+def summary(rows):
+    """Returns a line per program: on how many surfaces it is better or worse than mremesh, in what."""
+    ours = {r["surface"]: r for r in rows if r["program"] == "mremesh"}
+    lines = []
+    for name in dict.fromkeys(r["program"] for r in rows if r["program"] != "mremesh"):
+        theirs = [r for r in rows if r["program"] == name]
+        good = [r for r in theirs if "kappa_mean" in r]
+        words = []
+        for key, title, _, more in PAGE_COLUMNS:
+            pairs = [(r[key], ours[r["surface"]].get(key, math.nan)) for r in good if key in r]
+            better = sum(a > b if more else a < b for a, b in pairs)
+            worse = sum(a < b if more else a > b for a, b in pairs)
+            words.append(f"{title} {better} better, {worse} worse")
+        changed = sum(r.get("topology_same") not in ("same", True, 1) for r in good)
+        words += [f"{changed} with another topology"] * bool(changed)
+        words += [f"{len(theirs) - len(good)} without a result"] * (len(theirs) > len(good))
+        lines.append(f"- {name}, {len(theirs)} surfaces: {'; '.join(words)}.\n")
+    return "".join(lines)
+
+
+def page(args, words, rows):
+    """Returns the text of --page; of paths, only the names of files are in it."""
+    bare = [re.sub(r"[^ ='\"]*/", "", w) for w in words if w not in ("--page", args.page, "--bin", args.bin, "--json", args.json)]
+    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as f:
+        model = next((line.split(":")[1].strip() for line in f if line.startswith("model name")), "an unknown processor")
+    table = "| surface | in | program | out | " + " | ".join(c[1] for c in PAGE_COLUMNS) + " |\n"
+    table += "|---|--:|---|--:|" + "--:|" * len(PAGE_COLUMNS) + "\n"
+    for r in rows:
+        cells = [form.format(r[key]) if key in r and "kappa_mean" in r else "-" for key, _, form, _ in PAGE_COLUMNS]
+        made = r["triangles"] if "kappa_mean" in r else f"over {args.timeout:.0f} s" if r["status"] == -1 else "failed"
+        table += f"| {r['surface']} | {r['input_triangles']} | {r['program']} | {made} | {' | '.join(cells)} |\n"
+    busy = args.load > 0.5
+    return PAGE.format(command=shlex.join(["scripts/bench", "whole", *bare, "--page", "FILE"]),
+                       runs="One run" if args.runs == 1 else f"Median of {args.runs} runs", machine=model, summary=summary(rows), table=table,
+                       load=" The machine had other work, so that times may be off by half." if busy else "")
+
+
 def main(words):
     p = common.parser(__doc__)
     p.add_argument("--runs", type=int, default=5)
@@ -218,6 +278,7 @@ def main(words):
     p.add_argument("--no-gmsh", action="store_true")
     p.add_argument("--evaluator")
     p.add_argument("--svg")
+    p.add_argument("--page")
     p.add_argument("--timeout", type=float, default=600)
     p.add_argument("--slow", type=float, default=30)
     p.add_argument("--threads", type=int)
@@ -228,6 +289,7 @@ def main(words):
         if "=" not in peer:
             raise SystemExit(f"--peer {peer}: not NAME=COMMAND")
     rows = []
+    args.load = os.getloadavg()[0]  # of others
     with tempfile.TemporaryDirectory() as work:
         row = common.table(["surface", "in", "program", "out", *(c[1] for c in COLUMNS), "s", "ratio", "CPU s", "ratio", "MB", "ratio"])
         for name, path, count in common.surfaces(args, work):
@@ -251,13 +313,16 @@ def main(words):
                 if status == 0 and judged is None:
                     made = "failed: no mesh"
                 if judged:
-                    figures.update(judged)
+                    figures = {**judged, **figures}
                     made = program.made
                     cells = [form.format(figures.get(key, math.nan)) for key, _, form in COLUMNS]
                 row(name, triangles, program.name, made, *cells, f"{cost[0]:.2f}", f"{ratio[0]:.2f}", f"{cost[1]:.2f}",
                     f"{ratio[1]:.2f}", f"{cost[2]:.0f}", f"{ratio[2]:.2f}")
                 rows.append(figures)
     common.save(args, rows)
+    if args.page:
+        with open(args.page, "w", encoding="utf-8") as f:
+            f.write(page(args, words, rows))
     if args.svg:
         with open(args.svg, "w") as f:
             f.write(picture(rows))

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Memory and time of stages in shards, as jobs of their own.
+
+usage: scripts/bench shards [options]
+
+A surface of mshape is remeshed to as many triangles as it has. Each of mparam, mmesh2d, mrelax and mcheck is run at once, and in
+shards one after the other, on one thread. Rows: CPU seconds of all commands, and how much more that is than at once; the memory
+of the largest job, in MB and over that at once; the same of the commands that cut and join, which hold the stream; and whether
+the result is the same, to the byte (of mcheck: the mesh that it passes on).
+
+  --triangles N      of the surface (default 4000000, which takes 10 minutes of CPU)
+  --shards LIST      numbers of shards (default 1,4,16)
+  --programs LIST    of the four (default all)
+  --tile N           triangles of a tile of mrelax, and of a share of mcheck (default 250000)
+  --shape WORDS      what mshape makes (default 'tree --outlets 40')
+  --bin DIR          programs (default build/bin)
+  --json FILE        the same figures as JSON
+"""
+import filecmp
+import os
+import shutil
+import subprocess
+import tempfile
+
+from benches import common
+
+STAGES = ["clean", "topo", "feature", "partition", "multiscale", "param", "size", "lines", "mesh2d", "lift", "relax", "check"]
+
+
+class Steps:
+    """Runs commands, and sums their time and memory up by job or other."""
+
+    def __init__(self, folder):
+        self.folder, self.cpu, self.job, self.other = folder, 0, 0, 0
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def call(self, *words, job=False):
+        done = common.run([*words, "-q", "-j", "1"], watch=True)
+        if done.status:
+            raise SystemExit(f"{' '.join(words)}: {done.text.strip()}")
+        self.cpu += done.cpu
+        if job:
+            self.job = max(self.job, done.megabytes)
+        else:
+            self.other = max(self.other, done.megabytes)
+
+    def work(self, cut, program, result):
+        """Cuts by the command `cut`, whose stream goes to `result`, and runs the program on each shard; returns where to."""
+        into, out = self.path("in"), self.path("out")
+        for folder in (into, out):
+            shutil.rmtree(folder, ignore_errors=True)
+        os.mkdir(out)
+        self.call(*cut, "--into", into, "-o", result)
+        shards = sorted(os.listdir(into)) if os.path.isdir(into) else []
+        for shard in shards:
+            self.call(*program, os.path.join(into, shard), "-o", os.path.join(out, shard), job=True)
+            os.remove(os.path.join(into, shard))
+        return out if shards else None
+
+    def run(self, program, source, result, shards, tile):
+        """Runs a program in shards."""
+        count = ["--shards", str(shards)]
+        if program in ("mparam", "mmesh2d"):
+            out = self.work(["mshard", source, *count], [program], "/dev/null")
+            self.call("mshard", "--join", out, source, "-o", self.path("joined.ply"))
+            if program == "mparam":
+                self.call("mparam", "--resume", self.path("joined.ply"), "-o", result)
+            else:
+                os.replace(self.path("joined.ply"), result)
+            return
+        command = [program, "--tile", tile]
+        out = self.work([*command, source, *count], command, "/dev/null")
+        if out is None:
+            raise SystemExit(f"{program}: too few triangles for tiles of {tile}")
+        if program == "mrelax":
+            first = self.path("first")
+            shutil.rmtree(first, ignore_errors=True)
+            os.rename(out, first)
+            half = self.path("half.ply")
+            out = self.work([*command, "--join", first, source, *count], command, half)
+            shutil.rmtree(first)
+            source = half
+        self.call(*command, "--join", out, source, "-o", result)
+
+
+def main(words):
+    p = common.parser(__doc__)
+    p.add_argument("--triangles", type=int, default=4000000)
+    p.add_argument("--shards", default="1,4,16")
+    p.add_argument("--programs", default="mparam,mmesh2d,mrelax,mcheck")
+    p.add_argument("--tile", default="250000")
+    p.add_argument("--shape", default="tree --outlets 40")
+    args = common.parse(p, words)
+    rows = []
+    with tempfile.TemporaryDirectory() as work:
+        surface, keep = os.path.join(work, "in.ply"), os.path.join(work, "stages")
+        subprocess.run(["mshape", *args.shape.split(), "--triangles", str(args.triangles), "-q", "-o", surface], check=True)
+        row = common.table(["program", "shards", "CPU s", "more", "MB of a job", "share", "MB to cut and join", "same"])
+        done = "clean"
+        for program in args.programs.split(","):
+            at = STAGES.index(program[1:])
+            start = [] if done == "clean" else ["--from", done]
+            if done != STAGES[at]:
+                subprocess.run(["mremesh", "-q", "-j", "1", "--triangles", str(args.triangles), "--tile", args.tile, "--keep", keep,
+                                *start, "--to", STAGES[at - 1], surface], check=True)
+            source, result = (os.path.join(keep, f"{i + 1:02}-{STAGES[i]}.ply") for i in (at - 1, at))
+            tile = ["--tile", args.tile] if program == "mrelax" else []
+            whole = Steps(work)
+            whole.call(program, *tile, source, "-o", result, job=True)
+            row(program, "-", f"{whole.cpu:.1f}", "-", f"{whole.job:.0f}", "-", "-", "-")
+            done = STAGES[at + 1] if at + 1 < len(STAGES) else ""
+            for shards in map(int, args.shards.split(",")):
+                steps, joined = Steps(work), os.path.join(work, "result.ply")
+                steps.run(program, source, joined, shards, args.tile)
+                same = filecmp.cmp(result, joined, shallow=False)
+                row(program, shards, f"{steps.cpu:.1f}", f"{100 * (steps.cpu / whole.cpu - 1):.0f} %", f"{steps.job:.0f}",
+                    f"{steps.job / whole.job:.2f}", f"{steps.other:.0f}", "yes" if same else "NO")
+                rows.append({"program": program, "shards": shards, "cpu": steps.cpu, "cpu_at_once": whole.cpu, "megabytes": steps.job,
+                             "megabytes_at_once": whole.job, "megabytes_of_others": steps.other, "same": same})
+    common.save(args, rows)
+    return 0 if all(r["same"] for r in rows) else 1
