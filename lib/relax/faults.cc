@@ -104,20 +104,18 @@ void find_folds(const State& s, Known& known, Fault& found) {
   }
 }
 
-/// Climbs in a triangle with sides up to `length` from barycentric coordinates `at`, where the distance f is
-/// `most`, by ever shorter steps from `first` on, while it may still come to `limit`; returns the largest
-/// value, and sets where.
+/// Climbs on the reference from a place where the distance f is `most`, by ever shorter steps from `first`
+/// on, while it may still come to `limit`. Returns the largest value, and sets where.
 template <class F>
-double climb(std::array<double, 3>& at, double most, double first, double length, double limit, F f) {
+double climb(const SurfaceWalk& walk, Place& at, double most, double first, double limit, F f) {
   for (double step = first; step > rules::last_step * first; step /= 2) {
-    if (most + 2 * step * length < limit) break;  // f grows by no more than the way that is left
-    const std::array<double, 3> from = at;
-    for (int i = 0; i < 3; ++i)
-      for (int j : {next(i), prev(i)}) {
-        std::array<double, 3> b = from;
-        b[i] += step, b[j] -= step;
-        if (b[j] < 0) continue;
-        if (const double d = f(b); d > most) most = d, at = b;
+    if (most + 2 * step < limit) break;  // f grows by no more than the way that is left
+    const Place from = at;
+    const Vec3 p = walk.point(from);
+    for (const Vec3 way : {Vec3{step, 0, 0}, Vec3{0, step, 0}, Vec3{0, 0, step}})
+      for (const Vec3 target : {p + way, p - way}) {
+        const Place place = walk.closest(from, target, true);
+        if (const double d = f(place); d > most) most = d, at = place;
       }
   }
   return most;
@@ -196,20 +194,16 @@ void add_far_samples(const State& s, Samples& samples, std::vector<double>& dist
     const Sample& x = samples.list[from[i]];
     Sample& y = found[i];
     const double limit = bearable_distance(s, x.near, mean);
-    auto nearest = [&](const std::array<double, 3>& b) {
-      return samples.search.nearest(s.reference->walk.point({x.place.face, b[0], b[1], b[2]}), 1e300, 0);
+    auto nearest = [&](const Place& place) {
+      return samples.search.nearest(s.reference->walk.point(place), 1e300, 0);
     };
-    std::array<double, 3> at{x.place.b0, x.place.b1, x.place.b2};
-    y.distance = nearest(at).distance;
+    y.place = x.place;
+    y.distance = nearest(y.place).distance;
     if (y.distance < rules::nearly_far * limit || y.distance > limit) continue;
-    const auto& [a, b, c] = s.reference->surface.tris[x.place.face];
-    const std::vector<Vec3>& p = s.reference->surface.points;
-    const double length = std::max({norm(p[b] - p[a]), norm(p[c] - p[b]), norm(p[a] - p[c])});
-    const double first = std::min(1.0, 2 * s.target(s.mesh.tris[x.near][0]) / length);
-    y.distance = climb(at, y.distance, rules::first_step * first, length, limit,
-                       [&](const auto& place) { return nearest(place).distance; });
-    y.place = {x.place.face, at[0], at[1], at[2]};
-    const int near = nearest(at).place.face;
+    y.distance =
+        climb(s.reference->walk, y.place, y.distance, rules::first_step * s.target(s.mesh.tris[x.near][0]),
+              limit, [&](const Place& place) { return nearest(place).distance; });
+    const int near = nearest(y.place).place.face;
     if (y.distance > bearable_distance(s, near, mean)) y.near = near;
     y.time = s.clocks.now;
   }
