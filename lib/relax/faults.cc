@@ -334,8 +334,8 @@ void refine_at(State& s, const Fault& fault) {
     for (int v : around) improve_vertex(s, v);
 }
 
-/// How far a patch is from good: folds and pairs that intersect where the reference does not, and distances
-/// over what is bearable, there and from places of the reference.
+/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
+/// what is bearable, there and from places of the reference, and 1/kappa of needles.
 double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known) {
   double sum = 0;
   std::vector<std::pair<int, int>> pairs;
@@ -348,6 +348,9 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
     const double most = bearable_distance(s, t, mean);
     const double there = deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
     sum += rules::far_weight * std::max(0.0, there / most - 1);
+    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
+        k <= rules::bearable_kappa && !is_forced(s, t, k))
+      sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
     for (int u = 0; u < t; ++u)
       if (!s.mesh.dead(u) && overlap(box[t], box[u]) && triangles_intersect(mesh, u, t))

@@ -169,7 +169,7 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
       vertices.push_back((int)s.mesh.out.size());
       insert_vertex(s, h, patch.place[v], patch.points[v], patch.normal[v]);
     } else {
-      remove_vertex(s, h, vertices[e.gone]);
+      remove_vertex(s, h, vertices[e.end]);
     }
   }
   for (int i = 0; i < (int)vertices.size(); ++i) {

@@ -1,16 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/relax/repair.h"
 
+#include "lib/relax/junctions.h"
+
 namespace meshpipe {
 namespace {
+
+/// Slides an end v of h along its line to `at` times the length of h from the other, and holds it there.
+bool slide_end(State& s, int h, int v, double at) {
+  const Vec3 from = s.points[s.mesh.from(h) == v ? s.mesh.to(h) : s.mesh.from(h)];
+  const Place place = s.reference->walk.slide(s.place[v], from + at * (s.points[v] - from));
+  const Vec3 p = s.reference->walk.point(place);
+  const std::vector<CopyPlace> places = copies_at(s, v, place, p);
+  for (const CopyPlace& c : places) {
+    put(s, c.at, c.place, p, c.normal);
+    s.hold[c.at] = fixed;
+    mark_edited(s, c.at);
+  }
+  s.schedule.listed = false;
+  return !places.empty();
+}
 
 /// Makes a change if it may be made; else nothing is changed.
 bool try_edit(State& s, const Edit& edit, bool may_fold) {
   if (edit.kind == Edit::split)
     return split_edge(s, edit.h, edit.at) || (may_fold && split_edge(s, edit.h, edit.at, true));
+  if (edit.kind == Edit::slide) return slide_end(s, edit.h, edit.end, edit.at);
   if (edit.kind == Edit::collapse)
-    return (may_fold || (s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.gone)) &&
-           collapse_edge(s, edit.h, edit.gone, may_fold ? rules::at_fault : rules::on_trial);
+    return (may_fold || (s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.end)) &&
+           collapse_edge(s, edit.h, edit.end, may_fold ? rules::at_fault : rules::on_trial);
   const bool may = may_flip(s, edit.h);
   if (may) flip_edge(s, edit.h);
   return may;
@@ -29,6 +47,20 @@ void add_aligned_splits(const State& s, int t, bool all, std::vector<Edit>& edit
   }
 }
 
+/// Slides of the ends of two model edges that meet at a corner in a sharp angle: kappa of t is best if both
+/// are as far from the corner.
+void add_slides_at_corners(const State& s, int t, std::vector<Edit>& edits) {
+  const EditMesh& m = s.mesh;
+  for (int h = 3 * t; h < 3 * t + 3; ++h) {
+    const int corner = m.from(h), g = prev(h), ends[] = {m.to(h), m.from(g)};
+    if (!m.hard[h] || !m.hard[g] || s.hold[corner] != fixed) continue;
+    const Vec3 a = s.points[ends[0]] - s.points[corner], b = s.points[ends[1]] - s.points[corner];
+    if (angle(a, b) > rules::sharp_turn) continue;
+    if (s.hold[ends[0]] == slides) edits.push_back({Edit::slide, h, ends[0], norm(b) / norm(a)});
+    if (s.hold[ends[1]] == slides) edits.push_back({Edit::slide, g, ends[1], norm(a) / norm(b)});
+  }
+}
+
 /// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
 /// share a vertex with it.
 std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
@@ -42,6 +74,7 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
     }
   std::vector<Edit> edits;
   add_aligned_splits(s, t, all, edits);
+  add_slides_at_corners(s, t, edits);
   for (int h : halfedges) {
     edits.push_back({Edit::collapse, h, m.from(h)});
     edits.push_back({Edit::collapse, h, m.to(h)});

@@ -79,8 +79,9 @@ constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-br
 constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change
 constexpr int promising = 8, promising_pairs = 5;  // trials that go on, of about 100
 constexpr double promising_at_once = 0.3;          // of the trials go on after a sweep
-constexpr double least_piece = 0.02;               // of a segment: shorter pieces are needles themselves
-constexpr int rings = 2, thorough_rings = 3;       // of triangles in a patch
+constexpr double sharp_turn = 0.5;    // radians, between model edges: a needle unless both are as long
+constexpr double least_piece = 0.02;  // of a segment: shorter pieces are needles themselves
+constexpr int rings = 2, thorough_rings = 3;  // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
 constexpr int sweeps_to_settle = 3;
 constexpr int repair_rounds = 4;

@@ -48,10 +48,10 @@ struct Reference {
 
 /// A change of connectivity: of the edge of half-edge h.
 struct Edit {
-  enum Kind { flip, split, collapse } kind;
+  enum Kind { flip, split, collapse, slide } kind;
   int h;
-  int gone = -1;    ///< the vertex that a collapse takes out
-  double at = 0.5;  ///< where a split is tried, as in split_edge
+  int end = -1;     ///< the vertex that a collapse takes out, or that slides
+  double at = 0.5;  ///< where a split is tried, as in split_edge; how far a slide goes, see slide_end
 };
 
 /// Times at which vertices changed, by one clock: what has not changed is not tried again.

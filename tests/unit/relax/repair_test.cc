@@ -39,6 +39,27 @@ TEST(Repair, TheBestEditIsFoundAndAdopted) {
   EXPECT_NEAR(m.area(), 48, 1e-12);
 }
 
+//  a sharp corner a, where b is a corner as well and c is on a line
+//                  _____e
+//         ___c_----     |
+//  a_----------b--------d
+TEST(Repair, EndsOfLinesAtASharpCornerBecomeAsFarFromIt) {
+  Mesh mesh;
+  mesh.points = {{0, 0, 0}, {10, 0, 0}, {7, 1.4, 0}, {20, 0, 0}, {20, 4, 0}};
+  mesh.tris = {{0, 1, 2}, {1, 4, 2}, {1, 3, 4}};
+  Surface surface = surface_of(mesh);
+  surface.vertex.set("size", std::vector<double>(5, 10));
+  Drawn m(surface);
+  for (int v = 0; v < 5; ++v) m.s.hold[v] = v == 2 ? slides : fixed;
+  // what is split is not wanted here
+  auto by_corner = [](const State& s) {
+    return s.mesh.live == 3 ? 1 / kappa(s.points[0], s.points[1], s.points[2]) : 1e3;
+  };
+  const std::optional<State> best = repaired(m.s, {0, 1, 2}, true, {by_corner, true});
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(norm(best->points[2]), 10, 1e-9);
+}
+
 TEST(Repair, NoBadTriangleIsLeft) {
   Drawn m(drawn_surface(two_centers, eight));
   hold_rim(m.s);
