@@ -158,6 +158,12 @@ TEST(smooth, OpenEndsKeepTheirPlaneAndRadius) {
   }
 }
 
+TEST(smooth, TubesNeitherSwellNorShrinkNextToTheirEnds) {
+  Surface s = surface_of(tube(5, 12, false));
+  smooth(s, {});
+  for (const Vec3& p : s.points) EXPECT_NEAR(std::hypot(p.x, p.y), 0.5, 0.5e-3) << p.z;
+}
+
 TEST(smooth, EndsThatWobbleSlideAlongTheirPlane) {
   Surface s = open_voxel_tube(8);
   const auto loops = boundary_loops(opposite_halfedges(s.tris, (int)s.points.size()));
