@@ -164,6 +164,7 @@ void run(Io& io, Options& o) {
   } else {
     const double area = total_area(surface);
     const ModelSegments lines = read_model_edges(stream);
+    const Mesh before = surface;
     const std::vector<EndReport> done = treat_ends(surface, ends, o);
     report_plane(io, ends, done, o.trim > 0);
     report(io, ends, done, o.flatten);
@@ -171,7 +172,7 @@ void run(Io& io, Options& o) {
     // nothing that is known of the surface as it was holds; the number of triangles that stands for its size
     // grows with it
     stream.tables.clear();
-    write_model_edges(stream, lines);
+    write_model_edges(stream, segments_after_ends(lines, before, surface));
     for (const char* column : {"part", "origin"}) surface.face.erase(column);
     for (const char* column : {"ref_face", "b1", "b2", "kind", "line"}) surface.vertex.erase(column);
     if (stream.input_triangles > 0 && area > 0)

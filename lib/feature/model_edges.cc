@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/feature/model_edges.h"
 
+#include <algorithm>
+
 #include "lib/core/bvh.h"
+#include "lib/core/topology.h"
 
 namespace meshpipe {
 
@@ -41,11 +44,44 @@ ModelSegments moved_segments(const ModelSegments& segments, const std::vector<in
     if (i >= 0) used[i] = 1;
   for (int i = 0; i < static_cast<int>(used.size()); ++i)
     if (!used[i]) add(i, segments.points[segments.tris[i][0]], segments.points[segments.tris[i][1]]);
+  std::vector<std::pair<int, int>> ascending;
+  for (int h = 0; h < static_cast<int>(under_after.size()); ++h)
+    if (const int a = origin(after.tris, h), b = target(after.tris, h); under_after[h] >= 0 && a < b)
+      ascending.push_back({a, b});
+  std::sort(ascending.begin(), ascending.end());
   for (int h = 0; h < static_cast<int>(under_after.size()); ++h) {
     const int a = origin(after.tris, h), b = target(after.tris, h);
-    if (under_after[h] >= 0 && a < b) add(under_after[h], after.points[a], after.points[b]);
+    if (under_after[h] < 0) continue;
+    // of a border there may only be the half-edge that descends
+    if (a < b || !std::binary_search(ascending.begin(), ascending.end(), std::pair{b, a}))
+      add(under_after[h], after.points[a], after.points[b]);
   }
   return moved;
+}
+
+ModelSegments segments_after_ends(const ModelSegments& segments, const Mesh& before, const Mesh& after) {
+  auto same = [](Tri a, Tri b) {
+    std::sort(a.begin(), a.end()), std::sort(b.begin(), b.end());
+    return a == b;
+  };
+  const std::vector<int> under = segments_under(before, segments);
+  if (before.tris.size() <= after.tris.size() &&
+      std::equal(before.tris.begin(), before.tris.end(), after.tris.begin(), same))
+    return moved_segments(segments, under, {after.points, before.tris}, under);
+  const std::vector<int> opposite = opposite_halfedges(before.tris, static_cast<int>(before.points.size()));
+  std::vector<char> gone(segments.tris.size(), 0);
+  for (int h = 0; h < static_cast<int>(under.size()); ++h)
+    if (under[h] >= 0 && opposite[h] < 0) gone[under[h]] = 1;
+  ModelSegments kept;
+  kept.points = segments.points;
+  for (int i = 0; i < static_cast<int>(gone.size()); ++i) {
+    if (gone[i]) continue;
+    kept.tris.push_back(segments.tris[i]);
+    kept.tag.push_back(segments.tag[i]);
+    kept.ridge.push_back(segments.ridge[i]);
+    kept.required.push_back(segments.required[i]);
+  }
+  return kept;
 }
 
 }  // namespace meshpipe

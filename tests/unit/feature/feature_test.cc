@@ -255,3 +255,48 @@ TEST(Feature, TheRimOfSeveralRowsIsOneCrease) {
     EXPECT_GE(mark_features(s, options).crease_edges, step > 0 ? 20 : 12);
   }
 }
+
+namespace {
+
+// a square of two triangles, and its borders as segments with labels 1 to 4
+struct Framed {
+  Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  ModelSegments frame;
+  Framed() {
+    frame.points = square.points;
+    for (int i = 0; i < 4; ++i) frame.tris.push_back({i, (i + 1) % 4, (i + 1) % 4});
+    frame.tag = {1, 2, 3, 4};
+    frame.ridge = frame.required = {0, 0, 0, 0};
+  }
+};
+
+bool has_corner(const ModelSegments& segments, double x) {
+  return std::any_of(segments.points.begin(), segments.points.end(), [&](Vec3 p) { return p.x == x; });
+}
+
+}  // namespace
+
+TEST(ModelSegments, OfABorderMoveWithIt) {
+  const Framed f;
+  Mesh moved = f.square;
+  for (Vec3& p : moved.points) p = 2.0 * p;
+  const std::vector<int> under = segments_under(f.square, f.frame);
+  const ModelSegments after = moved_segments(f.frame, under, moved, under);
+  EXPECT_EQ(after.tag.size(), 4u) << "each once, also that from the last vertex to the first";
+  EXPECT_TRUE(has_corner(after, 2));
+  EXPECT_FALSE(has_corner(after, 1));
+}
+
+TEST(ModelSegments, OfRimsFollowTreatedEnds) {
+  const Framed f;
+  Mesh capped = f.square;  // inside out, with another triangle
+  for (Vec3& p : capped.points) p = 2.0 * p;
+  for (Tri& t : capped.tris) std::swap(t[1], t[2]);
+  capped.tris.push_back({0, 1, 3});
+  const ModelSegments moved = segments_after_ends(f.frame, f.square, capped);
+  EXPECT_EQ(moved.tag.size(), 4u);
+  EXPECT_TRUE(has_corner(moved, 2));
+  Mesh cut = f.square;
+  cut.tris.pop_back();
+  EXPECT_EQ(segments_after_ends(f.frame, f.square, cut).tag.size(), 0u);
+}
