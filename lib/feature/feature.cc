@@ -39,6 +39,7 @@ constexpr double long_chain = 5;   ///< mean edges of the input
 constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
 constexpr double elongated =
     1.5;  ///< mean edge over that of equal triangles: long edges are no measure of width
+constexpr double least_fading = 10;    ///< target lengths: of a crease that ends freely
 constexpr double short_rim = 0.5;      ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
 
@@ -186,28 +187,6 @@ void choose(Network& net, double strong, double weak) {
   for (int v : free_ends(net)) follow(net, v, weak);
 }
 
-/// Drops chains with a free end that are shorter than `least`.
-void prune(Network& net, double least) {
-  std::vector<int> ends = free_ends(net);
-  Chain chain;
-  while (!ends.empty()) {
-    const int v = ends.back();
-    ends.pop_back();
-    if (!net.free_end(v)) continue;
-    chain.clear();
-    int h = net.leaving(v, -1);
-    for (;;) {
-      chain.push_back(h);
-      const int end = net.to(h);
-      if (net.valence[end] != 2 || net.anchor[end]) break;
-      h = net.leaving(end, net.opposite[h]);
-    }
-    if (length(net, chain) >= least) continue;
-    for (int g : chain) net.set(g, 0);
-    if (net.free_end(net.to(h))) ends.push_back(net.to(h));
-  }
-}
-
 /// Returns the chains between corners and junctions, then the closed ones without any.
 std::vector<Chain> chains_of(const Network& net) {
   std::vector<Chain> all;
@@ -242,6 +221,39 @@ double roughness(const Network& net, const Chain& chain) {
     last = axis;
   }
   return chain.size() > 2 ? sum / (double)(chain.size() - 2) : 0;
+}
+
+/// Drops chains with a free end unless `keeps` says so.
+template <class Keeps>
+void prune(Network& net, Keeps keeps) {
+  std::vector<int> ends = free_ends(net);
+  Chain chain;
+  while (!ends.empty()) {
+    const int v = ends.back();
+    ends.pop_back();
+    if (!net.free_end(v)) continue;
+    chain.clear();
+    int h = net.leaving(v, -1);
+    for (;;) {
+      chain.push_back(h);
+      const int end = net.to(h);
+      if (net.valence[end] != 2 || net.anchor[end]) break;
+      h = net.leaving(end, net.opposite[h]);
+    }
+    if (keeps(chain)) continue;
+    for (int g : chain) net.set(g, 0);
+    if (net.free_end(net.to(h))) ends.push_back(net.to(h));
+  }
+}
+
+/// Is a chain that ends freely a crease that fades out, as where a groove runs into a curved face? Those of
+/// noise are short or rough.
+bool fades_out(const Network& net, const Chain& chain) {
+  double strong = 0;
+  for (int h : chain)
+    if (net.strong[h]) strong += net.length(h);
+  const double whole = length(net, chain);
+  return whole >= least_fading * net.size && strong > 0.5 * whole && roughness(net, chain) < smooth_turn;
 }
 
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
@@ -426,12 +438,12 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options, con
     const double strong = options.strong * degree, weak = options.weak * degree;
     choose(net, strong, weak);
     if (options.mode == FeatureOptions::automatic) {
-      prune(net, std::numeric_limits<double>::infinity());
+      prune(net, [&](const Chain& chain) { return fades_out(net, chain); });
       keep_designed(net, strong, weak,
                     options.again ? surface.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>());
       drop_small_pieces(net);
     } else {
-      prune(net, net.shortest);
+      prune(net, [&](const Chain& chain) { return length(net, chain) >= net.shortest; });
     }
   }
   std::vector<std::uint8_t> model(surface.tris.size(), 0);

@@ -29,8 +29,8 @@ struct FeatureReport {
 };
 
 /// Sets face column `model`: bit i of triangle t marks the edge from corner i to i+1 as a model edge, on both
-/// sides. Model edges are borders between patches (column `patch`) and creases; automatic mode keeps the
-/// creases of components that look designed (keep_designed) and drops open or short chains.
+/// sides. Model edges are borders between patches (column `patch`) and creases: in automatic mode those of
+/// components that look designed (keep_designed), without short chains and short or rough open ones.
 /// `before`: null, or the patches before some were merged; no crease follows a border that vanished unless it
 /// bends sharply. `given`: null, or per half-edge the number of a line that is a model edge in any mode, or
 /// -1. Throws: like opposite_halfedges.

@@ -148,13 +148,16 @@ TEST(Feature, WhatIsMadeOfPlanesIsDesignUnlessTheseAreSteps) {
   EXPECT_GT(mark_features(s, automatic).crease_edges, 2 * n);
 }
 
-TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyOnRequest) {
+TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyIfItIsLong) {
   // a ridge whose slopes flatten along j: sharp at j = 0, 30 degrees in the middle, none at the end
   auto fading = [](int i, int j) { return -std::abs(i - 10.0) * std::max(0.0, 1 - j / 20.0); };
   Surface s = terrain(20, 20, fading);
-  EXPECT_EQ(mark_features(s, automatic).crease_edges, 0);
   const int strong = mark_features(s, angles(40, 40)).crease_edges,
             weak = mark_features(s, angles(40, 20)).crease_edges;
+  FeatureOptions fine, coarse;
+  fine.size = 1, coarse.size = 3;
+  EXPECT_EQ(mark_features(s, fine).crease_edges, weak);
+  EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
   EXPECT_GT(strong, 8);
   EXPECT_GT(weak, strong + 2);
   EXPECT_LT(weak, 20);
