@@ -58,13 +58,13 @@ void coarsen(Mesh& mesh, int count, const std::vector<float>& fineness) {
   p = rearranged(p, number_by_first_use(mesh.tris, p.size()));
 }
 
-/// Multiplies the fineness of vertices near the triangles that cross in a coarser mesh of the same surface.
-void refine_at(const Mesh& coarse, const std::vector<std::pair<int, int>>& crossing, const Mesh& mesh,
+/// Multiplies the fineness of vertices near pairs of triangles of a coarser mesh of the same surface.
+void refine_at(const Mesh& coarse, const std::vector<std::pair<int, int>>& pairs, const Mesh& mesh,
                std::vector<float>& fineness) {
   constexpr double reach = 1.5;    // in longest edges of the pair: the triangles around it
   constexpr float gentler = 0.7f;  // twice as many triangles
   std::vector<char> near(mesh.points.size(), 0);
-  for (auto [s, t] : crossing) {
+  for (auto [s, t] : pairs) {
     Vec3 middle;
     for (int i = 0; i < 3; ++i)
       middle = middle + 1.0 / 6 * (coarse.points[coarse.tris[s][i]] + coarse.points[coarse.tris[t][i]]);
@@ -80,9 +80,25 @@ void refine_at(const Mesh& coarse, const std::vector<std::pair<int, int>>& cross
     if (near[v]) fineness[v] *= gentler;
 }
 
+/// Pairs of triangles that cross, and each triangle that faces inwards, where f falls, as one with itself.
+std::vector<std::pair<int, int>> find_faults(const Mesh& mesh, const Implicit& f) {
+  std::vector<std::pair<int, int>> faults = self_intersections(mesh);
+  std::vector<char> folded(mesh.tris.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (int t = 0; t < (int)folded.size(); ++t) {
+    const auto& [i, j, k] = mesh.tris[t];
+    const Vec3 a = mesh.points[i], b = mesh.points[j], c = mesh.points[k], normal = area_vector(a, b, c);
+    const Vec3 middle = 1.0 / 3 * (a + b + c), step = 0.05 * std::sqrt(norm(normal)) * normalized(normal);
+    folded[t] = f(middle + step) < f(middle - step);
+  }
+  for (int t = 0; t < (int)folded.size(); ++t)
+    if (folded[t]) faults.push_back({t, t});
+  return faults;
+}
+
 /// Marches f on the grid that is a quarter finer than `count` triangles need, but not coarser than `cell`,
 /// takes the surplus away again, which makes the triangles even, and smooths.
-/// Throws: GoalMissed if triangles cross, however small they are left in that place.
+/// Throws: GoalMissed if triangles cross or fold, however small they are left in that place.
 Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
                     const std::function<void(Mesh&)>& finish) {
   const Vec3 size = hi - lo;
@@ -101,12 +117,12 @@ Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
     Mesh coarse = mesh;
     coarsen(coarse, count, fineness);
     relax_on(coarse, f, 5);
-    const auto crossing = self_intersections(coarse);
-    if (crossing.empty()) return coarse;
+    const auto faults = find_faults(coarse, f);
+    if (faults.empty()) return coarse;
     if (round == most_rounds)
-      throw GoalMissed(std::to_string(crossing.size()) + " pairs of triangles cross; ask for more than " +
+      throw GoalMissed(std::to_string(faults.size()) + " triangles cross or fold; ask for more than " +
                        std::to_string(count) + " triangles");
-    refine_at(coarse, crossing, mesh, fineness);
+    refine_at(coarse, faults, mesh, fineness);
   }
 }
 

@@ -116,10 +116,16 @@ TEST(shape, EndsOfTreesAreRoundAlsoWhereTrianglesAreLarge) {
   }
 }
 
-TEST(shape, ForksOfTreesDoNotCrossThemselves) {
-  for (int outlets : {59, 64, 86, 97}) {
+TEST(shape, TreesNeitherCrossThemselvesNorFold) {
+  for (int outlets : {59, 64, 85, 97}) {
     const Mesh m = branching_tree(0, outlets, 0.8, 25000, 1);
     EXPECT_TRUE(self_intersections(m).empty()) << outlets;
+    const std::vector<int> opposite = opposite_halfedges(m.tris, (int)m.points.size());
+    for (int h = 0; h < (int)opposite.size(); ++h) {
+      if (opposite[h] < 0) continue;
+      const Vec3 a = area_vector(m, h / 3), b = area_vector(m, opposite[h] / 3);
+      ASSERT_GT(dot(a, b), -0.7 * norm(a) * norm(b)) << outlets;
+    }
     EXPECT_NEAR(m.tris.size(), 25000, 60) << outlets;
     expect_topology(m, 0, outlets);
   }
