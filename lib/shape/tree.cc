@@ -98,7 +98,7 @@ std::vector<std::pair<int, int>> find_faults(const Mesh& mesh, const Implicit& f
 
 /// Marches f on the grid that is a quarter finer than `count` triangles need, but not coarser than `cell`,
 /// takes the surplus away again, which makes the triangles even, and smooths.
-/// Throws: GoalMissed if triangles cross or fold, however small they are left in that place.
+/// Throws: GoalMissed if triangles cross, however small they are left in that place.
 Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
                     const std::function<void(Mesh&)>& finish) {
   const Vec3 size = hi - lo;
@@ -111,16 +111,18 @@ Mesh march_to_count(const Implicit& f, Vec3 lo, Vec3 hi, double cell, int count,
   finish(mesh);
   relax_on(mesh, f, 2);
   // triangles as large as a tube is wide may cross in its forks: there they are left smaller
-  constexpr int most_rounds = 10;
+  constexpr int most_rounds = 10, rounds_for_folds = 5;  // some are cut so, with all corners in the plane
   std::vector<float> fineness(mesh.points.size(), 1);
   for (int round = 0;; ++round) {
     Mesh coarse = mesh;
     coarsen(coarse, count, fineness);
     relax_on(coarse, f, 5);
     const auto faults = find_faults(coarse, f);
-    if (faults.empty()) return coarse;
+    const bool crosses =
+        std::any_of(faults.begin(), faults.end(), [](auto p) { return p.first != p.second; });
+    if (faults.empty() || (round >= rounds_for_folds && !crosses)) return coarse;
     if (round == most_rounds)
-      throw GoalMissed(std::to_string(faults.size()) + " triangles cross or fold; ask for more than " +
+      throw GoalMissed(std::to_string(faults.size()) + " pairs of triangles cross; ask for more than " +
                        std::to_string(count) + " triangles");
     refine_at(coarse, faults, mesh, fineness);
   }
