@@ -140,7 +140,8 @@ Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& ref
   t.triangles = boxes[tile];
   take_mesh(t, whole, at_vertex);
   if (!others.start.empty())
-    t.others = part_of(whole.mesh, {&others.row[others.start[tile]], &others.row[others.start[tile + 1]]});
+    t.others = part_of(whole.mesh,
+                       {others.row.data() + others.start[tile], others.row.data() + others.start[tile + 1]});
   for_rows(faces, tile, [&](int f) { t.faces.push_back(f); });
   take_slice(t, reference, corner);
   return t;
