@@ -146,11 +146,10 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
       gone[u] = 1;
   }
   drop_fins(r, points, sheet, gone);
-  if (!solids)
-    for (char& s : sheet) {
-      if (s == second) gone[&s - sheet.data()] = 1;
-      s = single;
-    }
+  if (!solids) {
+    for (std::size_t t = 0; t < sheet.size(); ++t) gone[t] |= sheet[t] == second;
+    sheet.assign(sheet.size(), single);
+  }
   if (sheets == CleanOptions::split) return 0;
   const std::vector<Quad> quads = find_quads(r, points);
   for (std::size_t i = 1; i < quads.size(); ++i) {
