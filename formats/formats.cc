@@ -6,6 +6,7 @@
 #include "formats/foreign/abaqus.h"
 #include "formats/foreign/geo.h"
 #include "formats/foreign/gts.h"
+#include "formats/foreign/gzip.h"
 #include "formats/foreign/inria.h"
 #include "formats/foreign/msh.h"
 #include "formats/foreign/nastran.h"
@@ -21,16 +22,6 @@
 #include "lib/core/error.h"
 
 namespace meshpipe {
-namespace {
-
-/// Guesses what bytes are that match no format, for the message.
-std::string guess(std::string_view bytes) {
-  if (bytes.starts_with("\x1f\x8b")) return "; it is compressed: gzip -dc gives the file";
-  if (std::string size = binary_stl_mismatch(bytes); !size.empty()) return "; " + size;
-  return "";
-}
-
-}  // namespace
 
 const std::vector<Reader>& readers() {
   // binary STL comes first: it is recognized by its size, and its first bytes may be anything
@@ -82,13 +73,19 @@ const std::vector<Writer>& writers() {
 }
 
 Stream read_any(std::string_view bytes, const std::string& where) {
+  if (is_gzip(bytes) && !is_stl(bytes)) {
+    const std::string file = unzip(bytes, where);
+    if (is_gzip(file)) throw BadInput(where + ":1: the gzip file holds another one");
+    return read_any(file, where);
+  }
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte-order mark of UTF-8
   for (const Reader& r : readers())
     if (r.matches(bytes)) return r.read(bytes, where);
   std::string known;
   for (const Reader& r : readers())
     if (r.matches != is_odd_stl) known += std::string(known.empty() ? "" : ", ") + r.format;
-  throw BadInput(where + ":1: none of the known formats (" + known + ")" + guess(bytes));
+  const std::string size = binary_stl_mismatch(bytes);
+  throw BadInput(where + ":1: none of the known formats (" + known + ")" + (size.empty() ? "" : "; " + size));
 }
 
 std::string extension_of(const std::string& path) {

@@ -10,9 +10,9 @@
 
 namespace meshpipe {
 
-/// Reads any known format, the stream included. Foreign meshes come as they are in the file, with polygons
-/// triangulated, face column `patch` and its names; only STL, which does not number its vertices, is welded.
-/// Throws: BadInput with the place in the file.
+/// Reads any known format, the stream included, also compressed by gzip. Foreign meshes come as they are in
+/// the file, with polygons triangulated, face column `patch` and its names; only STL, which does not number
+/// its vertices, is welded. Throws: BadInput with the place in the file.
 Stream read_any(std::string_view bytes, const std::string& where);
 
 /// Returns ".stl" for "a/part.STL": in lower case; empty if the name has no dot.

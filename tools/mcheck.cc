@@ -5,6 +5,7 @@
 
 #include "formats/stream/check_tables.h"
 #include "lib/check/check.h"
+#include "lib/core/triangle_count.h"
 #include "tools/check_shards.h"
 #include "tools/common.h"
 #include "tools/compare.h"
@@ -35,15 +36,16 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   io.report["failed"] = failures_json(failures);
 }
 
-/// Writes the result with sizes that may meet the contract. Returns whether any size changed: if not, nothing
-/// is written.
-bool write_refined(const Io& io, const Stream& stream, const std::string& file, std::vector<double> size) {
-  if (size == stream.surface.vertex.get<double>("size")) return false;
+/// Writes the result with sizes that may meet the contract. Returns how many triangles they ask for: 0 if no
+/// size changed, then nothing is written.
+double write_refined(const Io& io, const Stream& stream, const std::string& file, std::vector<double> size) {
+  if (size == stream.surface.vertex.get<double>("size")) return 0;
+  const double triangles = count_for_size(stream.surface, size);
   Stream refined;
   static_cast<Mesh&>(refined.surface) = stream.surface;
   refined.surface.vertex.set("size", std::move(size));
   io.write_to(file, refined);
-  return true;
+  return triangles;
 }
 
 void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {

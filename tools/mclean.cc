@@ -17,7 +17,7 @@ using namespace meshpipe;
 namespace {
 
 struct Options : CleanOptions {
-  double spikes = 0;  ///< extents of the neighbors; 0: none are moved
+  double spikes = 1000;  ///< extents of the neighbors, more than any needle has; 0: none are moved
   std::string within = "auto", most = "all", how = "auto", resolving = "none", data, offending;
 };
 
@@ -184,8 +184,8 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"none", "outer", "all"}));
   app.add_option("--drop-spikes", o.spikes,
                  "move vertices farther from all their neighbors than R times the extent of these among "
-                 "them")
-      ->check(positive_number())
+                 "them (default 1000; 0: none)")
+      ->check(CLI::NonNegativeNumber)
       ->type_name("R");
   app.add_option("--culprits", o.offending, "write the offending triangles to this file")
       ->type_name("FILE")

@@ -8,6 +8,7 @@
 #include "formats/foreign/vtk_legacy.h"
 #include "formats/stream/line_tables.h"
 #include "formats/stream/region_tables.h"
+#include "lib/core/bvh.h"
 #include "lib/core/number.h"
 #include "tools/common.h"
 
@@ -16,7 +17,8 @@ using namespace meshpipe;
 namespace {
 
 struct Options {
-  bool charts = false, surface = false, polydata = false;
+  bool charts = false, surface = false, polydata = false, center = false;
+  double scale = 1;
   std::string color, sol, feature_edges, regions;
 };
 
@@ -84,6 +86,21 @@ void strip(Stream& stream) {
   });
 }
 
+/// Moves the middle of the bounding box to the origin, and scales, as asked. Throws: NotAdmissible for a
+/// stream of the chain, whose tables have places of their own.
+void place(Stream& stream, const Options& o) {
+  if (!o.center && o.scale == 1) return;
+  if (!stream.history.empty() && !o.surface)
+    throw NotAdmissible("--scale and --center are for surfaces before mclean, or with --surface");
+  Mesh& mesh = stream.surface;
+  if (mesh.points.empty()) return;
+  Vec3 low = mesh.points[0], high = low;
+  for (const Vec3& p : mesh.points) low = lower(low, p), high = upper(high, p);
+  // halves: the sum of two coordinates may be infinite
+  const Vec3 from = o.center ? 0.5 * low + 0.5 * high : Vec3{};
+  for (Vec3& p : mesh.points) p = o.scale * (p - from);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -111,6 +128,10 @@ int main(int argc, char** argv) {
             ->check([](const std::string& list) { return list.empty() ? "expected all or labels" : ""; })
             ->type_name("all|L,L");
         app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
+        app.add_option("--scale", o.scale, "multiply the coordinates by this")
+            ->check(positive_number())
+            ->type_name("F");
+        app.add_flag("--center", o.center, "first move the middle of the bounding box to the origin");
         app.add_flag("--surface", o.surface, "leave out all except vertices, faces, patches and colors");
       },
       [&](Io& io) {
@@ -122,6 +143,7 @@ int main(int argc, char** argv) {
         if (!o.feature_edges.empty())
           Io::write_file(o.feature_edges, write_feature_edges(stream, o.feature_edges));
         if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
+        place(stream, o);
         if (o.charts) flatten(stream);
         if (!o.color.empty()) color_by(stream.surface, o.color);
         if (!o.regions.empty()) stream = region_boundaries(stream, regions);

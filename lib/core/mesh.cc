@@ -133,13 +133,17 @@ void expect_measurable(const Mesh& mesh) {
   for (const Vec3& p : mesh.points) of_points.add(p);
   if (of_points.far <= most && of_points.size() >= least) return;
   const Extent e = extent_of(mesh);
-  char text[128];
+  char text[160];
   if (e.far > most)
-    std::snprintf(text, sizeof text, "a coordinate of %g is too large to compute with, the limit is %g",
-                  e.far, most);
+    std::snprintf(
+        text, sizeof text,
+        "a coordinate of %g is too large to compute with, the limit is %g; try mconvert --scale 1e%d", e.far,
+        most, -(int)std::log10(e.far));
   else if (e.size() > 0 && e.size() < least)
-    std::snprintf(text, sizeof text, "a surface of size %g is too small to compute with, the limit is %g",
-                  e.size(), least);
+    std::snprintf(
+        text, sizeof text,
+        "a surface of size %g is too small to compute with, the limit is %g; try mconvert --scale 1e%d",
+        e.size(), least, -(int)std::log10(e.size()));
   else
     return;
   throw NotAdmissible(text);

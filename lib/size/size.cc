@@ -547,11 +547,11 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
     const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     const double spacing = std::nextafter(far, HUGE_VAL) - far;
     if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
-    throw Informed<GoalMissed>("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
-                                   ", but coordinates there are " + shown(spacing) +
-                                   " apart, and sizes of at least " + shown(least_spacings * spacing) +
-                                   " are expected; move the surface to the origin, or ask for larger sizes",
-                               sizes_from(2 * least_spacings * spacing));
+    throw Informed<GoalMissed>(
+        "vertex " + std::to_string(v) + " has size " + shown(size[v]) + ", but coordinates there are " +
+            shown(spacing) + " apart, and sizes of at least " + shown(least_spacings * spacing) +
+            " are expected; move the surface to the origin by mconvert --center, or ask for larger sizes",
+        sizes_from(2 * least_spacings * spacing));
   }
 }
 

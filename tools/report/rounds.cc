@@ -58,11 +58,12 @@ std::vector<double> numbers_in(std::string_view verdict, const std::string& key)
   return numbers;
 }
 
-bool has_outgrown(std::string_view verdict, double triangles) {
-  const std::vector<double> before = numbers_in(verdict, "triangles");
-  if (before.empty()) return false;
-  const double later = std::accumulate(before.begin() + 1, before.end(), triangles);
-  return later > most_growth * std::max(before[0], small_result);
+bool has_outgrown(std::string_view verdict, double triangles, double next) {
+  std::vector<double> rounds = numbers_in(verdict, "triangles");
+  rounds.push_back(triangles);
+  const double later = std::accumulate(rounds.begin() + 1, rounds.end(), 0.0);
+  const double most = most_growth * std::max(rounds[0], small_result);
+  return later > most || later + next > most_refined_growth * most;
 }
 
 bool another_round(const std::vector<Score>& rounds, int most) {
@@ -84,8 +85,11 @@ bool another_round(const std::vector<Score>& rounds, int most) {
 }
 
 bool is_repeated(std::string_view verdict, const Outcome& outcome) {
-  if (!outcome.refined || outcome.failures.empty()) return false;
-  if (!outcome.bounded_distance && has_outgrown(verdict, outcome.triangles)) return false;
+  if (!(outcome.refined > 0) || outcome.failures.empty()) return false;
+  if (outcome.bounded_distance
+          ? outcome.refined > std::max(most_refined, most_refined_at_once * outcome.triangles)
+          : has_outgrown(verdict, outcome.triangles, outcome.refined))
+    return false;
   std::vector<Score> rounds = scores_in(verdict);
   rounds.push_back(score_of(outcome.failures[0]).value_or(Score{}));
   return another_round(rounds, outcome.bounded_distance ? most_rounds_for_distance : most_rounds);

@@ -24,7 +24,7 @@ struct Outcome {
   std::vector<Failure> failures;  ///< in the order of the contract
   double mean_size = 0;           ///< of the result, see Findings
   double triangles = 0;           ///< of the result
-  bool refined = false;           ///< were sizes written that may meet the contract?
+  double refined = 0;  ///< triangles that sizes which may meet the contract ask for; 0: none were written
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
 
@@ -34,6 +34,9 @@ constexpr int most_rounds = 4, most_rounds_for_distance = 6;
 /// No other round starts once those after the first have made this many times its triangles (or times
 /// `small_result`, where that is more): sizes that fall and fall do not help.
 constexpr double most_growth = 2, small_result = 15000;
+/// Nor if refined sizes ask for this many times more; for a distance, for this many triangles, and for
+/// several times those that there are.
+constexpr double most_refined_growth = 2, most_refined = 1e6, most_refined_at_once = 4;
 /// The verdicts of this many rounds keep the number of triangles asked for, so that two rounds aim at it;
 /// later ones give it up: it stands in the way of smaller sizes.
 constexpr int rounds_of_count = 1;
@@ -54,8 +57,8 @@ std::vector<Score> scores_in(std::string_view verdict);
 std::vector<double> numbers_in(std::string_view verdict, const std::string& key);
 
 /// Returns whether this many triangles, added to those of the rounds in a verdict's text, are too many for
-/// another round.
-bool has_outgrown(std::string_view verdict, double triangles);
+/// another round, which makes `next` more of them.
+bool has_outgrown(std::string_view verdict, double triangles, double next);
 
 /// Returns whether the last of these rounds is worth another. `most`: how many there may be.
 bool another_round(const std::vector<Score>& rounds, int most);

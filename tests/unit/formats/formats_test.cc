@@ -173,7 +173,7 @@ TEST(Formats, AnUnknownExtensionIsRefused) {
   EXPECT_THROW(write_as(two_patches(), "dir.stl/a", false), BadUsage);
   EXPECT_PRED1(names_a_place, failure("hello\n"));
   EXPECT_PRED1(names_a_place, failure(""));
-  EXPECT_NE(failure("\x1f\x8b\x08").find("compressed"), std::string::npos);
+  EXPECT_PRED1(names_a_place, failure("\x1f\x8b\x08"));
 }
 
 TEST(Stl, BinaryIsToldByItsSizeNotItsFirstWord) {

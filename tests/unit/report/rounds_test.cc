@@ -12,7 +12,7 @@ Outcome missed(const std::string& requirement, double value) {
   o.program = "mcheck";
   o.message = "contract missed";
   o.failures = {{requirement, "fact", value, 0.1, 12, {0, 1, 2}}};
-  o.refined = true;
+  o.refined = 1e4;
   return o;
 }
 
@@ -80,7 +80,7 @@ TEST(rounds, requirements_without_a_score_go_on_until_the_rounds_are_over) {
 
 TEST(rounds, without_refined_sizes_there_is_no_other) {
   Outcome o = missed("kappa", 0.01);
-  o.refined = false;
+  o.refined = 0;
   EXPECT_FALSE(is_repeated("", o));
 }
 
@@ -113,12 +113,20 @@ TEST(Rounds, TrianglesMayNotMultiply) {
     return o;
   };
   const std::string one = verdict_block("", round(2e4));
-  EXPECT_FALSE(has_outgrown("", 1e9)) << "the first round";
-  EXPECT_FALSE(has_outgrown(one, 4e4));
-  EXPECT_TRUE(has_outgrown(one, 4.1e4));
+  EXPECT_FALSE(has_outgrown("", 1e6, 4e6)) << "the first round";
+  EXPECT_FALSE(has_outgrown(one, 4e4, 4e4));
+  EXPECT_TRUE(has_outgrown(one, 4.1e4, 1));
   EXPECT_FALSE(is_repeated(one, round(4.1e4)));
-  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(2.1e4)), 2e4)) << "both together";
-  EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 2 * small_result)) << "cheap in any case";
+  EXPECT_TRUE(has_outgrown("", 2e4, 9e4)) << "by the sizes of the next";
+  Outcome far = missed("hausdorff", 0.01);
+  far.bounded_distance = true, far.triangles = 1e5, far.refined = 9e5;
+  EXPECT_TRUE(is_repeated("", far));
+  far.refined = 1.1e6;
+  EXPECT_FALSE(is_repeated("", far));
+  far.triangles = 3e5;
+  EXPECT_TRUE(is_repeated("", far)) << "not many for what it has";
+  EXPECT_TRUE(has_outgrown(one + verdict_block(one, round(2.1e4)), 2e4, 1)) << "both together";
+  EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 2 * small_result, 1)) << "cheap in any case";
 }
 
 }  // namespace meshpipe
