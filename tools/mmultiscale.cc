@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmultiscale: cut every part of large aspect ratio in two, through the levels of its Laplace maps.
 #include <filesystem>
-#include <numeric>
 
 #include "formats/stream/stages.h"
+#include "lib/core/cut.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/multiscale/multiscale.h"
@@ -111,11 +111,7 @@ int main(int argc, char** argv) {
       throw;
     }
     if (options.keep_maps) draw_levels(directory, cuts);
-    if (!stream.surface.face.has("origin")) {
-      std::vector<int> same(stream.surface.tris.size());
-      std::iota(same.begin(), same.end(), 0);
-      stream.surface.face.set("origin", std::move(same));
-    }
+    name_origins(stream.surface);
     io.report["parts"] = n_parts;
     report_cuts(io, options, cuts, topology);
     report_interfaces(io, n_parts,

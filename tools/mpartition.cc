@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app.add_option(
            "--max-faces", options.max_faces,
-           "no part has more triangles than this (default 100000 on surfaces of more than 300000, else none)")
+           "no part has more triangles than this (default 50000 on surfaces of more than 300000, else none)")
         ->check(CLI::Range(100, 2147483647))
         ->type_name("N");
     app.add_option("--method", method,

@@ -293,11 +293,7 @@ int cut(const CutSurface& connected, const std::vector<signed char>& sign, const
   Surface& surface = connected.surface;
   const bool has_opposite = !connected.opposite.empty();
   const int n_tris = (int)surface.tris.size(), n_points = (int)surface.points.size();
-  if (!surface.face.has("origin")) {
-    std::vector<int> identity(n_tris);
-    std::iota(identity.begin(), identity.end(), 0);
-    surface.face.set("origin", std::move(identity));
-  }
+  name_origins(surface);
   const std::vector<int> cut = insert_vertices(surface, active, sign, crossing_at);
 
   std::vector<int> changed;
@@ -320,6 +316,13 @@ int cut(const CutSurface& connected, const std::vector<signed char>& sign, const
 }
 
 }  // namespace
+
+void name_origins(Surface& surface) {
+  if (surface.face.has("origin")) return;
+  std::vector<int> identity(surface.tris.size());
+  std::iota(identity.begin(), identity.end(), 0);
+  surface.face.set("origin", std::move(identity));
+}
 
 int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
                         std::vector<int>& side, double snap) {

@@ -13,6 +13,9 @@ namespace meshpipe {
 // (added as the identity where missing) keeps the triangle of the cleaned input. The remaining quadrilaterals
 // are split by the diagonal with the better smallest angle in space.
 
+/// Adds face column `origin`, each triangle's own number, unless there is one.
+void name_origins(Surface& surface);
+
 /// Splits the active triangles (active[t] != 0; empty: all) along the zero level of `field` (per vertex,
 /// linear on triangles); inactive neighbors are split conformingly. side[t] becomes 0 (field < 0) or 1 for
 /// the pieces of active triangles, -1 for others. A crossing within `snap` (a fraction of the edge) of a

@@ -10,7 +10,7 @@ namespace meshpipe::limit {
 
 /// Triangles of a component above which its parts are bounded, and that bound: solves stay near linear, and
 /// there is work for all threads. Effect: none below 300000 triangles.
-constexpr int large_component = 300000, faces_of_large = 100000;
+constexpr int large_component = 300000, faces_of_large = 50000;
 /// Cuts within cuts of one part, after which it counts as one that does not get shorter. Effect: 4 levels
 /// are the most, on 2 surfaces.
 constexpr int cut_depth = 12;

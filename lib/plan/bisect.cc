@@ -8,6 +8,7 @@
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
+#include "lib/core/neighborhood.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
@@ -158,10 +159,13 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
 }
 
 int cut_along_limbs(Surface& surface, int part, int n_parts) {
-  // a surface of which only this part has a label, and a limit just below its aspect ratio; the labels of all
-  // go through the cut in a column of their own
-  Surface work = surface;
-  std::vector<int> only = work.face.get<int>("part");
+  // the neighborhood, of which only this part has a label, and a limit just below its aspect ratio; the
+  // labels of all go through the cut in a column of their own
+  name_origins(surface);
+  std::vector<int> unknown, only = surface.face.get<int>("part");
+  Neighborhood near = take_neighborhood(surface, unknown, only, part);
+  Surface& work = near.surface;
+  only = work.face.get<int>("part");
   work.face.set("whole", only);
   for (int& label : only) label = label == part ? 0 : -1;
   MultiscaleOptions options;
@@ -181,7 +185,7 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
     if (piece[t] > 0) label[t] = n_parts + piece[t] - 1;
   work.face.set("part", std::move(label));
   work.face.erase("whole");
-  surface = std::move(work);
+  put_back(near, surface, unknown);
   return n_parts + pieces - 1;
 }
 

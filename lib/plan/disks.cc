@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "lib/core/cut.h"
 #include "lib/core/error.h"
 #include "lib/core/progress.h"
 #include "lib/partition/partition.h"
@@ -104,11 +105,7 @@ int partition_to_disks(Surface& surface, const PartitionOptions& options, std::v
   }
   for (std::size_t t = 0; t < part.size(); ++t) part[t] = first[component[t]] + std::max(part[t], 0);
   surface.face.set("part", std::move(part));
-  if (!surface.face.has("origin")) {
-    std::vector<int> identity(surface.tris.size());
-    std::iota(identity.begin(), identity.end(), 0);
-    surface.face.set("origin", std::move(identity));
-  }
+  name_origins(surface);
   if (n_parts > n_components) {  // else each maps to the plane as it is
     straighten_interfaces({surface, opposite}, n_parts, limit::snap, options.max_faces);
     if (std::string fault = part_fault({surface, opposite}, surface.face.get<int>("part")); !fault.empty())

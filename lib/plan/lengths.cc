@@ -6,6 +6,7 @@
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
+#include "lib/core/neighborhood.h"
 #include "lib/core/progress.h"
 #include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
@@ -30,7 +31,7 @@ struct Task {
   double share;  ///< of the work, as predicted
 };
 
-/// A surface with one part cut in two.
+/// A neighborhood with its part cut in two.
 struct Halves {
   Surface surface;
   std::vector<int> opposite, side;
@@ -53,10 +54,11 @@ void measure_halves(Halves& halves) {
     halves.loops = halves.is[0].loops + halves.is[1].loops;
 }
 
-/// Cuts the active triangles, those of the part, along the zero level of its field, pulled straight. A line
-/// that is snapped to vertices may touch itself there: then it is snapped less, until the halves have no more
-/// loops than expected. On a few coarse triangles it may be pulled off the part: at last it stays as it is.
-Halves split(const Work& work, const ConnectedPart& part, const std::vector<double>& field,
+/// Cuts the active triangles of a neighborhood, those of the part, along the zero level of its field, pulled
+/// straight. A line that is snapped to vertices may touch itself there: then it is snapped less, until the
+/// halves have no more loops than expected. On a few coarse triangles it may be pulled off the part: at last
+/// it stays as it is.
+Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
   struct Pull {
     double snap;
@@ -68,8 +70,8 @@ Halves split(const Work& work, const ConnectedPart& part, const std::vector<doub
   for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;
     pull_straight({part, part.opposite}, line, hold, snap, sweeps);
-    Halves trial{work.surface, work.opposite, {}, {}};
-    cut_along_line({trial.surface, trial.opposite}, in_whole(line, part.vertex, work.surface.points.size()),
+    Halves trial{near.surface, near.opposite, {}, {}};
+    cut_along_line({trial.surface, trial.opposite}, in_whole(line, part.vertex, near.surface.points.size()),
                    active, trial.side);
     measure_halves(trial);
     if (trial.loops == 0 || (best.loops > 0 && trial.loops >= best.loops)) continue;
@@ -110,11 +112,11 @@ void expect_single_cut(const MultiscaleOptions& options, const MultiscaleCut& cu
 }
 
 /// The triangles of one part with its connectivity; marks them in `active`.
-ConnectedPart take_part(const Work& work, int p, std::vector<char>& active) {
-  const std::vector<int>& label = work.surface.face.get<int>("part");
+ConnectedPart take_part(const Neighborhood& near, int p, std::vector<char>& active) {
+  const std::vector<int>& label = near.surface.face.get<int>("part");
   active.resize(label.size());
   for (std::size_t t = 0; t < label.size(); ++t) active[t] = label[t] == p;
-  return select_part({work.surface, work.opposite}, label, p);
+  return select_part({near.surface, near.opposite}, label, p);
 }
 
 /// Cuts one part in two; adds the tasks of halves that are still too long. Nothing if it cannot be cut.
@@ -123,7 +125,9 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   const MultiscaleOptions& options = work.options;
   const bool single = options.method == CutMethod::maxcut;
   std::vector<char> active;
-  const ConnectedPart part = take_part(work, task.part, active);
+  Neighborhood near =
+      take_neighborhood(work.surface, work.opposite, work.surface.face.get<int>("part"), task.part);
+  const ConnectedPart part = take_part(near, task.part, active);
   MultiscaleCut cut;
   cut.part = task.part;
   cut.halves[0] = task.part;
@@ -136,16 +140,17 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   cut.length = expected.length / diagonal(part);
   if (options.keep_maps) cut.maps = std::move(maps);
   Halves made;
-  if (expected.valid) made = split(work, part, field, active, expected.loops);
+  if (expected.valid) made = split(near, part, field, active, expected.loops);
   if (work.cuts && (single || made.loops > 0)) work.cuts->push_back(cut);
   if (single) expect_single_cut(options, cut, made, part.tris.size());
   if (made.loops == 0) return;
   const int other = work.parts();
-  work.surface = std::move(made.surface);
-  work.opposite = std::move(made.opposite);
-  std::vector<int>& label = work.surface.face.get<int>("part");
+  near.surface = std::move(made.surface);
+  near.opposite = std::move(made.opposite);
+  std::vector<int>& label = near.surface.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)
     if (made.side[t] == 1) label[t] = other;
+  put_back(near, work.surface, work.opposite);
   work.is.resize(other + 1);
   work.was_cut.resize(other + 1, 0);
   add_progress(0.3 * once * task.share);
@@ -169,6 +174,8 @@ void join_parts(Work& work) {
   if (*std::min_element(label.begin(), label.end()) < 0) return;  // only some of the parts are given
   const int n_before = work.parts();
   const double max_aspect = work.options.max_aspect;
+  const int faces = (int)s.tris.size(),
+            most_faces = faces > limit::large_component ? limit::faces_of_large : faces;
   const Connectivity mesh{s, work.opposite, model_of(s)};
   Joiner joiner(mesh, label, find_regions(mesh, label, n_before));
   std::vector<int> becomes(n_before);
@@ -181,7 +188,7 @@ void join_parts(Work& work) {
         }))
       return false;
     const Region r = joiner.joined(a, b);
-    if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect) return false;
+    if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect || r.faces > most_faces) return false;
     std::vector<int> both(label.size());
     for (std::size_t t = 0; t < both.size(); ++t) both[t] = label[t] == a || label[t] == b ? 0 : -1;
     if (!admissible(topology_of_parts({s, work.opposite}, both, 1)[0], max_aspect)) return false;
@@ -238,6 +245,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
       faces += (double)t.faces;
     }
   }
+  if (!tasks.empty()) name_origins(surface);
   constexpr double before = 0.05, all = 0.9;  // of the work
   add_progress(before);
   for (Task& t : tasks) t.share *= all / faces;

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/neighborhood.h"
+
+#include <algorithm>
+
+#include "lib/core/edges.h"
+
+namespace meshpipe {
+namespace {
+
+/// Copies rows of a table.
+Table rows_of(const Table& table, const std::vector<int>& rows) {
+  Table taken{table.name, rows.size(), {}};
+  for (const Column& c : table.columns)
+    std::visit(
+        [&]<class T>(const std::vector<T>& all) {
+          std::vector<T> values;
+          values.reserve(rows.size());
+          for (int row : rows) values.push_back(all[row]);
+          taken.columns.push_back({c.name, std::move(values)});
+        },
+        c.data);
+  return taken;
+}
+
+/// Writes the first rows of `part` into the listed rows of `whole`, and appends the others.
+void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
+  for (const Column& c : part.columns)
+    std::visit(
+        [&]<class T>(const std::vector<T>& values) {
+          std::vector<T>& all = whole.get<T>(c.name);
+          for (std::size_t i = 0; i < rows.size(); ++i) all[rows[i]] = values[i];
+          all.insert(all.end(), values.begin() + (std::ptrdiff_t)rows.size(), values.end());
+        },
+        c.data);
+  whole.rows += part.rows - rows.size();
+}
+
+}  // namespace
+
+Neighborhood take_neighborhood(const Surface& whole, const std::vector<int>& opposite,
+                               const std::vector<int>& label, int part) {
+  Neighborhood near;
+  const int n = (int)whole.tris.size();
+  std::vector<char> within(whole.points.size(), 0);
+  for (int t = 0; t < n; ++t)
+    if (label[t] == part)
+      for (int v : whole.tris[t]) within[v] = 1;
+  for (int t = 0; t < n; ++t)
+    if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= 2) near.face.push_back(t);
+  std::vector<int> number(whole.points.size(), -1);
+  for (int t : near.face)
+    for (int v : whole.tris[t]) number[v] = 0;
+  for (int v = 0; v < (int)number.size(); ++v)
+    if (number[v] == 0) {
+      number[v] = (int)near.vertex.size();
+      near.vertex.push_back(v);
+      near.surface.points.push_back(whole.points[v]);
+    }
+  for (int t : near.face) {
+    const Tri& v = whole.tris[t];
+    near.surface.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
+  }
+  near.surface.vertex = rows_of(whole.vertex, near.vertex);
+  near.surface.face = rows_of(whole.face, near.face);
+  if (opposite.empty()) return near;
+  std::vector<int> place(n, -1);
+  for (int i = 0; i < (int)near.face.size(); ++i) place[near.face[i]] = i;
+  for (int t : near.face)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const int o = opposite[h], u = o < 0 ? -1 : place[o / 3];
+      near.opposite.push_back(u < 0 ? -1 : 3 * u + o % 3);
+      if (o >= 0 && u < 0) near.rim.push_back({origin(whole.tris, h), target(whole.tris, h), o});
+    }
+  std::sort(near.rim.begin(), near.rim.end());
+  return near;
+}
+
+void put_back(const Neighborhood& part, Surface& whole, std::vector<int>& opposite) {
+  const int taken = (int)part.face.size(), first = (int)whole.tris.size(),
+            first_point = (int)whole.points.size();
+  const int known = (int)part.vertex.size();
+  auto vertex = [&](int v) { return v < known ? part.vertex[v] : first_point + v - known; };
+  auto face = [&](int t) { return t < taken ? part.face[t] : first + t - taken; };
+  auto half_edge = [&](int h) { return 3 * face(h / 3) + h % 3; };
+  const Surface& s = part.surface;
+  whole.points.insert(whole.points.end(), s.points.begin() + known, s.points.end());
+  put_rows(s.vertex, part.vertex, whole.vertex);
+  put_rows(s.face, part.face, whole.face);
+  whole.tris.resize(first + s.tris.size() - taken);
+  for (int t = 0; t < (int)s.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i) whole.tris[face(t)][i] = vertex(s.tris[t][i]);
+  if (opposite.empty()) return;
+  opposite.resize(3 * whole.tris.size());
+  for (int h = 0; h < (int)part.opposite.size(); ++h) {
+    const int o = part.opposite[h], here = half_edge(h);
+    opposite[here] = o < 0 ? -1 : half_edge(o);
+    if (o >= 0) continue;
+    const Neighborhood::Rim edge{origin(whole.tris, here), target(whole.tris, here), -1};
+    const auto beyond = std::lower_bound(part.rim.begin(), part.rim.end(), edge);
+    if (beyond == part.rim.end() || beyond->from != edge.from || beyond->to != edge.to) continue;
+    opposite[here] = beyond->half_edge;
+    opposite[beyond->half_edge] = here;
+  }
+}
+
+}  // namespace meshpipe

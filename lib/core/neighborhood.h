@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A part of a surface with the triangles around it, to be cut without touching the rest.
+#pragma once
+#include <vector>
+
+#include "lib/core/mesh.h"
+
+namespace meshpipe {
+
+/// The triangles of a part and those with two of its vertices, in their order, as a surface of their own.
+struct Neighborhood {
+  Surface surface;                ///< with all columns
+  std::vector<int> opposite;      ///< half-edges, as opposite_halfedges; empty if the whole's are not known
+  std::vector<int> face, vertex;  ///< in the whole; of those that were taken
+
+  struct Rim {
+    int from, to, half_edge;  ///< vertices of the whole, and the half-edge of it beyond
+    auto operator<=>(const Rim&) const = default;
+  };
+  std::vector<Rim> rim{};  ///< sorted
+};
+
+/// Takes the neighborhood of the triangles with this label (per triangle). `opposite`: of the whole, or
+/// empty.
+Neighborhood take_neighborhood(const Surface& whole, const std::vector<int>& opposite,
+                               const std::vector<int>& label, int part);
+
+/// Puts a neighborhood back into the surface that it was taken from, as cuts (lib/core/cut.h) have left it:
+/// what they appended is appended in the same order, and `opposite` updated, if it is known. The result is
+/// that of the same cut of the whole. Requires: columns as in the whole; edges on its rim not cut.
+void put_back(const Neighborhood& part, Surface& whole, std::vector<int>& opposite);
+
+}  // namespace meshpipe
