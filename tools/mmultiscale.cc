@@ -43,21 +43,14 @@ void report_cuts(Io& io, const MultiscaleOptions& options, const std::vector<Mul
                   "part %d: aspect ratio %.2f, %d levels, cut of %.3g diagonals, now parts %d and %d", c.part,
                   c.eta, c.levels, c.length, c.halves[0], c.halves[1]);
     io.say(text);
-    if (options.method == CutMethod::maxcut) {
-      std::snprintf(text, sizeof text, "one map: %d triangles below 1e-15 of area, %d reversed", c.too_small,
-                    c.reversed);
-      io.say(text);
-    }
     io.report["cuts"].push_back({{"part", c.part},
                                  {"eta", c.eta},
                                  {"levels", c.levels},
                                  {"length", c.length},
-                                 {"too_small", c.too_small},
-                                 {"turned_over", c.reversed},
                                  {"halves", {c.halves[0], c.halves[1]}}});
   }
   for (std::size_t p = 0; p < topology.size(); ++p)
-    if (topology[p].eta_geo > options.max_aspect && options.method != CutMethod::maxcut)
+    if (topology[p].eta_geo > options.max_aspect)
       io.say("part " + std::to_string(p) + " keeps aspect ratio " + shown(topology[p].eta_geo) +
              ": no cut makes it shorter");
 }
@@ -80,36 +73,24 @@ void report_interfaces(Io& io, int n_parts, const Interfaces& cut) {
 
 int main(int argc, char** argv) {
   MultiscaleOptions options;
-  std::string method = "multiscale", directory;
+  std::string directory;
   auto add_options = [&](CLI::App& app) {
     app.add_option("--max-aspect", options.max_aspect,
                    "cut parts with a larger geodesic aspect ratio (default 4)")
         ->check(CLI::Range(0.5, 1e6))
         ->type_name("ETA");
-    app.add_option("--method", method,
-                   "multiscale (default) or maxcut: one map and one straight line, for comparison; fails on "
-                   "long parts")
-        ->check(CLI::IsMember({"multiscale", "maxcut"}))
-        ->type_name("NAME");
     app.add_option("--levels", directory, "draw the maps of all levels as SVG pictures")
         ->type_name("DIR")
         ->group("Reports");
   };
   auto body = [&](Io& io) {
-    if (method == "maxcut") options.method = CutMethod::maxcut;
     options.keep_maps = !directory.empty();
     Stream& stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
     std::vector<MultiscaleCut> cuts;
     std::vector<Topology> topology;
     std::vector<int> opposite;
-    int n_parts;
-    try {
-      n_parts = multiscale_cut(stream.surface, options, &cuts, &topology, &opposite);
-    } catch (const GoalMissed&) {  // the pictures show why
-      if (options.keep_maps) draw_levels(directory, cuts);
-      throw;
-    }
+    const int n_parts = multiscale_cut(stream.surface, options, &cuts, &topology, &opposite);
     if (options.keep_maps) draw_levels(directory, cuts);
     name_origins(stream.surface);
     io.report["parts"] = n_parts;

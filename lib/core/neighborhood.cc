@@ -38,8 +38,9 @@ void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
 
 }  // namespace
 
-Neighborhood take_neighborhood(const Surface& whole, const std::vector<int>& opposite,
-                               const std::vector<int>& label, int part) {
+Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part) {
+  const Surface& whole = connected.surface;
+  const std::vector<int>& opposite = connected.opposite;
   Neighborhood near;
   const int n = (int)whole.tris.size();
   std::vector<char> within(whole.points.size(), 0);
@@ -76,7 +77,9 @@ Neighborhood take_neighborhood(const Surface& whole, const std::vector<int>& opp
   return near;
 }
 
-void put_back(const Neighborhood& part, Surface& whole, std::vector<int>& opposite) {
+void put_back(const Neighborhood& part, const CutSurface& connected) {
+  Surface& whole = connected.surface;
+  std::vector<int>& opposite = connected.opposite;
   const int taken = (int)part.face.size(), first = (int)whole.tris.size(),
             first_point = (int)whole.points.size();
   const int known = (int)part.vertex.size();

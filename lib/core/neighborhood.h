@@ -3,14 +3,14 @@
 #pragma once
 #include <vector>
 
-#include "lib/core/mesh.h"
+#include "lib/core/connectivity.h"
 
 namespace meshpipe {
 
 /// The triangles of a part and those with two of its vertices, in their order, as a surface of their own.
 struct Neighborhood {
   Surface surface;                ///< with all columns
-  std::vector<int> opposite;      ///< half-edges, as opposite_halfedges; empty if the whole's are not known
+  std::vector<int> opposite;      ///< half-edges; empty if the whole's are not known
   std::vector<int> face, vertex;  ///< in the whole; of those that were taken
 
   struct Rim {
@@ -20,14 +20,12 @@ struct Neighborhood {
   std::vector<Rim> rim{};  ///< sorted
 };
 
-/// Takes the neighborhood of the triangles with this label (per triangle). `opposite`: of the whole, or
-/// empty.
-Neighborhood take_neighborhood(const Surface& whole, const std::vector<int>& opposite,
-                               const std::vector<int>& label, int part);
+/// Takes the neighborhood of the triangles with this label (per triangle). Opposite half-edges may be empty.
+Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part);
 
 /// Puts a neighborhood back into the surface that it was taken from, as cuts (lib/core/cut.h) have left it:
-/// what they appended is appended in the same order, and `opposite` updated, if it is known. The result is
-/// that of the same cut of the whole. Requires: columns as in the whole; edges on its rim not cut.
-void put_back(const Neighborhood& part, Surface& whole, std::vector<int>& opposite);
+/// what they appended is appended in the same order, and opposite half-edges follow. The result is that of
+/// the same cut of the whole. Requires: columns as in the whole; edges on its rim not cut.
+void put_back(const Neighborhood& part, const CutSurface& whole);
 
 }  // namespace meshpipe

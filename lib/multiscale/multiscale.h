@@ -3,7 +3,6 @@
 #pragma once
 #include "lib/core/connectivity.h"
 #include "lib/multiscale/levels.h"
-#include "lib/multiscale/maxcut.h"
 
 namespace meshpipe {
 

@@ -163,7 +163,7 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   // labels of all go through the cut in a column of their own
   name_origins(surface);
   std::vector<int> unknown, only = surface.face.get<int>("part");
-  Neighborhood near = take_neighborhood(surface, unknown, only, part);
+  Neighborhood near = take_neighborhood({surface, unknown}, only, part);
   Surface& work = near.surface;
   only = work.face.get<int>("part");
   work.face.set("whole", only);
@@ -185,7 +185,7 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
     if (piece[t] > 0) label[t] = n_parts + piece[t] - 1;
   work.face.set("part", std::move(label));
   work.face.erase("whole");
-  put_back(near, surface, unknown);
+  put_back(near, {surface, unknown});
   return n_parts + pieces - 1;
 }
 

@@ -81,36 +81,6 @@ Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vec
   return best;
 }
 
-/// The single-level cut, as it comes; says how much of the part its map cannot tell apart.
-CutMaps single_cut(const ConnectedPart& part, MultiscaleCut& says, std::vector<double>& field) {
-  CutMaps cut;
-  cut.disk = fill_holes(part);
-  MaxCut one = max_cut(cut.disk);
-  says.too_small = one.too_small;
-  says.reversed = one.reversed;
-  cut.levels.push_back(std::move(one.level));
-  cut.lines.push_back(std::move(one.line));
-  cut.field = field = std::move(one.field);
-  return cut;
-}
-
-/// Throws if the single-level cut has failed.
-void expect_single_cut(const MultiscaleOptions& options, const MultiscaleCut& cut, const Halves& made,
-                       std::size_t faces) {
-  auto fail = [&](const std::string& why) {
-    throw GoalMissed(name(cut.part) + " " + why + ": one map shrinks " + std::to_string(cut.too_small) +
-                     " of " + std::to_string(faces) + " triangles below 1e-15 of area and reverses " +
-                     std::to_string(cut.reversed));
-  };
-  if (made.loops == 0) fail("cannot be cut into 2 connected halves");
-  if (std::max(made.is[0].eta_geo, made.is[1].eta_geo) > options.max_aspect)
-    fail("is cut into halves of aspect ratio " + std::to_string(made.is[0].eta_geo) + " and " +
-         std::to_string(made.is[1].eta_geo) + ", above " + std::to_string(options.max_aspect));
-  constexpr double blind = 0.01;  // a share of the triangles
-  if (cut.too_small + cut.reversed > blind * (double)faces)
-    fail("is cut by a line that does not see all of it");
-}
-
 /// The triangles of one part with its connectivity; marks them in `active`.
 ConnectedPart take_part(const Neighborhood& near, int p, std::vector<char>& active) {
   const std::vector<int>& label = near.surface.face.get<int>("part");
@@ -123,10 +93,9 @@ ConnectedPart take_part(const Neighborhood& near, int p, std::vector<char>& acti
 void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   constexpr double once = 2. / 3;  // of what a cut is predicted to take; the rest is for cutting its halves
   const MultiscaleOptions& options = work.options;
-  const bool single = options.method == CutMethod::maxcut;
   std::vector<char> active;
   Neighborhood near =
-      take_neighborhood(work.surface, work.opposite, work.surface.face.get<int>("part"), task.part);
+      take_neighborhood({work.surface, work.opposite}, work.surface.face.get<int>("part"), task.part);
   const ConnectedPart part = take_part(near, task.part, active);
   MultiscaleCut cut;
   cut.part = task.part;
@@ -134,23 +103,22 @@ void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
   cut.halves[1] = work.parts();
   cut.eta = work.is[task.part].eta_geo;
   std::vector<double> field;
-  CutMaps maps = single ? single_cut(part, cut, field) : best_cut(part, once * task.share, field);
+  CutMaps maps = best_cut(part, once * task.share, field);
   cut.levels = (int)maps.levels.size();
   const Assessment expected = assess(part, field);
   cut.length = expected.length / diagonal(part);
   if (options.keep_maps) cut.maps = std::move(maps);
   Halves made;
   if (expected.valid) made = split(near, part, field, active, expected.loops);
-  if (work.cuts && (single || made.loops > 0)) work.cuts->push_back(cut);
-  if (single) expect_single_cut(options, cut, made, part.tris.size());
   if (made.loops == 0) return;
+  if (work.cuts) work.cuts->push_back(cut);
   const int other = work.parts();
   near.surface = std::move(made.surface);
   near.opposite = std::move(made.opposite);
   std::vector<int>& label = near.surface.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)
     if (made.side[t] == 1) label[t] = other;
-  put_back(near, work.surface, work.opposite);
+  put_back(near, {work.surface, work.opposite});
   work.is.resize(other + 1);
   work.was_cut.resize(other + 1, 0);
   add_progress(0.3 * once * task.share);

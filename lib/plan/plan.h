@@ -26,13 +26,7 @@ struct PartitionOptions {
 int partition_to_disks(Surface& surface, const PartitionOptions& options = {},
                        std::vector<int>* opposite = nullptr);
 
-enum class CutMethod {
-  multiscale,
-  maxcut  ///< one map and one straight line (lib/multiscale/maxcut.h), for comparison
-};
-
 struct MultiscaleOptions {
-  CutMethod method = CutMethod::multiscale;
   double max_aspect = 4;   ///< eta_max of the paper's eq. (5)
   int most_parts = 0;      ///< more are a failure (0: any number)
   bool keep_maps = false;  ///< fill MultiscaleCut::maps
@@ -46,8 +40,6 @@ struct MultiscaleCut {
   double eta = 0;     ///< eta_geo before
   int levels = 0;     ///< of Laplace maps
   double length = 0;  ///< of the cut line, over the diagonal of the part's bounding box
-  int too_small = 0;  ///< with maxcut: triangles whose image is smaller than 1e-15
-  int reversed = 0;   ///< with maxcut: or has no positive area
   CutMaps maps = {};  ///< with keep_maps
 };
 
@@ -56,7 +48,7 @@ struct MultiscaleCut {
 /// then nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts; `cuts`,
 /// `topology` and `opposite` receive, if given, what was done in order, and the result's.
 /// Requires: parts of genus 0 with a border. Throws NotAdmissible; GoalMissed if more than most_parts are
-/// needed, and with maxcut if one cut does not do or its map loses too many triangles.
+/// needed.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
                    std::vector<int>* opposite = nullptr);

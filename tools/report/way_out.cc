@@ -134,10 +134,7 @@ const Row table[] = {
      [](const Case&) {
        return WayOut{"without --min", "smaller triangles may fit"};
      }},
-    {[](const Case& c) {
-       return c.status >= goal_missed && !c.ran("mwrap") && !c.used("mmultiscale", "--method") &&
-              !c.found.sheets;
-     },
+    {[](const Case& c) { return c.status >= goal_missed && !c.ran("mwrap") && !c.found.sheets; },
      [](const Case&) {
        return WayOut{"mwrap", "a wrap has no details below its resolution"};
      }},

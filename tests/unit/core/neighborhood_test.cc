@@ -49,9 +49,10 @@ void cut_part_1(Surface& s, std::vector<int>& opposite) {
 
 TEST(Neighborhood, ComesBackAsItWas) {
   Whole whole, same;
-  const auto near = take_neighborhood(whole.surface, whole.opposite, whole.surface.face.get<int>("part"), 1);
+  const auto near =
+      take_neighborhood({whole.surface, whole.opposite}, whole.surface.face.get<int>("part"), 1);
   EXPECT_LT(near.face.size(), 0.6 * (double)whole.surface.tris.size());
-  put_back(near, whole.surface, whole.opposite);
+  put_back(near, {whole.surface, whole.opposite});
   EXPECT_EQ(whole.surface.tris, same.surface.tris);
   EXPECT_EQ(whole.opposite, same.opposite);
 }
@@ -59,9 +60,9 @@ TEST(Neighborhood, ComesBackAsItWas) {
 TEST(Neighborhood, ACutOfItIsThatOfTheWhole) {
   Whole whole, local;
   cut_part_1(whole.surface, whole.opposite);
-  auto near = take_neighborhood(local.surface, local.opposite, local.surface.face.get<int>("part"), 1);
+  auto near = take_neighborhood({local.surface, local.opposite}, local.surface.face.get<int>("part"), 1);
   cut_part_1(near.surface, near.opposite);
-  put_back(near, local.surface, local.opposite);
+  put_back(near, {local.surface, local.opposite});
   ASSERT_GT(whole.surface.points.size(), 13u * 13u);
   EXPECT_EQ(local.surface.points, whole.surface.points);
   EXPECT_EQ(local.surface.tris, whole.surface.tris);

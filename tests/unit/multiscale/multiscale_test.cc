@@ -255,34 +255,6 @@ TEST(Multiscale, RealSurfacesFallIntoTwo) {
   }
 }
 
-TEST(MaxCut, HalvesAShortTubeAndMissesALongOne) {
-  Surface s = tube(2, 24);
-  MultiscaleOptions options;
-  options.method = CutMethod::maxcut;
-  options.max_aspect = 1.5;
-  std::vector<MultiscaleCut> cuts;
-  ASSERT_EQ(multiscale_cut(s, options, &cuts), 2);
-  EXPECT_EQ(cuts[0].too_small, 0);
-  EXPECT_EQ(cuts[0].reversed, 0);
-  EXPECT_NEAR(parts(s, 2)[0].area, pi, 0.3 * pi);
-
-  s = tube(100, 16);
-  const std::size_t before = s.tris.size();
-  EXPECT_THROW(multiscale_cut(s, options, &cuts), GoalMissed);
-  EXPECT_EQ(s.tris.size(), before);
-  // an image of 1e-15 is reached where exp(-2 z / r) is, after 17 radii or 9 diameters
-  EXPECT_GT(cuts.back().too_small, 0.8 * (double)before);
-}
-
-// halves that happen to be short are no success where the line ran through what the map had lost
-TEST(MaxCut, FailsWhereItsMapLosesTriangles) {
-  Surface s = pierced(tube(15, 32), {{9, 1}, {10, 4}, {12, 2}}, 0.2);
-  MultiscaleOptions options;
-  options.method = CutMethod::maxcut;
-  options.max_aspect = 12;
-  EXPECT_THROW(multiscale_cut(s, options), GoalMissed);
-}
-
 TEST(LevelSvg, EveryLevelShowsItsSetsAndItsLine) {
   Surface s = tube(20, 16);
   MultiscaleOptions options;
