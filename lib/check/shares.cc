@@ -182,9 +182,7 @@ ShareFindings measure(const CheckShare& share) {
   else
     measure_near(share, own, f, off);
   if (!share.of_result) return f;
-  std::vector<char> used(own.points.size(), 0);
-  for (const Tri& t : own.tris)
-    for (int v : t) used[v] = 1;
+  const std::vector<char> used = used_points(own);
   for (std::size_t v = 0; v < off.size(); ++v)
     if (used[v]) f.off.push_back({share.vertices[v], off[v]});
   for (const auto& [s, t] : self_intersections(share.mesh))

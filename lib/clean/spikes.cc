@@ -44,17 +44,10 @@ bool sticks_out(const Rim& rim, double extents) {
   return rim.count > 2 && rim.nearest > extents * norm(rim.high - rim.low);
 }
 
-std::vector<int> equal_points(const Surface& s) {
-  std::vector<char> used(s.points.size(), 0);
-  for (const Tri& t : s.tris)
-    for (int v : t) used[v] = 1;
-  return first_equal(s.points, used);
-}
-
 }  // namespace
 
 int flatten_spikes(Surface& s, double extents) {
-  const std::vector<int> same = equal_points(s);
+  const std::vector<int> same = first_equal(s.points, used_points(s));
   const std::vector<Rim> rims = rims_of(s.points, s.tris, same);
   int n = 0;
   for (std::size_t v = 0; v < same.size(); ++v) {

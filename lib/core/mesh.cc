@@ -149,6 +149,13 @@ void expect_measurable(const Mesh& mesh) {
   throw NotAdmissible(text);
 }
 
+std::vector<char> used_points(const Mesh& mesh) {
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const Tri& t : mesh.tris)
+    for (int v : t) used[v] = 1;
+  return used;
+}
+
 double diagonal(const Mesh& mesh) {
   const Extent e = extent_of(mesh);
   return mesh.tris.empty() ? 0 : norm(e.hi - e.lo);

@@ -74,6 +74,9 @@ struct SubMesh : Mesh {
 /// Corners keep their order; vertices are numbered by first use; a vertex on two parts is in both.
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n);
 
+/// Returns per point whether a triangle uses it.
+std::vector<char> used_points(const Mesh& mesh);
+
 /// Length of the bounding box's diagonal of the points that are used by a triangle.
 double diagonal(const Mesh& mesh);
 /// Throws NotAdmissible naming the size of a surface whose areas and volumes would overflow or vanish: with a

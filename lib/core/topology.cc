@@ -200,9 +200,7 @@ Topology measure(const Connectivity& c, int pieces, const std::vector<int>& numb
     throw NotAdmissible("vertex " + std::to_string(number.empty() ? pinched : number[pinched]) +
                         " joins triangles that share no edge; run mclean first");
   std::vector<std::vector<int>> loops = boundary_loops(c.opposite);
-  std::vector<char> used(n, 0);
-  for (const Tri& tri : mesh.tris)
-    for (int v : tri) used[v] = 1;
+  const std::vector<char> used = used_points(mesh);
   std::size_t longest = 0, border = 0;
   for (const std::vector<int>& loop : loops) {
     double length = 0;

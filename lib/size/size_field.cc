@@ -8,9 +8,7 @@
 namespace meshpipe {
 
 void add_lone_points(SizeField& field) {
-  std::vector<char> used(field.points.size(), 0);
-  for (const Tri& t : field.tris)
-    for (int v : t) used[v] = 1;
+  const std::vector<char> used = used_points(field);
   for (int v = 0; v < static_cast<int>(used.size()); ++v)
     if (!used[v]) field.tris.push_back({v, v, v});
 }

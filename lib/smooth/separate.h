@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <utility>
 #include <vector>
 
 #include "lib/core/mesh.h"
@@ -10,5 +11,8 @@ namespace meshpipe {
 /// growing neighborhoods, all of it, which ends with the surface as it was. Vertices moved back are held from
 /// then on. Returns their number.
 int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held);
+
+/// Root mean square of the angles between triangles, each oriented as it is, in degrees.
+double mean_angle(const Mesh& mesh, const std::vector<std::pair<int, int>>& adjacent);
 
 }  // namespace meshpipe

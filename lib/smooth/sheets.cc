@@ -74,7 +74,8 @@ Net make_net(const Mesh& mesh) {
     const int h = half_edge(uses[0]), a = origin(mesh.tris, h), b = target(mesh.tris, h);
     edges.push_back({a, b, (int)uses.size()});
     net.edge += norm(mesh.points[a] - mesh.points[b]);
-    if (uses.size() == 2) net.smooth.push_back({h / 3, half_edge(uses[1]) / 3});
+    if (uses.size() == 2 && a != origin(mesh.tris, half_edge(uses[1])))
+      net.smooth.push_back({h / 3, half_edge(uses[1]) / 3});
     if (uses.size() == 1) net.held[a] = net.held[b] = 1;
     if (uses.size() > 2) ++on_line[a], ++on_line[b];
   });
@@ -115,14 +116,6 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
   p = std::move(to);
 }
 
-/// Root mean square of the angles between triangles, each oriented as it is, in degrees.
-double mean_angle(const Mesh& mesh, const Net& net) {
-  const std::vector<Vec3> normal = face_normals(mesh);
-  double sum = 0;
-  for (auto [a, b] : net.smooth) sum += std::pow(angle(normal[a], normal[b]), 2);
-  return net.smooth.empty() ? 0 : std::sqrt(sum / (double)net.smooth.size()) * 180 / std::numbers::pi;
-}
-
 /// Of half-edges: the other one of an edge of two triangles, else -1, and whether it is on a line where
 /// sheets meet. `edges` are the ends of all edges, in ascending order.
 struct Sides {
@@ -145,6 +138,13 @@ Sides sides_of(const Mesh& mesh) {
 }
 
 }  // namespace
+
+double mean_angle(const Mesh& mesh, const std::vector<std::pair<int, int>>& adjacent) {
+  const std::vector<Vec3> normal = face_normals(mesh);
+  double sum = 0;
+  for (auto [a, b] : adjacent) sum += std::pow(angle(normal[a], normal[b]), 2);
+  return adjacent.empty() ? 0 : std::sqrt(sum / (double)adjacent.size()) * 180 / std::numbers::pi;
+}
 
 void flip_ears(Surface& surface) {
   Mesh joined = surface;
@@ -195,7 +195,7 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   }
   SmoothReport r;
   r.within = options.within > 0 ? options.within : net.edge;
-  r.angle_before = mean_angle(joined, net);
+  r.angle_before = mean_angle(joined, net.smooth);
   const std::vector<Vec3> start = joined.points;
   const Solids before = find_solids(joined);
   for (int i = 0; i < steps; ++i)
@@ -208,7 +208,7 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
     match_volumes(joined, before.sides, before.volume, std::move(compliance));
     r.moved_back += moved = separate(joined, start, net.held);
   }
-  r.angle_after = mean_angle(joined, net);
+  r.angle_after = mean_angle(joined, net.smooth);
   if (!(r.angle_after < r.angle_before)) {
     joined.points = start;
     r.angle_after = r.angle_before;

@@ -238,18 +238,11 @@ int finish(Motion& m, const std::vector<double>& volume, const std::vector<doubl
   return all;
 }
 
-/// Root mean square of the angles between adjacent triangles, in degrees.
 double mean_angle(const Connectivity& c) {
-  const std::vector<Vec3> normal = face_normals(c.mesh);
-  double sum = 0;
-  int n = 0;
-  for (int h = 0; h < c.n_half_edges(); ++h) {
-    if (c.opposite[h] < h) continue;
-    const double a = angle(normal[h / 3], normal[c.opposite[h] / 3]);
-    sum += a * a;
-    ++n;
-  }
-  return n ? std::sqrt(sum / n) * 180 / std::numbers::pi : 0;
+  std::vector<std::pair<int, int>> adjacent;
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (h < c.opposite[h]) adjacent.push_back({h / 3, c.opposite[h] / 3});
+  return mean_angle(c.mesh, adjacent);
 }
 
 double mean_edge(const Mesh& mesh) {

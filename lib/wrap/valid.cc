@@ -22,13 +22,6 @@ bool has_area(Vec3 a, Vec3 b, Vec3 c) {
          orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) != 0;
 }
 
-std::vector<char> used_points(const Mesh& mesh) {
-  std::vector<char> used(mesh.points.size(), 0);
-  for (const Tri& t : mesh.tris)
-    for (int p : t) used[p] = 1;
-  return used;
-}
-
 /// Both meshes as one, the soup's triangles and points after the wrap's.
 Mesh joined(const Mesh& wrap, const Mesh& soup) {
   Mesh both = wrap;
