@@ -27,7 +27,7 @@ struct Options {
 
 void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
-  for (const std::string& line : warnings_of(io.stream)) io.say(line);
+  for (const std::string& line : warnings_of(io.stream, f)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
   if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
     io.say(std::to_string(n) +

@@ -43,9 +43,8 @@ void put(Io& io, const CleanReport& r, const CleanOptions& options) {
     io.report["dropped_area"] = r.resolved.dropped_area;
     io.report["closed"] = r.resolved.closed;
   }
-  for (const auto& [t, n, a, b, p] : r.nonorientable)
-    io.report[options.drop_nonorientable ? "dropped_nonorientable" : "refused_nonorientable"].push_back(
-        {{"triangle", t}, {"triangles", n}, {"disagree", {a, b}}, {"place", {p.x, p.y, p.z}}});
+  for (const auto& [t, n] : r.nonorientable)
+    io.report["dropped_nonorientable"].push_back({{"triangle", t}, {"triangles", n}});
 }
 
 void drop_labels(Surface& surface) {
@@ -132,7 +131,15 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
     io.warn("warning: sheets are split at " + std::to_string(r.opened_edges) +
             (r.opened_edges == 1 ? " edge" : " edges") +
             " where they met: the parts will not fit together there any more");
-  for (const Nonorientable& c : r.nonorientable) io.say("dropped: " + describe(c));
+  if (const FlipCounts& f = r.sheets.flips; f.edges > 0)
+    io.warn("warning: the surface cannot be oriented: components of " + std::to_string(f.triangles) +
+            " triangles are cut along " + std::to_string(f.edges) + (f.edges == 1 ? " edge" : " edges") +
+            ", the first at " + shown(f.place) +
+            (r.sheets.kept ? ": both sides have the same vertices there, but are oriented differently"
+                           : ": both sides are borders there, --sheets keep keeps them together"));
+  for (const auto& [t, n] : r.nonorientable)
+    io.say("dropped: the component of triangle " + std::to_string(t) + " (" + std::to_string(n) +
+           " triangles), which is not orientable");
 }
 
 /// Names the patches that were added: one that became several has its name on each of them.
@@ -170,7 +177,7 @@ void add_options(CLI::App& app, Options& o) {
       ->type_name("N");
   app.add_flag("--cap-patches", o.cap_patches, "give each filled hole a patch of its own, named cap-1 ...");
   app.add_flag("--drop-nonorientable", o.drop_nonorientable,
-               "drop components that are not orientable, instead of failing with 4");
+               "drop components that are not orientable, instead of cutting them open");
   app.add_option("--sheets", o.how,
                  "edges of more than two triangles: keep, pair (by solids), split, or auto (default): pair "
                  "where sheets are closed solids that touch, else keep")

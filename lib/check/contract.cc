@@ -301,6 +301,8 @@ std::vector<Figure> figures(const Findings& f) {
       {"regions", "regions", count, met(&SheetFindings::regions, 0), met(&SheetFindings::regions, 1)},
       {"junction_lines", "lines where sheets meet", count, met(&SheetFindings::lines, 0),
        met(&SheetFindings::lines, 1)},
+      {"flip_lines", "lines of flipped orientation", count, met(&SheetFindings::flips, 0),
+       met(&SheetFindings::flips, 1)},
       {"junction_corners", "points where these end", count, met(&SheetFindings::corners, 0),
        met(&SheetFindings::corners, 1)},
       {"volume_error", "difference of volumes", digits, nan, f.sheets ? f.sheets->volume_error : nan},

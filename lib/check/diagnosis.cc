@@ -2,13 +2,13 @@
 #include "lib/check/diagnosis.h"
 
 #include <algorithm>
-#include <utility>
 
+#include "lib/core/connectivity.h"
+#include "lib/core/edges.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/segments.h"
 #include "lib/core/topology.h"
-#include "lib/core/weld.h"
 
 namespace meshpipe {
 namespace {
@@ -23,21 +23,11 @@ bool has_sound_indices(const Mesh& mesh) {
   return !mesh.tris.empty();
 }
 
-/// Returns the edges of all triangles, sorted.
-std::vector<std::pair<int, int>> sorted_edges(const Mesh& mesh) {
-  std::vector<std::pair<int, int>> edges;
-  for (const Tri& t : mesh.tris)
-    for (int i = 0; i < 3; ++i) edges.push_back(std::minmax({t[i], t[(i + 1) % 3]}));
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
 void find_short_edges(const Mesh& mesh, Diagnosis& d) {
-  auto edges = sorted_edges(mesh);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<double> length;
-  for (const auto& [a, b] : edges) length.push_back(norm(mesh.points[b] - mesh.points[a]));
-  if (length.empty()) return;
+  for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    length.push_back(edge_length(mesh, half_edge(uses[0])));
+  });
   std::sort(length.begin(), length.end());
   const double most = short_share * length[length.size() / 2];
   double widest = gap;
@@ -48,16 +38,6 @@ void find_short_edges(const Mesh& mesh, Diagnosis& d) {
       d.short_edges = i + 1;
       d.next_edge = length[i + 1];
     }
-}
-
-bool is_closed(Mesh mesh) {
-  weld(mesh);
-  const auto edges = sorted_edges(mesh);
-  for (std::size_t i = 0, end; i < edges.size(); i = end) {
-    for (end = i + 1; end < edges.size() && edges[end] == edges[i];) ++end;
-    if (end == i + 1 && edges[i].first != edges[i].second) return false;
-  }
-  return !edges.empty();
 }
 
 void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
@@ -88,7 +68,6 @@ Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
     d.intersection = contacts(surface, {pairs[0]}).points.at(0);
   }
   find_short_edges(surface, d);
-  d.closed = is_closed(surface);
   try {
     if (reach > 0) find_lines_near(surface, place, reach, d);
   } catch (const NotAdmissible&) {  // not a manifold: it has no borders to be near to

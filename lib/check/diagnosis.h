@@ -16,7 +16,6 @@ struct Diagnosis {
   double next_edge = 0;           ///< and the shortest of all others
   int spikes = 0;                 ///< for the caller: vertices that stick out, as mclean has found them,
   bool sheets = false;            ///< and whether sheets meet, with regions that a wrap would lose
-  bool closed = false;            ///< no edge has one triangle only, where equal points are one
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };

@@ -46,7 +46,7 @@ Junctions junctions_of(const Mesh& joined, const std::vector<char>& inside, cons
     const int h = half_edge(uses[0]);
     if (uses.size() == 1) j.edges.push_back({patch[h / 3], h / 3});
     const auto is_inside = [&](EdgeUse e) { return inside[half_edge(e)]; };
-    if (uses.size() < 3 || std::any_of(uses.begin(), uses.end(), is_inside)) return;
+    if (uses.size() < 2 || std::any_of(uses.begin(), uses.end(), is_inside)) return;
     Key key;
     if (!named) key.push_back((int)uses.size());
     for (EdgeUse e : uses)
@@ -83,7 +83,10 @@ std::string shown(const Key& key, bool named) {
 }
 
 void compare_lines(const Junctions& r, const Junctions& m, bool named, SheetFindings& f) {
-  f.lines = {(int)r.lines.size(), (int)m.lines.size()};
+  auto flips = [&](const Key& key) { return named ? key.size() == 2 : key[0] == 2; };
+  f.flips = {(int)std::count_if(r.lines.begin(), r.lines.end(), flips),
+             (int)std::count_if(m.lines.begin(), m.lines.end(), flips)};
+  f.lines = {(int)r.lines.size() - f.flips[0], (int)m.lines.size() - f.flips[1]};
   f.corners = {r.corners, m.corners};
   std::vector<Key> lost, gained;
   std::set_difference(r.lines.begin(), r.lines.end(), m.lines.begin(), m.lines.end(),

@@ -20,6 +20,7 @@ struct RegionVolume {
 
 struct SheetFindings {
   Both lines{}, corners{};  ///< lines of more than two sheets, and the points where they end or change
+  Both flips{};             ///< lines of two triangles across which the orientation changes
   Both regions{};
   std::vector<RegionVolume> volumes;
   double volume_error = 0;  ///< largest difference over the reference's volume

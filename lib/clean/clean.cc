@@ -6,7 +6,6 @@
 
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
-#include "lib/core/failure_facts.h"
 #include "lib/core/intersect.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/take_rows.h"
@@ -16,13 +15,6 @@
 
 namespace meshpipe {
 namespace {
-
-void sort_offending(CleanReport& report) {
-  std::sort(report.offending.begin(), report.offending.end(),
-            [](const OffendingFace& a, const OffendingFace& b) {
-              return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
-            });
-}
 
 /// Drops all components except the `keep` largest by area; returns whether there were more.
 bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
@@ -73,18 +65,8 @@ void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptio
   for (;;) {  // where a triangle goes, two others may become neighbors and disagree: then once again
     join(r, points, options, report);
     const std::size_t before = report.nonorientable.size();
-    orient(r, points, gone, report);
+    orient(r, points, options, gone, report);
     if (report.nonorientable.size() > before) {
-      if (!options.drop_nonorientable) {
-        sort_offending(report);
-        const std::size_t more = report.nonorientable.size() - 1;
-        FailureFacts facts;
-        for (const Nonorientable& c : report.nonorientable) facts.nonorientable += c.triangles;
-        facts.orientable = facts.nonorientable < (int)r.tris.size();
-        throw Informed<NotAdmissible>(describe(report.nonorientable[0]) +
-                                          (more ? ", and " + std::to_string(more) + " more components" : ""),
-                                      facts);
-      }
       r.opposite.clear();
       drop(r, gone);
       continue;
@@ -124,12 +106,9 @@ bool make_manifold(Repair& r, const std::vector<Vec3>& points, const CleanOption
 
 /// Returns for each vertex the first one that it is welded with.
 std::vector<int> weld_vertices(const Surface& surface, const CleanOptions& options, CleanReport& report) {
-  const int n = report.input_vertices;
-  std::vector<char> used(n, 0);
-  for (const Tri& t : surface.tris)
-    for (int v : t) used[v] = 1;
+  const std::vector<char> used = used_points(surface);
   std::vector<int> same = first_equal(surface.points, used);
-  for (int v = 0; v < n; ++v) report.welded += same[v] != v;
+  for (int v = 0; v < report.input_vertices; ++v) report.welded += same[v] != v;
   report.tolerance = options.weld < 0 ? coordinate_noise(surface, used) : options.weld;
   if (options.weld < 0)
     report.welded_near =
@@ -200,7 +179,7 @@ void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanRe
   const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
                         report.dropped_triangles || !report.nonorientable.empty();
   report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
-                     report.nonmanifold_vertices || report.holes.filled);
+                     report.nonmanifold_vertices || report.sheets.flips.edges || report.holes.filled);
   if (report.nothing) return;
   if (as_it_was(r, surface)) {
     report.nothing = options.sheets != CleanOptions::keep || !mark_sheets(surface, r, report);
@@ -237,11 +216,7 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
 bool keep_sheets(const Surface& surface, const std::vector<int>& same, const CleanOptions& options,
                  bool pairs_leave_borders, Repair& r, CleanReport& report) {
   r = start(surface, same, report);
-  try {
-    repair(r, surface.points, options, report);
-  } catch (const NotAdmissible&) {  // a sheet that is not orientable
-    return false;
-  }
+  repair(r, surface.points, options, report);
   if (pairs_leave_borders) return true;
   Repair whole = r;
   unite(whole);
@@ -260,11 +235,12 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   const CleanReport welded = report;
   Repair r = start(surface, same, report);
   repair(r, surface.points, options, report);
-  if (automatic && (report.nonmanifold_edges || report.sheets.nested)) {
+  if (automatic && (report.nonmanifold_edges || report.sheets.nested || report.sheets.flips.edges)) {
     CleanOptions keep = options;
     keep.sheets = CleanOptions::keep;
     CleanReport kept = welded;
-    if (Repair whole; keep_sheets(surface, same, keep, report.opened_edges > 0, whole, kept)) {
+    const bool open = report.opened_edges + report.sheets.flips.edges > 0;
+    if (Repair whole; keep_sheets(surface, same, keep, open, whole, kept)) {
       r = std::move(whole);
       report = std::move(kept);
       options = keep;
@@ -284,7 +260,9 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   }
   const std::vector<int> cap = options.cap_patches ? caps_of(r) : std::vector<int>();
   for (int t = 0; t < (int)r.tris.size(); ++t) r.face[t] = source(r, t);
-  sort_offending(report);
+  std::sort(report.offending.begin(), report.offending.end(), [](const auto& a, const auto& b) {
+    return a.fault != b.fault ? a.fault < b.fault : a.triangle < b.triangle;
+  });
   if (r.tris.empty()) throw NotAdmissible(describe_nothing_left(report));
   report.sheets.kept = options.sheets == CleanOptions::keep;
   if (report.sheets.kept) {
@@ -390,7 +368,7 @@ CleanReport clean(Surface& surface, const CleanOptions& options) {
 
 void split_sheets(Surface& surface) {
   const std::size_t n = surface.tris.size();
-  const CleanReport r = clean(surface, {.weld = 0, .sheets = CleanOptions::split});
+  const CleanReport r = clean(surface, {.weld = 0, .open_flips = true, .sheets = CleanOptions::split});
   if (surface.tris.size() != n || r.flipped || r.degenerate || r.duplicate)
     throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
                         std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +

@@ -15,10 +15,11 @@ struct CleanOptions {
   /// Merges vertices this close after the equal ones; 0: only equal ones; negative: those that the precision
   /// of the coordinates does not separate, where all other edges are much longer.
   double weld = -1;
-  bool drop_nonorientable = false;  ///< leave such components out instead of refusing the surface
-  int keep_components = 0;          ///< the largest by area; 0: all
-  int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
-  bool cap_patches = false;         ///< give each filled hole a patch of its own
+  bool drop_nonorientable = false;  ///< leave such components out instead of cutting them open
+  bool open_flips = false;   ///< where neighbors disagree, leaves the edge open rather than reverse triangles
+  int keep_components = 0;   ///< the largest by area; 0: all
+  int fill_holes = 0;        ///< fill border loops of at most this many edges; 0: none
+  bool cap_patches = false;  ///< give each filled hole a patch of its own
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices; or paired unless they, or solids within
   /// solids, divide space into regions (lib/solids/solids.h) or pairs leave borders, and else kept.
@@ -37,17 +38,16 @@ struct OffendingFace {
   Fault fault;
 };
 
-/// A component that is not orientable.
-struct Nonorientable {
-  int triangle = 0, triangles = 0;  ///< its first triangle, and their number
-  int a = 0, b = 0;                 ///< two neighbors that cannot be oriented consistently
-  Vec3 place;                       ///< middle of the edge between them
-};
-
 struct HoleCounts {
   int filled = 0, triangles = 0;  ///< loops, and the triangles they took
   int left = 0;                   ///< loops on non-manifold edges, or whose every filling doubles an edge
   std::vector<int> patches;       ///< of the loops filled, if each has its own
+};
+
+/// Where components that are not orientable are cut: both sides are oriented differently there.
+struct FlipCounts {
+  int triangles = 0, edges = 0;  ///< of these components, and of the lines
+  Vec3 place{};                  ///< the middle of the first edge
 };
 
 struct SheetCounts {
@@ -58,6 +58,7 @@ struct SheetCounts {
   /// Where solids that touch have different patches: those on both sides of each triangle of the result, 0
   /// where there is one.
   std::vector<std::array<int, 2>> solids;
+  FlipCounts flips;
 };
 
 /// Counts of repairs. Triangles are numbered as in the input.
@@ -82,19 +83,19 @@ struct CleanReport {
   SheetCounts sheets;
   HoleCounts holes;
   ResolveReport resolved;
-  std::vector<Nonorientable> nonorientable;  ///< components dropped
-  std::vector<OffendingFace> offending;      ///< by fault, then by triangle
+  std::vector<std::array<int, 2>> nonorientable;  ///< components dropped: first triangle, their number
+  std::vector<OffendingFace> offending;           ///< by fault, then by triangle
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
-/// Repairs a surface: welds vertices, drops degenerate and duplicate triangles, orients every component,
-/// splits non-manifold edges and vertices, removes triangles of zero area, drops small components and fills
-/// holes. A sound surface stays bit for bit as it is, copies of vertices that keep fans apart included; a
-/// repaired one loses face column `model` and numbers its vertices by first use if some had to go.
-/// Sheets that are kept stay non-manifold, with model edges between them and a patch each.
-/// Self-intersections are resolved when all that is done, and then connectivity is repaired once more.
-/// Throws: NotAdmissible if a component is not orientable or no triangle is left; the report then holds the
-/// offending faces, and the surface is as it was.
+/// Repairs a surface: welds vertices, drops degenerate and duplicate triangles, orients every component or
+/// cuts it open where that cannot be done, splits non-manifold edges and vertices, removes triangles of zero
+/// area, drops small components and fills holes. A sound surface stays bit for bit as it is, copies of
+/// vertices that keep fans apart included; a repaired one loses face column `model` and numbers its vertices
+/// by first use if some had to go. Sheets that are kept stay non-manifold, with model edges between them and
+/// a patch each. Self-intersections are resolved when all that is done, and then connectivity is repaired
+/// once more. Throws: NotAdmissible if no triangle is left; the report then holds the offending faces, and
+/// the surface is as it was.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
 
@@ -127,12 +128,9 @@ struct RegionReport {
 
 /// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with
 /// borders where they meet; edges on which one would close again are divided. Patches have one region on
-/// either side, and sheets next to the outside are oriented towards it. `given`: labels as in labels_of;
-/// empty: regions are labeled 1, 2 ... Throws: as labels_of, when only edges were divided, and split_sheets.
+/// either side, and sheets next to the outside are oriented towards it; there are none if sheets only flip.
+/// `given`: labels as in labels_of; empty: 1, 2 ... Throws: as labels_of, with edges divided; split_sheets.
 RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given = {});
-
-/// Returns one line: which component, how large, which triangles, where.
-std::string describe(const Nonorientable& component);
 
 /// A row of the table of repairs: its key in reports, the number of cases, and a phrase.
 struct RepairRow {

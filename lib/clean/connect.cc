@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <utility>
 
 #include "lib/clean/repair.h"
 #include "lib/core/edges.h"
@@ -35,7 +36,7 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
         else
           first = i;
       const int h = half_edge(uses[0]), g = half_edge(uses[1]);
-      if (uses.size() > 2) {
+      if (uses.size() > 2 || (options.open_flips && origin(r.tris, h) == origin(r.tris, g))) {
         ++edges;
         for (EdgeUse e : uses) many.push_back(half_edge(e) / 3);
         r.split[origin(r.tris, h)] = r.split[target(r.tris, h)] = 1;
@@ -70,13 +71,73 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
   for (int t : many) record(report, r.face[t], Fault::nonmanifold);
 }
 
-void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report) {
+namespace {
+
+enum Side : char { unseen, as_seed, against };
+char other(char side) { return side == as_seed ? against : as_seed; }
+
+/// Whether the triangles on both sides of an edge would be oriented consistently.
+bool agree(const Repair& r, const std::vector<char>& side, int h) {
+  const int g = r.opposite[h];
+  return (origin(r.tris, h) != origin(r.tris, g)) == (side[h / 3] == side[g / 3]);
+}
+
+/// Makes the lines shorter where sides disagree: a triangle goes to the other side if more of its border is
+/// on such a line than not. Returns their length.
+double shorten(const Repair& r, const std::vector<Vec3>& points, const std::vector<int>& members,
+               std::vector<char>& side) {
+  auto length = [&](int h) {
+    return norm(points[r.vertex[origin(r.tris, h)]] - points[r.vertex[target(r.tris, h)]]);
+  };
+  for (std::vector<int> todo = members; !todo.empty();) {
+    const int t = todo.back();
+    todo.pop_back();
+    double gain = 0, around = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (r.opposite[h] >= 0) gain += agree(r, side, h) ? -length(h) : length(h), around += length(h);
+    if (!(gain > 1e-9 * around)) continue;  // rounding must not let it go back and forth
+    side[t] = other(side[t]);
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (r.opposite[h] >= 0) todo.push_back(r.opposite[h] / 3);
+  }
+  double sum = 0;
+  for (int t : members)
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      if (h < r.opposite[h] && !agree(r, side, h)) sum += length(h);
+  return sum;
+}
+
+/// Opens a component that is not orientable along short lines: where its orientation changes as it is, or
+/// where sides that grew from one triangle disagree if that is shorter.
+void cut_open(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& members,
+              std::vector<char>& side, FlipCounts& flips) {
+  std::vector<char> spare;
+  for (int t : members) spare.push_back(std::exchange(side[t], as_seed));
+  const double as_it_is = shorten(r, points, members, side);
+  for (std::size_t i = 0; i < spare.size(); ++i) std::swap(spare[i], side[members[i]]);
+  if (as_it_is <= shorten(r, points, members, side))
+    for (std::size_t i = 0; i < spare.size(); ++i) side[members[i]] = spare[i];
+  flips.triangles += (int)members.size();
+  for (int t : members)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      if (r.opposite[h] < 0 || agree(r, side, h)) continue;
+      const int a = origin(r.tris, h), b = target(r.tris, h);
+      if (flips.edges++ == 0) flips.place = lerp(points[r.vertex[a]], points[r.vertex[b]], 0.5);
+      r.split[a] = r.split[b] = 1;
+      r.opposite[h] = r.opposite[r.opposite[h]] = -1;
+    }
+}
+
+}  // namespace
+
+void orient(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options, std::vector<char>& gone,
+            CleanReport& report) {
   const int n = (int)r.tris.size();
   bool consistent = true;
+  report.sheets.flips = {};
   for (int h = 0; consistent && h < 3 * n; ++h)
     consistent = r.opposite[h] < 0 || origin(r.tris, h) != origin(r.tris, r.opposite[h]);
   if (consistent) return;
-  enum : char { unseen, as_seed, against };
   std::vector<char> side(n, unseen);
   std::vector<int> members;
   gone.assign(n, 0);
@@ -84,35 +145,30 @@ void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone,
     if (side[seed] != unseen) continue;
     side[seed] = as_seed;
     members.assign(1, seed);
-    std::size_t reversed = 0;
-    int conflict = -1;
+    bool orientable = true;
     for (std::size_t i = 0; i < members.size(); ++i) {
       const int t = members[i];
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
-        const int o = r.opposite[h];
-        if (o < 0) continue;
-        const char want =
-            (origin(r.tris, h) != origin(r.tris, o)) == (side[t] == as_seed) ? as_seed : against;
-        if (side[o / 3] == unseen) {
-          side[o / 3] = want;
-          reversed += want == against;
-          members.push_back(o / 3);
-        } else if (side[o / 3] != want && conflict < 0) {
-          conflict = h;
+        const int u = r.opposite[h] / 3;
+        if (r.opposite[h] < 0) continue;
+        if (side[u] == unseen) {
+          members.push_back(u);
+          side[u] = origin(r.tris, h) != origin(r.tris, r.opposite[h]) ? side[t] : other(side[t]);
         }
+        orientable = orientable && agree(r, side, h);
       }
     }
-    if (conflict >= 0) {
-      report.nonorientable.push_back({source(r, seed), (int)members.size(), source(r, conflict / 3),
-                                      source(r, r.opposite[conflict] / 3),
-                                      lerp(points[r.vertex[origin(r.tris, conflict)]],
-                                           points[r.vertex[target(r.tris, conflict)]], 0.5)});
+    if (!orientable && options.drop_nonorientable) {
+      report.nonorientable.push_back({source(r, seed), (int)members.size()});
       for (int t : members) {
         gone[t] = 1;
         record(report, r.face[t], Fault::nonorientable);
       }
       continue;
     }
+    if (!orientable) cut_open(r, points, members, side, report.sheets.flips);
+    std::size_t reversed = 0;
+    for (int t : members) reversed += side[t] == against;
     const char wrong = 2 * reversed > members.size() ? as_seed : against;
     for (int t : members)
       if (side[t] == wrong) flip(r, t);

@@ -75,8 +75,9 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
 int pair_edges(Repair& r, const std::vector<Vec3>& points);
 
 /// Orients neighbors consistently, by the majority of each component. Components that are not orientable are
-/// reported, their triangles flagged in `gone`.
-void orient(Repair& r, const std::vector<Vec3>& points, std::vector<char>& gone, CleanReport& report);
+/// cut open, or reported, their triangles flagged in `gone`.
+void orient(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options, std::vector<char>& gone,
+            CleanReport& report);
 
 /// Gives every fan of triangles at a vertex its own copy of the vertex, the first fan keeps it: the result is
 /// an oriented manifold, since triangles of an edge that was left open lie in one fan at either end, in

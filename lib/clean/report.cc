@@ -6,18 +6,10 @@
 
 namespace meshpipe {
 
-std::string describe(const Nonorientable& c) {
-  char place[96];
-  std::snprintf(place, sizeof place, " (%.6g %.6g %.6g)", c.place.x, c.place.y, c.place.z);
-  return "the component of triangle " + std::to_string(c.triangle) + " (" + std::to_string(c.triangles) +
-         " triangles) is not orientable: triangles " + std::to_string(c.a) + " and " + std::to_string(c.b) +
-         " cannot be oriented consistently at" + place;
-}
-
 std::string describe_nothing_left(const CleanReport& r) {
   if (r.input_triangles == 0) return "the input has no triangle";
   int dropped = 0;
-  for (const Nonorientable& c : r.nonorientable) dropped += c.triangles;
+  for (const auto& [first, triangles] : r.nonorientable) dropped += triangles;
   std::string what = "no triangle is left of " + std::to_string(r.input_triangles) + ":";
   const char* between = " ";
   for (const auto& [count, why] :
@@ -42,6 +34,7 @@ std::vector<RepairRow> repairs(const CleanReport& r) {
       {"duplicate", r.duplicate, "duplicate triangles dropped"},
       {"flipped", r.flipped, "triangles reversed"},
       {"nonorientable", (int)r.nonorientable.size(), "non-orientable components dropped"},
+      {"flip_edges", r.sheets.flips.edges, "edges across which the orientation changes"},
       {"contacts", r.contacts, "triangles where solids touch, one for each of them"},
       {"nonmanifold_edges", r.nonmanifold_edges,
        keep ? "edges of more than two triangles, where sheets meet" : "non-manifold edges"},
@@ -83,7 +76,7 @@ std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& option
 
 std::string remark_of(const CleanReport& r) {
   int dropped = r.duplicate + r.dropped_triangles;
-  for (const Nonorientable& c : r.nonorientable) dropped += c.triangles;
+  for (const auto& [first, triangles] : r.nonorientable) dropped += triangles;
   if (r.opened_edges + r.nonmanifold_vertices + dropped == 0) return "";
   return "clean opened " + std::to_string(r.opened_edges) + " split " +
          std::to_string(r.nonmanifold_vertices) + " dropped " + std::to_string(dropped);

@@ -68,18 +68,23 @@ RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given)
     const std::vector<std::array<int, 2>> whole = std::exchange(given, {});
     for (int t : part_of) given.push_back(whole[t]);
   }
-  Solids solids = find_solids(surface);
   RegionReport report;
+  bool meet = false, flips = false;  // more than two triangles, two with different orientation
+  for_each_edge(surface.tris, (int)surface.points.size(), [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]), g = half_edge(uses.back());
+    if (uses.size() == 1 && report.free_edges++ == 0)
+      report.free_at =
+          lerp(surface.points[origin(surface.tris, h)], surface.points[target(surface.tris, h)], 0.5);
+    meet = meet || uses.size() > 2;
+    flips = flips || (h != g && origin(surface.tris, h) == origin(surface.tris, g));
+  });
+  if (flips && !meet) given.clear();  // there are no regions
+  Solids solids{std::vector<std::array<int, 2>>(surface.tris.size(), {0, 0})};
+  if (meet || !flips) solids = find_solids(surface);
   report.volume = solids.volume;
   report.label.resize(solids.volume.size());
   std::iota(report.label.begin(), report.label.end(), 0);
   if (!given.empty()) report.label = labels_of(solids, given);
-  for_each_edge(surface.tris, (int)surface.points.size(), [&](std::span<const EdgeUse> uses) {
-    const int h = half_edge(uses[0]);
-    if (uses.size() == 1 && report.free_edges++ == 0)
-      report.free_at =
-          lerp(surface.points[origin(surface.tris, h)], surface.points[target(surface.tris, h)], 0.5);
-  });
   surface.face.erase("model");
   split_sheets(surface);
   face_outside(surface, solids);

@@ -12,8 +12,6 @@ namespace meshpipe {
 struct FailureFacts {
   double least_size = 0;    ///< sizes from here on can be met, with a margin; 0: unknown
   double strip_width = 0;   ///< strips narrower than this ask for too many triangles; 0: none do
-  int nonorientable = 0;    ///< triangles of components that are not orientable,
-  bool orientable = false;  ///< and whether there are others
   std::string requirement;  ///< of the contract, the first that is missed,
   double value = 0;         ///< and what was reached of it
   Vec3 place{};             ///< where it failed, if `reach` is above 0,

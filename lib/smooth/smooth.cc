@@ -254,7 +254,6 @@ double mean_edge(const Mesh& mesh) {
 /// Throws: GoalMissed if the bound leaves almost nothing of what smoothing does without one, if that is much.
 void refuse_small_bound(Motion& m, const SmoothReport& r, double edge) {
   if (m.within >= edge || r.angle_after <= (1 - least_gain) * r.angle_before) return;
-  const double bound = m.within;
   const std::vector<Vec3> done = m.s.points;
   m.s.points = m.start;
   m.within = edge;
@@ -269,7 +268,7 @@ void refuse_small_bound(Motion& m, const SmoothReport& r, double edge) {
   const int most = static_cast<int>(std::max_element(way.begin(), way.end()) - way.begin());
   const double longest = way[most];
   std::nth_element(way.begin(), way.begin() + m.n() / 2, way.end());
-  throw GoalMissed("a bound of " + shown(bound) +
+  throw GoalMissed("a bound of " + shown(r.within) +
                    " is too small to smooth: angles between triangles fall from " + shown(r.angle_before) +
                    " to " + shown(r.angle_after) + " degrees, and without it to " +
                    shown(r.angle_before - gain) + "; half the vertices move by more than " +

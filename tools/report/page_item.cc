@@ -217,7 +217,7 @@ PageItem page_item(const Stream& stream, const std::string& name, const Judgment
     item.contract = judgment->contract;
     item.failures = judge(judgment->contract, f, surface);
     for (const Requirement& r : judgment->contract) item.reached.push_back(reached(r, f));
-    item.warnings = warnings_of(stream);
+    item.warnings = warnings_of(stream, f);
     item.report["failed"] = failures_json(item.failures);
     FigureColumn distance{"distance, in sizes", f.distance.deviation.ratio, 0, 1};
     for (double& x : distance.values) distance.high = std::max(distance.high, x *= most_deviation);

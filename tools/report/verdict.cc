@@ -50,8 +50,13 @@ double required_distance(const Contract& contract) {
   return most;
 }
 
-std::vector<std::string> warnings_of(const Stream& stream) {
+std::vector<std::string> warnings_of(const Stream& stream, const Findings& f) {
   std::vector<std::string> lines;
+  if (const int n = f.sheets ? f.sheets->flips[1] : 0; n > 0)
+    lines.push_back("the surface cannot be oriented: triangles on both sides of " + std::to_string(n) +
+                    (n == 1 ? " line" : " lines") +
+                    " have the same vertices there, but are oriented differently; genus and boundary loops "
+                    "are those of the surface cut open along this");
   if (const double most = moved_in(stream); most > 0)
     lines.push_back("mfeature has moved points by up to " + shown(most) +
                     ": this is part of the distance at most");

@@ -23,7 +23,7 @@ double required_distance(const Contract& contract);
 
 /// Returns lines on what mclean and mfeature have done to the input, which the comparison with the cleaned
 /// input hides.
-std::vector<std::string> warnings_of(const Stream& stream);
+std::vector<std::string> warnings_of(const Stream& stream, const Findings& f);
 
 /// Returns the figures, histograms and cleaning for --json.
 nlohmann::ordered_json report_of(const Findings& findings, const Stream& stream);

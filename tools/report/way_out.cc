@@ -76,21 +76,6 @@ const Row table[] = {
        return WayOut{"mclean --weld " + at_least(c.facts.strip_width),
                      "the sides of narrower strips become one"};
      }},
-    {[](const Case& c) {
-       return c.facts.nonorientable > 0 && c.found.closed && !c.used("mclean", "--resolve");
-     },
-     [](const Case&) {
-       return WayOut{"mclean --resolve outer", "the input is closed, and only what bounds the outside stays"};
-     }},
-    {[](const Case& c) { return c.facts.nonorientable > 0 && c.facts.orientable; },
-     [](const Case& c) {
-       return WayOut{"mclean --drop-nonorientable",
-                     std::to_string(c.facts.nonorientable) + " triangles go, the others are orientable"};
-     }},
-    {[](const Case& c) { return c.facts.nonorientable > 0; },
-     [](const Case&) {
-       return WayOut{"mwrap", "a wrap is orientable"};
-     }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
      [](const Case&) {
        return WayOut{"without --min", "smaller triangles come closer"};

@@ -56,16 +56,3 @@ TEST(Diagnosis, KnowsTheLinesNextToAPlace) {
   EXPECT_TRUE(!crease.at_patch_border && crease.at_crease && !crease.at_border);
   EXPECT_TRUE(diagnose(s, {5.1, 0.9, 0}, 0.3).at_border);
 }
-
-TEST(Diagnosis, KnowsAClosedSurfaceByItsPoints) {
-  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::vector<Vec3> soup;
-  std::vector<Tri> tris;
-  for (const Tri& t : {Tri{0, 2, 1}, Tri{0, 1, 3}, Tri{1, 2, 3}, Tri{2, 0, 3}}) {
-    tris.push_back({(int)soup.size(), (int)soup.size() + 1, (int)soup.size() + 2});
-    for (int v : t) soup.push_back(corners[v]);
-  }
-  EXPECT_TRUE(diagnose(surface(soup, tris), {}, 0).closed);
-  tris.pop_back();
-  EXPECT_FALSE(diagnose(surface(soup, tris), {}, 0).closed);
-}

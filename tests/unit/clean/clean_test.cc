@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "lib/core/error.h"
+#include "lib/core/junctions.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
 
@@ -261,16 +262,54 @@ TEST(Clean, TwoTetrahedraOnOneEdgeStayClosed) {
   EXPECT_NEAR(volume(s), 2.0 / 6, 1e-15);
 }
 
-TEST(Clean, RefusesAMoebiusBand) {
+TEST(Clean, CutsAMoebiusBandAcross) {
   // a strip of five triangles whose ends are joined after half a turn
-  Surface s = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
-                      {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
-  try {
-    clean(s);
-    FAIL();
-  } catch (const NotAdmissible& e) {
-    EXPECT_NE(std::string(e.what()).find("not orientable: triangles"), std::string::npos);
+  const Surface band = surface({{0, 0, 0}, {1, 0, 1}, {2, 1, 0}, {1, 2, 1}, {0, 1, 3}},
+                               {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}});
+  for (auto sheets : {CleanOptions::pair, CleanOptions::automatic, CleanOptions::keep}) {
+    Surface s = band;
+    const CleanReport r = clean(s, {.sheets = sheets});
+    EXPECT_EQ(r.sheets.flips.triangles, 5);
+    EXPECT_EQ(r.sheets.flips.edges, 1);
+    EXPECT_EQ(r.sheets.kept, sheets != CleanOptions::pair);
+    EXPECT_EQ(s.points.size(), r.sheets.kept ? 5u : 7u);
+    if (r.sheets.kept) take_apart(s);
+    const Topology t = topology_of(s);
+    EXPECT_EQ(t.components, 1);
+    EXPECT_EQ(t.loops, 1);
+    EXPECT_EQ(t.genus, 0);
+    EXPECT_EQ(join_borders(s).size(), 5u);
   }
+}
+
+TEST(Clean, CutsAKleinBottleAlongAShortLine) {
+  // a torus of 30 by 12 quadrangles whose ends are joined mirrored; an immersion in space
+  constexpr int n = 30, m = 12;
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * (j + 0.3) / m;
+      const double x = std::sin(v), y = std::sin(2 * v), r = 3 + std::cos(u / 2) * x - std::sin(u / 2) * y;
+      points.push_back({r * std::cos(u), r * std::sin(u), std::sin(u / 2) * x + std::cos(u / 2) * y});
+    }
+  auto at = [&](int i, int j) { return i < n ? i * m + j % m : (2 * m - 1 - j) % m; };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      tris.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      tris.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  Surface s = surface(points, tris);
+  const CleanReport r = clean(s, {.sheets = CleanOptions::automatic});
+  EXPECT_EQ(r.sheets.flips.edges, m);
+  const std::vector<Tri> oriented = s.tris;
+  EXPECT_EQ(clean(s, {.sheets = CleanOptions::automatic}).sheets.flips.edges, m);
+  EXPECT_EQ(s.tris, oriented);  // the line stays where it is
+  take_apart(s);
+  const Topology t = topology_of(s);
+  EXPECT_EQ(t.components, 1);
+  EXPECT_EQ(t.loops, 2);
+  EXPECT_EQ(t.genus, 0);
 }
 
 TEST(Clean, RefusesWhatHasNoTriangleLeftAndTellsWhy) {
@@ -372,16 +411,12 @@ TEST(Clean, DropsANonorientableComponentAndNamesIt) {
   for (Vec3 p : tetra_points) s.points.push_back(p);
   s.face = {"face", 0, {}};
   CleanReport r;
-  Surface refused = s;
-  EXPECT_THROW(clean(refused, {}, r), NotAdmissible);
-  EXPECT_EQ(r.offending.size(), 5u);
-  EXPECT_EQ(refused.tris, s.tris);
   clean(s, {.drop_nonorientable = true}, r);
   EXPECT_EQ(s.tris.size(), 4u);
   EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
   ASSERT_EQ(r.nonorientable.size(), 1u);
-  EXPECT_EQ(r.nonorientable[0].triangle, 0);
-  EXPECT_EQ(r.nonorientable[0].triangles, 5);
+  EXPECT_EQ(r.nonorientable[0], (std::array<int, 2>{0, 5}));
+  EXPECT_EQ(r.offending.size(), 5u);
   EXPECT_EQ(r.components, 1);
 }
 
@@ -819,7 +854,7 @@ static Surface sphere_with_poles(int rows, int columns, double radius) {
   std::vector<Tri> tris;
   for (int i = 0; i <= rows; ++i)
     for (int j = 0; j < columns; ++j) {
-      const double theta = M_PI * i / rows, phi = 2 * M_PI * j / columns;
+      const double theta = std::numbers::pi * i / rows, phi = 2 * std::numbers::pi * j / columns;
       const double r = i == 0 || i == rows ? radius : std::sin(theta);
       points.push_back({r * std::cos(phi), r * std::sin(phi), std::cos(theta)});
     }

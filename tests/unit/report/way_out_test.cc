@@ -65,15 +65,6 @@ TEST(WayOut, AsksToLeaveOutAnOptionThatStandsInTheWay) {
 
 TEST(WayOut, KnowsWhatCanBeMet) {
   EXPECT_EQ(named(unreached, sizes_from(0.12345), {}), "--min 0.124");
-  FailureFacts facts;
-  facts.nonorientable = 5;
-  EXPECT_EQ(named(refused, facts, {}), "mwrap");
-  Diagnosis closed;
-  closed.closed = true;
-  EXPECT_EQ(named(refused, facts, closed), "mclean --resolve outer");
-  EXPECT_EQ(named(refused, facts, closed, {{"mclean", "", "--resolve=outer"}}), "mwrap");
-  facts.orientable = true;
-  EXPECT_EQ(named(refused, facts, {}), "mclean --drop-nonorientable");
   EXPECT_EQ(named(refused, {}, {}), "");  // the message says which program to run first
   EXPECT_EQ(named(3, {}, {}), "");
 }
