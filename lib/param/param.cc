@@ -104,7 +104,7 @@ class Search {
   bool is_too_uneven(double limit) {
     if (options_.map != MapKind::conformal || options_.form != ConformalForm::boundary_first) return false;
     try {
-      report_.area_scale = boundary_first().area_distortion();
+      report_.area_scale = std::min(boundary_first().area_distortion(), std::numeric_limits<double>::max());
     } catch (const GoalMissed&) {  // singular to rounding
     }
     return report_.area_scale > limit;

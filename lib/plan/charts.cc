@@ -53,32 +53,29 @@ int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts,
 /// neighbors has put vertices on its border.
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
-  charts.chart.resize(n_parts);
-  charts.report.resize(n_parts);
-  charts.failure.resize(n_parts);
-  charts.waiting.resize(n_parts, 1);
-  charts.as_it_is.resize(n_parts, 0);
+  charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
+  charts.waiting.resize(n_parts, 1), charts.as_it_is.resize(n_parts, 0);
   for (int p = 0; p < n_parts; ++p) {
     charts.waiting[p] |= parts[p].vertex != charts.chart[p].mesh.vertex;
     charts.chart[p].mesh = std::move(parts[p]);
   }
 }
 
-/// Takes maps that are known, where they are of the part as it is and one-to-one.
+/// Takes maps that are known, one-to-one and of the part as it is, and the reports of parts that have none.
 void take_known(std::vector<Chart> known, const std::vector<ParamReport>& reports, Charts& charts) {
   for (std::size_t p = 0; p < std::min(known.size(), charts.chart.size()); ++p) {
     const SubMesh& mesh = charts.chart[p].mesh;
-    if (known[p].mesh.vertex != mesh.vertex || count_inverted(mesh.tris, known[p].uv) > 0) continue;
+    charts.waiting[p] = known[p].mesh.vertex != mesh.vertex || count_inverted(mesh.tris, known[p].uv) > 0;
+    if (charts.waiting[p] && !known[p].uv.empty()) continue;
     charts.chart[p].uv = std::move(known[p].uv);
     charts.report[p] = reports[p];
-    charts.waiting[p] = 0;
   }
 }
 
 /// Maps the parts that wait for it, in parallel.
 void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
   parallel_for((int)charts.chart.size(), [&](int p) {
-    if (!charts.waiting[p]) return;
+    if (!charts.waiting[p] || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
     Chart& chart = charts.chart[p];
     charts.failure[p].clear();
     try {
@@ -123,17 +120,18 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
          (bisect_part(surface, p, n_parts, choice[0]) || bisect_part(surface, p, n_parts, choice[1]));
 }
 
-/// Leaves parts that might be cut, by the reasons of cut_again, without a map.
+/// Leaves parts that might be cut, by the reasons of cut_again, without a map, and reports why one has none.
 void leave_poor(bool strict, Charts& charts) {
   for (std::size_t p = 0; p < charts.chart.size(); ++p) {
-    const ParamReport& r = charts.report[p];
+    ParamReport& r = charts.report[p];
     const bool small = charts.chart[p].mesh.tris.size() < limit::limb_triangles;
     if (charts.failure[p].empty() &&
         (strict || (r.area_scale <= limit::area_scale && r.anisotropy_mean <= limit::mean_anisotropy &&
                     (small || r.anisotropy_median <= limit::limb_anisotropy))))
       continue;
+    const double scale = charts.chart[p].uv.empty() ? r.area_scale : 1;
     charts.chart[p].uv.clear();
-    charts.report[p] = {};
+    r = {}, r.area_scale = scale;
   }
 }
 
