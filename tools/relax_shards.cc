@@ -17,20 +17,17 @@ int tiles_of(const TiledMesh& whole, const RelaxOptions& options) {
 void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const ShardFiles& to) {
   const int tiles = tiles_of(whole, relax.options), count = std::min(to.count, tiles);
   make_directory(to.into);
-  const TilePass pass = relax.pass(whole, repair);
+  const TileWork work{relax.line_kind, relax.pass(whole, repair)};
   int next = 0, shard = 0;
-  TileShard some;
-  relax.cut(whole, pass, [&](Tile tile) {
-    some.numbers.push_back(next++);
-    some.tiles.push_back(std::move(tile));
+  TileTables some;
+  relax.cut(whole, work.pass, [&](const Tile& tile) {
+    some.add(next++, tile);
     if (next < (long long)(shard + 1) * tiles / count) return;
-    some.line_kind = relax.line_kind, some.pass = pass;
     Stream stream;
     stream.history = io.stream.history, stream.remarks = io.stream.remarks;
     stream.ascii = io.stream.ascii;
-    write_tiles(stream, some);
+    some.write(stream, work);
     io.write_to(shard_name(to.into, shard++), stream);
-    some = {};
   });
   io.say(std::to_string(count) + (count == 1 ? " shard of " : " shards of ") + std::to_string(tiles) +
          " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
@@ -50,11 +47,16 @@ void relax_shard(Io& io, int sweeps) {
   parallel_for(n, [&](int i) { relax_tile(shard.tiles[i], shard.line_kind, shard.pass); });
   shard.relaxed = true;
   std::size_t triangles = 0;
-  for (const Tile& tile : shard.tiles) triangles += tile.mesh.tris.size();
+  TileTables done;
+  for (int i = 0; i < n; ++i) {
+    triangles += shard.tiles[i].mesh.tris.size();
+    done.add(shard.numbers[i], shard.tiles[i]);
+    shard.tiles[i] = {};  // frees its memory now
+  }
   io.say(std::to_string(n) + (n == 1 ? " tile, " : " tiles, ") + std::to_string(triangles) + " triangles");
   io.report["tiles"] = n;
   io.report["triangles"] = triangles;
-  write_tiles(io.stream, shard);
+  done.write(io.stream, shard);
   io.write(io.stream);
 }
 

@@ -87,10 +87,10 @@ LiftedMesh lifted_from(const Surface& s, int n_faces, int n_lines) {
   return mesh;
 }
 
-Surface surface_from(const LiftedMesh& mesh) {
+Surface surface_from(LiftedMesh mesh) {
   Surface s;
-  s.points = mesh.points;
-  s.tris = mesh.tris;
+  s.points = std::move(mesh.points);
+  s.tris = std::move(mesh.tris);
   std::vector<int> face;
   std::vector<double> b1, b2;
   for (const Place& p : mesh.place) {
@@ -98,15 +98,15 @@ Surface surface_from(const LiftedMesh& mesh) {
     b1.push_back(p.b1);
     b2.push_back(p.b2);
   }
-  s.vertex.set("size", mesh.size);
+  s.vertex.set("size", std::move(mesh.size));
   s.vertex.set("ref_face", std::move(face));
   s.vertex.set("b1", std::move(b1));
   s.vertex.set("b2", std::move(b2));
-  s.vertex.set("kind", mesh.kind);
-  s.vertex.set("line", mesh.line);
-  s.face.set("patch", mesh.patch);
-  s.face.set("part", mesh.part);
-  s.face.set("model", mesh.model);
+  s.vertex.set("kind", std::move(mesh.kind));
+  s.vertex.set("line", std::move(mesh.line));
+  s.face.set("patch", std::move(mesh.patch));
+  s.face.set("part", std::move(mesh.part));
+  s.face.set("model", std::move(mesh.model));
   return s;
 }
 

@@ -14,7 +14,7 @@ LiftedMesh read_lifted(const Stream& stream);
 /// Throws: BadInput with the row of a wrong index or weight.
 LiftedMesh lifted_from(const Surface& surface, int faces, int lines);
 /// The mesh as a surface with its columns.
-Surface surface_from(const LiftedMesh& mesh);
+Surface surface_from(LiftedMesh mesh);
 
 /// Replaces `vertex` and `face` by the mesh and drops table mid_vertex. Vertex data of the input is
 /// interpolated from the reference. Requires write_reference before.

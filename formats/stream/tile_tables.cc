@@ -54,13 +54,18 @@ bool same(const TilePass& a, const TilePass& b) {
          a.mean_size == b.mean_size;
 }
 
-/// The columns of vertices that only tiles have. Places need all three weights: 1 - b1 - b2 rounds.
-void set_tiled(Surface& s, const TiledMesh& mesh) {
+std::vector<double> first_weights(const std::vector<Place>& places) {
   std::vector<double> b0;
-  for (const Place& p : mesh.mesh.place) b0.push_back(p.b0);
+  for (const Place& p : places) b0.push_back(p.b0);
+  return b0;
+}
+
+/// The columns of vertices that only tiles have. Places need all three weights: 1 - b1 - b2 rounds.
+void set_tiled(Surface& s, std::vector<double> b0, const std::vector<Hold>& hold,
+               std::vector<double> refinement) {
   s.vertex.set("b0", std::move(b0));
-  s.vertex.set("hold", std::vector<std::uint8_t>(mesh.hold.begin(), mesh.hold.end()));
-  s.vertex.set("refinement", mesh.refinement);
+  s.vertex.set("hold", std::vector<std::uint8_t>(hold.begin(), hold.end()));
+  s.vertex.set("refinement", std::move(refinement));
 }
 
 TiledMesh tiled_from(const Surface& s, LiftedMesh mesh) {
@@ -77,102 +82,96 @@ TiledMesh tiled_from(const Surface& s, LiftedMesh mesh) {
   return tiled;
 }
 
-/// All tiles of a shard as one, their rows one tile after the other.
-struct Joined {
-  TiledMesh all;
-  std::vector<int> vertices, excess, faces;
-  std::vector<char> corner;
-  Mesh others;
-  Surface slice;
-  std::vector<int> rim[2];
-};
+/// Columns of table `tile`: the rows of each in the other tables, in this order.
+constexpr const char* sizes[] = {"vertices",  "faces",          "edges",      "ref_vertices",
+                                 "ref_faces", "other_vertices", "other_faces"};
+constexpr std::size_t sizes_of_relaxed = 3;
 
-void append_tile(Joined& j, const Tile& tile) {
-  LiftedMesh& to = j.all.mesh;
+}  // namespace
+
+void TileTables::add(int number, const Tile& tile) {
   const LiftedMesh& from = tile.mesh;
+  const Surface& slice = tile.slice;
+  auto count = [](const auto& list) { return static_cast<int>(list.size()); };
+  numbers_.push_back(number);
+  rows_.push_back({count(from.points), count(from.tris), count(tile.model_rim), count(slice.points),
+                   count(slice.tris), count(tile.others.points), count(tile.others.tris)});
+  counts_.push_back(tile.counts);
+  LiftedMesh& to = all_.mesh;
   append_tris(to.tris, from.tris, to.points.size());
   append(to.points, from.points), append(to.kind, from.kind), append(to.line, from.line);
   append(to.size, from.size), append(to.patch, from.patch), append(to.part, from.part);
   append(to.model, from.model);
-  const int first_face = static_cast<int>(j.slice.tris.size());
+  const int first_face = count(slice_.tris);
   for (Place p : from.place) p.face += first_face, to.place.push_back(p);
-  append(j.all.hold, tile.hold), append(j.all.refinement, tile.refinement);
-  append(j.vertices, tile.vertices), append(j.excess, tile.excess), append(j.faces, tile.faces);
-  append(j.corner, tile.corner);
-  append_tris(j.others.tris, tile.others.tris, j.others.points.size());
-  append(j.others.points, tile.others.points);
-  for (const auto& [a, b] : tile.model_rim) j.rim[0].push_back(a), j.rim[1].push_back(b);
-  Surface& s = j.slice;
-  append_tris(s.tris, tile.slice.tris, s.points.size());
-  append(s.points, tile.slice.points);
+  append(all_.hold, tile.hold), append(all_.refinement, tile.refinement);
+  append(vertices_, tile.vertices), append(excess_, tile.excess), append(faces_, tile.faces);
+  append(corner_, tile.corner);
+  append_tris(others_.tris, tile.others.tris, others_.points.size());
+  append(others_.points, tile.others.points);
+  for (const auto& [a, b] : tile.model_rim) rim_[0].push_back(a), rim_[1].push_back(b);
+  append_tris(slice_.tris, slice.tris, slice_.points.size());
+  append(slice_.points, slice.points);
   auto column = [&]<class T>(Table& table, const Table& more, const char* name, T) {
     if (!more.has(name)) return;
     if (!table.has(name)) table.set(name, std::vector<T>());
     append(table.get<T>(name), more.get<T>(name));
     table.rows = table.get<T>(name).size();
   };
-  column(s.vertex, tile.slice.vertex, "size", 0.0);
-  column(s.face, tile.slice.face, "model", std::uint8_t());
+  column(slice_.vertex, slice.vertex, "size", 0.0);
+  column(slice_.face, slice.face, "model", std::uint8_t());
 }
 
-}  // namespace
-
-void write_tiles(Stream& stream, const TileShard& shard) {
+void TileTables::write(Stream& stream, const TileWork& work) {
   stream.tables.clear();
-  Joined j;
   Table table{"tile", 0, {}};
-  table.set("number", shard.numbers);
-  auto count = [&](const char* name, auto of) {
-    std::vector<int> counts;
-    for (const Tile& tile : shard.tiles) counts.push_back(static_cast<int>(of(tile)));
-    table.set(name, std::move(counts));
+  table.set("number", std::move(numbers_));
+  auto column = [&](const char* name, const auto& list, auto of) {
+    std::vector<int> values;
+    for (const auto& x : list) values.push_back(of(x));
+    table.set(name, std::move(values));
   };
-  count("vertices", [](const Tile& t) { return t.mesh.points.size(); });
-  count("faces", [](const Tile& t) { return t.mesh.tris.size(); });
-  count("edges", [](const Tile& t) { return t.model_rim.size(); });
-  if (shard.relaxed) {
+  for (std::size_t i = 0; i < (work.relaxed ? sizes_of_relaxed : std::size(sizes)); ++i)
+    column(sizes[i], rows_, [i](const auto& rows) { return rows[i]; });
+  if (work.relaxed)
     for (const auto& [name, member] : count_columns)
-      count(name, [m = member](const Tile& t) { return t.counts.*m; });
-  } else {
-    count("ref_vertices", [](const Tile& t) { return t.slice.points.size(); });
-    count("ref_faces", [](const Tile& t) { return t.slice.tris.size(); });
-    count("other_vertices", [](const Tile& t) { return t.others.points.size(); });
-    count("other_faces", [](const Tile& t) { return t.others.tris.size(); });
-  }
-  for (const Tile& tile : shard.tiles) append_tile(j, tile);
-  stream.surface = surface_from(j.all.mesh);
-  set_tiled(stream.surface, j.all);
-  stream.surface.vertex.set("row", std::move(j.vertices));
+      column(name, counts_, [m = member](const RelaxCounts& c) { return c.*m; });
+  std::vector<double> b0 = first_weights(all_.mesh.place);
+  stream.surface = surface_from(std::move(all_.mesh));
+  set_tiled(stream.surface, std::move(b0), all_.hold, std::move(all_.refinement));
+  stream.surface.vertex.set("row", std::move(vertices_));
   stream.set(std::move(table));
-  stream.set(pass_table(shard.pass));
+  stream.set(pass_table(work.pass));
   Table edges{"tile_edge", 0, {}};
-  edges.set("a", std::move(j.rim[0]));
-  edges.set("b", std::move(j.rim[1]));
+  edges.set("a", std::move(rim_[0]));
+  edges.set("b", std::move(rim_[1]));
   stream.set(std::move(edges));
   Table lines{"tile_line", 0, {}};
-  lines.set("kind", shard.line_kind);
+  lines.set("kind", work.line_kind);
   stream.set(std::move(lines));
-  if (shard.relaxed) return;
-  stream.surface.vertex.set("excess", std::move(j.excess));
-  write_reference(stream, j.slice);
-  Table vertex = stream.need("ref_vertex", writer), face = stream.need("ref_face", writer);
-  if (!j.corner.empty()) vertex.set("corner", std::vector<std::uint8_t>(j.corner.begin(), j.corner.end()));
-  face.set("row", std::move(j.faces));
-  stream.set(std::move(vertex));
-  stream.set(std::move(face));
-  stream.set(table_of("other_vertex", j.others, true));
-  stream.set(table_of("other_face", j.others, false));
+  if (!work.relaxed) {
+    stream.surface.vertex.set("excess", std::move(excess_));
+    Table vertex = table_of("ref_vertex", slice_, true), face = table_of("ref_face", slice_, false);
+    for (Column& c : slice_.vertex.columns) vertex.columns.push_back(std::move(c));
+    for (Column& c : slice_.face.columns) face.columns.push_back(std::move(c));
+    if (!corner_.empty()) vertex.set("corner", std::vector<std::uint8_t>(corner_.begin(), corner_.end()));
+    face.set("row", std::move(faces_));
+    stream.set(std::move(vertex));
+    stream.set(std::move(face));
+    stream.set(table_of("other_vertex", others_, true));
+    stream.set(table_of("other_face", others_, false));
+  }
+  *this = {};
 }
 
 namespace {
 
 /// Gives the tiles what only those have that are not relaxed yet.
 void read_slices(const Stream& stream, const Table& table, TileShard& shard) {
-  const Surface reference = read_reference(stream);
   const Table &vertex = stream.need("ref_vertex", writer), &face = stream.need("ref_face", writer);
   const Table &other_vertex = stream.need("other_vertex", writer),
               &other_face = stream.need("other_face", writer);
-  const Mesh others = mesh_from(other_vertex, other_face);
+  const Mesh reference = mesh_from(vertex, face), others = mesh_from(other_vertex, other_face);
   const auto points = spans_of(table, "ref_vertices", vertex.rows),
              tris = spans_of(table, "ref_faces", face.rows),
              other_points = spans_of(table, "other_vertices", other_vertex.rows),
@@ -183,9 +182,8 @@ void read_slices(const Stream& stream, const Table& table, TileShard& shard) {
     Surface& s = tile.slice;
     s.points = points[i].of(reference.points);
     s.tris = tris_of(reference.tris, tris[i], points[i]);
-    if (reference.vertex.has("size"))
-      s.vertex.set("size", points[i].of(reference.vertex.get<double>("size")));
-    s.face.set("model", tris[i].of(reference.face.get<std::uint8_t>("model")));
+    if (vertex.has("size")) s.vertex.set("size", points[i].of(vertex.get<double>("size")));
+    if (face.has("model")) s.face.set("model", tris[i].of(face.get<std::uint8_t>("model")));
     tile.faces = tris[i].of(face.get<int>("row"));
     if (vertex.has("corner"))
       for (std::uint8_t c : points[i].of(vertex.get<std::uint8_t>("corner"))) tile.corner.push_back(c != 0);
@@ -293,7 +291,7 @@ std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int ti
 
 void write_tiled(Stream& stream, const TiledMesh& mesh, const BetweenPasses& between) {
   write_lifted(stream, mesh.mesh);
-  set_tiled(stream.surface, mesh);
+  set_tiled(stream.surface, first_weights(mesh.mesh.place), mesh.hold, mesh.refinement);
   Table table{"relaxing", 0, {}};
   for (const auto& [name, member] : count_columns) table.set(name, std::vector<int>{between.counts.*member});
   table.set("second_order", std::vector<int>{between.second_order});

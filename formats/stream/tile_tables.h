@@ -1,27 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tiles of a mesh as streams, on which mrelax works as jobs of their own, and the mesh between two passes.
 #pragma once
+#include <array>
+
 #include "formats/stream.h"
 #include "lib/relax/relax.h"
 
 namespace meshpipe {
 
-/// Some tiles of a mesh, with what it takes to relax them.
-struct TileShard {
-  std::vector<int> numbers;    ///< of the tiles in the whole, ascending
-  std::vector<Tile> tiles;     ///< without `triangles`
+/// What it takes to relax some tiles of a mesh.
+struct TileWork {
   std::vector<int> line_kind;  ///< of all lines of the whole
   TilePass pass;
-  bool relaxed = false;
+  bool relaxed = false;  ///< has it been done?
+};
+struct TileShard : TileWork {
+  std::vector<int> numbers;  ///< of the tiles in the whole, ascending
+  std::vector<Tile> tiles;   ///< without `triangles`
 };
 
 /// Returns whether the stream has tiles, table `tile`.
 inline bool has_tiles(const Stream& stream) { return stream.find("tile") != nullptr; }
 
-/// Puts tiles into a stream, from which all tables are dropped: their meshes are its surface.
-void write_tiles(Stream& stream, const TileShard& shard);
+/// Tiles one after the other as the columns of a stream.
+class TileTables {
+ public:
+  void add(int number, const Tile& tile);
+  /// Moves the tiles into a stream, from which all tables are dropped: their meshes are its surface.
+  void write(Stream& stream, const TileWork& work);
 
-/// Reads what write_tiles wrote. Throws: BadInput if the rows of a table are not those of the tiles.
+ private:
+  std::vector<int> numbers_;
+  std::vector<std::array<int, 7>> rows_;  ///< of each tile in the tables, see `sizes` in tile_tables.cc
+  std::vector<RelaxCounts> counts_;
+  TiledMesh all_;
+  std::vector<int> vertices_, excess_, faces_;
+  std::vector<char> corner_;
+  Mesh others_;
+  Surface slice_;
+  std::vector<int> rim_[2];
+};
+
+/// Reads what TileTables wrote. Throws: BadInput if the rows of a table are not those of the tiles.
 TileShard read_tiles(const Stream& stream);
 
 /// Returns the tiles from all shards in their order, relaxed. `read` returns a shard by its name.

@@ -34,14 +34,14 @@ struct Example {
     pass = relax.pass(whole, true);
   }
   Stream shard(bool relaxed) const {
-    TileShard s{{}, {}, kinds, pass, relaxed};
+    TileTables tiles;
+    int number = 0;
     relax.cut(whole, pass, [&](Tile tile) {
       if (relaxed) relax_tile(tile, kinds, pass);
-      s.numbers.push_back((int)s.numbers.size());
-      s.tiles.push_back(std::move(tile));
+      tiles.add(number++, tile);
     });
     Stream stream;
-    write_tiles(stream, s);
+    tiles.write(stream, {kinds, pass, relaxed});
     stream.history = {{"mrelax", "1", ""}};
     return stream;
   }
