@@ -72,7 +72,6 @@ std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, c
 /// where there are no such triangles. Triangles at borders and model edges count in neither. The means are
 /// equal where a result shows no trace of the cuts. The lines lie on `surface`.
 std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
-                                                                       const Bvh& tree,
                                                                        const Quality& quality,
                                                                        const Lines& lines,
                                                                        const Mesh& surface);

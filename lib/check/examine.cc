@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -106,33 +107,36 @@ std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, c
 }
 
 std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
-                                                                       const Bvh& tree,
                                                                        const Quality& quality,
                                                                        const Lines& lines,
                                                                        const Mesh& surface) {
   const Mesh& mesh = result.mesh;
-  std::vector<char> close(mesh.tris.size(), 0);
+  std::vector<std::pair<Vec3, Vec3>> segments;
+  Mesh boxes;  // around them, as triangles that have these boxes
   auto at = [&](int i) {
     const LinePoint& p = lines.points[i];
     return lerp(surface.points[p.a], surface.points[p.b], p.t);
   };
-  auto mark = [&](Vec3 a, Vec3 b) {
-    Box box{lower(a, b), upper(a, b)};
+  auto add = [&](Vec3 a, Vec3 b) {
     const double r = 2 * norm(b - a);  // edges are not much longer than the line's segments
-    box.lo = box.lo - Vec3{r, r, r};
-    box.hi = box.hi + Vec3{r, r, r};
-    tree.overlapping(box, [&](int t) {
-      if (close[t]) return;
-      const Tri& v = mesh.tris[t];
-      const Vec3 &x = mesh.points[v[0]], &y = mesh.points[v[1]], &z = mesh.points[v[2]];
-      const double edge = (norm(x - y) + norm(y - z) + norm(z - x)) / 3;
-      close[t] = distance_to_segment(1.0 / 3 * (x + y + z), a, b) <= edge;
-    });
+    const int first = (int)boxes.points.size();
+    boxes.points.insert(boxes.points.end(), {lower(a, b) - Vec3{r, r, r}, upper(a, b) + Vec3{r, r, r}});
+    boxes.tris.push_back({first, first + 1, first + 1});
+    segments.push_back({a, b});
   };
   for (const Line& l : lines.lines) {
     if (l.kind != interface_line) continue;
-    for (int i = 1; i < l.count; ++i) mark(at(l.first + i - 1), at(l.first + i));
-    if (l.closed && l.count) mark(at(l.first + l.count - 1), at(l.first));
+    for (int i = 1; i < l.count; ++i) add(at(l.first + i - 1), at(l.first + i));
+    if (l.closed && l.count) add(at(l.first + l.count - 1), at(l.first));
+  }
+  std::vector<char> close(mesh.tris.size(), 0);
+  const std::unique_ptr<const Bvh> tree(segments.empty() ? nullptr : new Bvh(boxes));
+  for (int t = 0; tree && t < (int)close.size(); ++t) {
+    const double edge =
+        (edge_length(mesh, 3 * t) + edge_length(mesh, 3 * t + 1) + edge_length(mesh, 3 * t + 2)) / 3;
+    tree->overlapping(box_of(mesh, t), [&](int s) {
+      close[t] |= distance_to_segment(centroid(mesh, t), segments[s].first, segments[s].second) <= edge;
+    });
   }
   std::vector<char> held(mesh.points.size(), 0);
   for (int h = 0; h < result.n_half_edges(); ++h)
@@ -188,8 +192,8 @@ void find_chords(Findings& f, const Connectivity& result, const Surface& given) 
 }
 
 /// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
-/// case. `measured`: null if they are not known yet.
-void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, const Mesh& given,
+/// case. `mesh_tree`: null if they are `measured`.
+void find_intersections(Findings& f, const Mesh& mesh, const Bvh* mesh_tree, const Mesh& given,
                         const Bvh& reference_tree, bool sheets_meet, const Measured* measured) {
   Mesh joined[2];
   auto find = [&](Mesh& copy, const Mesh& surface, const Bvh& tree) {
@@ -197,7 +201,7 @@ void find_intersections(Findings& f, const Mesh& mesh, const Bvh& mesh_tree, con
     copy = surface;
     return sheet_intersections(copy, tree);
   };
-  f.intersections = measured ? measured->intersections : find(joined[0], mesh, mesh_tree);
+  f.intersections = measured ? measured->intersections : find(joined[0], mesh, *mesh_tree);
   if (f.intersections.empty() && !sheets_meet) return;
   const auto before = find(joined[1], given, reference_tree);
   const Mesh& reference = sheets_meet ? joined[1] : given;
@@ -240,9 +244,9 @@ std::vector<double> sizes_or(const Surface& result, const std::vector<double>& o
   return result.vertex.has("size") ? result.vertex.get<double>("size") : otherwise;
 }
 
-/// Measures distances, of vertices over their mean edges.
+/// Measures distances, of vertices over their mean edges. `mesh_tree`: null if they are `measured`.
 void measure_distances(Findings& f, const Surface& result, const Surface& given, const Connectivity& mesh,
-                       const Bvh& mesh_tree, const Connectivity& before, const Bvh& reference_tree,
+                       const Bvh* mesh_tree, const Connectivity& before, const Bvh& reference_tree,
                        int samples, double most, double least_size, std::optional<Measured>& measured) {
   const std::vector<double> edges = mean_edges(result);
   f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
@@ -251,12 +255,12 @@ void measure_distances(Findings& f, const Surface& result, const Surface& given,
     f.off = std::move(measured->off);
     f.distance = std::move(measured->distance);
   } else {
-    f.off = vertex_distances(result, mesh_tree, before, reference_tree);
+    f.off = vertex_distances(result, *mesh_tree, before, reference_tree);
     std::vector<double> smooth_off = f.off;
     if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
     for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
     f.distance = distance_between(
-        before, reference_tree, mesh, mesh_tree, samples,
+        before, reference_tree, mesh, *mesh_tree, samples,
         allowed_distances(result, size, smooth_off, std::max(least_size, f.mean_size)), most);
   }
   for (std::size_t v = 0; v < f.off.size(); ++v)
@@ -305,17 +309,18 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.reference_quality = quality_of(before, {});
 
   add_progress(0.2);
-  const Bvh mesh_tree(result), reference_tree(reference);
+  const Bvh reference_tree(reference);
+  const std::unique_ptr<const Bvh> mesh_tree(shares ? nullptr : new Bvh(result));
   std::optional<Measured> measured;
   if (shares)
     measured = join_findings(*shares, result, diagonal(reference), allowed_on_triangles(result, least_size));
-  find_intersections(f, result, mesh_tree, reference, reference_tree, sheets_meet,
+  find_intersections(f, result, mesh_tree.get(), reference, reference_tree, sheets_meet,
                      measured ? &*measured : nullptr);
   find_chords(f, mesh, given);
   add_progress(0.3);
   f.folds = measured ? measured->folds : find_folds(mesh, reference, reference_tree);
-  measure_distances(f, result, given, mesh, mesh_tree, before, reference_tree, samples, most, least_size,
-                    measured);
+  measure_distances(f, result, given, mesh, mesh_tree.get(), before, reference_tree, samples, most,
+                    least_size, measured);
   add_progress(0.4);
   measure_curves(f, mesh, reference, given);
   find_needles(f, mesh, given);
@@ -333,8 +338,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
         f.unmarked_borders.clear();  // nothing that one could expect
     }
   }
-  if (lines)
-    std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(mesh, mesh_tree, f.quality, *lines, given);
+  if (lines) std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(mesh, f.quality, *lines, given);
   return f;
 }
 
