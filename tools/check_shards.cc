@@ -37,21 +37,18 @@ void cut_into_shards(Io& io, const ShardFiles& to, int tile, int samples, const 
     return write_as_it_is(io, io.stream);
   }
   make_directory(to.into);
-  CheckShard some;
+  ShareTables some;
   int written = 0;
   const double most = distance_to_know(io.stream, contract, reference);
-  cut_examination(result, reference, tile, samples, most, [&](CheckShare share, int number, int all) {
+  cut_examination(result, reference, tile, samples, most, [&](const CheckShare& share, int number, int all) {
     const int count = std::min(to.count, all);
-    some.all = all;
-    some.numbers.push_back(number);
-    some.shares.push_back(std::move(share));
+    some.add(number, share);
     if (number + 1 < (long long)(written + 1) * all / count) return;
     Stream stream;
     stream.history = io.stream.history;
     stream.ascii = io.stream.ascii;
-    write_shares(stream, some);
+    some.write(stream, all);
     io.write_to(shard_name(to.into, written++), stream);
-    some = {};
   });
   io.say(std::to_string(written) + (written == 1 ? " shard of " : " shards of ") +
          std::to_string(result.tris.size()) + " triangles");

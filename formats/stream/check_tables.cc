@@ -21,6 +21,9 @@ constexpr std::pair<const char*, double OneWay::*> lengths[] = {
     {"largest", &OneWay::largest}, {"upper", &OneWay::upper}, {"mean", &OneWay::mean}, {"rms", &OneWay::rms}};
 constexpr std::pair<const char*, double Vec3::*> axes[] = {{"x", &Vec3::x}, {"y", &Vec3::y}, {"z", &Vec3::z}};
 
+/// Columns of table `check_share`: the rows of each in the other tables.
+constexpr const char* sizes[] = {"vertices", "faces", "other_vertices", "other_faces"};
+
 /// A table of pairs, and back.
 template <class A, class B>
 Table pair_table(const char* name, const char* first, const char* second,
@@ -50,47 +53,43 @@ void expect_row(long long row, long long rows, const char* what) {
 
 }  // namespace
 
-void write_shares(Stream& stream, const CheckShard& shard) {
-  const std::vector<CheckShare>& shares = shard.shares;
+void ShareTables::add(int number, const CheckShare& s) {
+  numbers_.push_back(number);
+  heads_.push_back({s.of_result, s.own, {}, {}, {}, {}, {}, s.diagonal, s.most, s.samples, s.budget});
+  auto count = [](const auto& list) { return static_cast<int>(list.size()); };
+  rows_.push_back({count(s.mesh.points), count(s.mesh.tris), count(s.other.points), count(s.other.tris)});
+  append_tris(meshes_.tris, s.mesh.tris, meshes_.points.size());
+  append(meshes_.points, s.mesh.points);
+  append_tris(others_.tris, s.other.tris, others_.points.size());
+  append(others_.points, s.other.points);
+  append(vertices_, s.vertices), append(triangles_, s.triangles), append(allowed_, s.allowed);
+  allowed_.resize(triangles_.size());  // none of those that are only next to the share
+}
+
+void ShareTables::write(Stream& stream, int all) {
   stream.tables.clear();
   Table table{"check_share", 0, {}};
-  table.set("number", shard.numbers);
-  table.set("of", std::vector<int>(table.rows, shard.all));
-  set_column<int>(table, "of_result", shares, [](const CheckShare& s) { return s.of_result; });
-  set_column<int>(table, "own", shares, [](const CheckShare& s) { return s.own; });
-  set_column<int>(table, "vertices", shares, [](const CheckShare& s) { return s.mesh.points.size(); });
-  set_column<int>(table, "faces", shares, [](const CheckShare& s) { return s.mesh.tris.size(); });
-  set_column<int>(table, "other_vertices", shares, [](const CheckShare& s) { return s.other.points.size(); });
-  set_column<int>(table, "other_faces", shares, [](const CheckShare& s) { return s.other.tris.size(); });
-  set_column<int>(table, "samples", shares, [](const CheckShare& s) { return s.samples; });
-  set_column<int>(table, "budget", shares, [](const CheckShare& s) { return s.budget; });
-  set_column<double>(table, "diagonal", shares, [](const CheckShare& s) { return s.diagonal; });
-  set_column<double>(table, "most", shares, [](const CheckShare& s) { return s.most; });
+  table.set("number", std::move(numbers_));
+  table.set("of", std::vector<int>(table.rows, all));
+  set_column<int>(table, "of_result", heads_, [](const CheckShare& s) { return s.of_result; });
+  set_column<int>(table, "own", heads_, [](const CheckShare& s) { return s.own; });
+  for (int i = 0; i < 4; ++i)
+    set_column<int>(table, sizes[i], rows_, [i](const auto& rows) { return rows[i]; });
+  set_column<int>(table, "samples", heads_, [](const CheckShare& s) { return s.samples; });
+  set_column<int>(table, "budget", heads_, [](const CheckShare& s) { return s.budget; });
+  set_column<double>(table, "diagonal", heads_, [](const CheckShare& s) { return s.diagonal; });
+  set_column<double>(table, "most", heads_, [](const CheckShare& s) { return s.most; });
   stream.set(std::move(table));
-  Mesh all, others;
-  std::vector<int> vertex_row, face_row, other_row;
-  std::vector<double> allowed, other_allowed;
-  for (const CheckShare& s : shares) {
-    append_tris(all.tris, s.mesh.tris, all.points.size());
-    append(all.points, s.mesh.points);
-    append_tris(others.tris, s.other.tris, others.points.size());
-    append(others.points, s.other.points);
-    append(vertex_row, s.vertices), append(s.of_result ? face_row : other_row, s.triangles);
-    append(s.of_result ? allowed : other_allowed, s.allowed);
-    // columns have all rows
-    vertex_row.resize(all.points.size(), -1), face_row.resize(all.tris.size(), -1);
-    other_row.resize(others.tris.size(), -1);
-    allowed.resize(all.tris.size()), other_allowed.resize(others.tris.size());
-  }
-  stream.surface = surface_of(std::move(all));
-  stream.surface.vertex.set("row", std::move(vertex_row));
-  stream.surface.face.set("row", std::move(face_row));
-  stream.surface.face.set("allowed", std::move(allowed));
-  stream.set(table_of("other_vertex", others, true));
-  Table faces = table_of("other_face", others, false);
-  faces.set("row", std::move(other_row));
-  faces.set("allowed", std::move(other_allowed));
-  stream.set(std::move(faces));
+  stream.surface = surface_of(std::move(meshes_));
+  stream.set(table_of("other_vertex", others_, true));
+  stream.set(table_of("other_face", others_, false));
+  Table vertices{"check_vertex", 0, {}}, triangles{"check_face", 0, {}};
+  vertices.set("row", std::move(vertices_));
+  triangles.set("row", std::move(triangles_));
+  triangles.set("allowed", std::move(allowed_));
+  stream.set(std::move(vertices));
+  stream.set(std::move(triangles));
+  *this = {};
 }
 
 CheckShard read_shares(const Stream& stream) {
@@ -98,10 +97,12 @@ CheckShard read_shares(const Stream& stream) {
   const Table& table = stream.need("check_share", writer);
   const Table &points = stream.need("other_vertex", writer), &tris = stream.need("other_face", writer);
   const Mesh others = mesh_from(points, tris);
-  const auto vertices = spans_of(table, "vertices", s.points.size()),
-             faces = spans_of(table, "faces", s.tris.size()),
-             other_vertices = spans_of(table, "other_vertices", points.rows),
-             other_faces = spans_of(table, "other_faces", tris.rows);
+  const Table &rows = stream.need("check_vertex", writer), &triangles = stream.need("check_face", writer);
+  const auto vertices = spans_of(table, sizes[0], s.points.size()),
+             faces = spans_of(table, sizes[1], s.tris.size()),
+             other_vertices = spans_of(table, sizes[2], points.rows),
+             other_faces = spans_of(table, sizes[3], tris.rows);
+  Span vertex, triangle;  // of a share in the tables of rows
   if (table.rows == 0) throw BadInput("it has no shares");
   CheckShard shard{table.get<int>("of")[0], table.get<int>("number"), {}};
   for (std::size_t i = 0; i < table.rows; ++i) {
@@ -116,15 +117,14 @@ CheckShard read_shares(const Stream& stream) {
                      " samples");
     c.mesh = {vertices[i].of(s.points), tris_of(s.tris, faces[i], vertices[i])};
     c.other = {other_vertices[i].of(others.points), tris_of(others.tris, other_faces[i], other_vertices[i])};
-    if (c.of_result) {
-      c.vertices = vertices[i].of(s.vertex.get<int>("row"));
-      c.triangles = faces[i].of(s.face.get<int>("row"));
-      c.allowed = faces[i].of(s.face.get<double>("allowed"));
-      c.allowed.resize(c.own);
-    } else {
-      c.triangles = other_faces[i].of(tris.get<int>("row"));
-      c.allowed = other_faces[i].of(tris.get<double>("allowed"));
-    }
+    vertex = {vertex.last, vertex.last + (c.of_result ? vertices[i].size() : 0)};
+    triangle = {triangle.last, triangle.last + (c.of_result ? faces[i] : other_faces[i]).size()};
+    if (vertex.last > static_cast<int>(rows.rows) || triangle.last > static_cast<int>(triangles.rows))
+      throw BadInput("share " + std::to_string(shard.numbers[i]) + " has more rows than there are");
+    c.vertices = vertex.of(rows.get<int>("row"));
+    c.triangles = triangle.of(triangles.get<int>("row"));
+    c.allowed = triangle.of(triangles.get<double>("allowed"));
+    if (c.of_result) c.allowed.resize(c.own);
     for (double a : c.allowed)
       if (!(a > 0))
         throw BadInput("share " + std::to_string(shard.numbers[i]) + " allows no distance at a triangle");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shares of a check as streams, on which mcheck works as jobs of their own.
 #pragma once
+#include <array>
+
 #include "formats/stream.h"
 #include "lib/check/check.h"
 
@@ -16,9 +18,24 @@ struct CheckShard {
 /// Returns whether the stream has shares to be measured, table `check_share`.
 inline bool has_check_shares(const Stream& stream) { return stream.find("check_share") != nullptr; }
 
-/// Puts shares into a stream, from which all tables are dropped: their meshes are its surface.
-void write_shares(Stream& stream, const CheckShard& shard);
-/// Reads what write_shares wrote. Throws: BadInput if the rows of a table are not those of the shares.
+/// Shares one after the other as the columns of a stream.
+class ShareTables {
+ public:
+  void add(int number, const CheckShare& share);
+  /// Moves the shares into a stream, from which all tables are dropped: their meshes are its surface. `all`:
+  /// shares of the check.
+  void write(Stream& stream, int all);
+
+ private:
+  std::vector<int> numbers_;
+  std::vector<CheckShare> heads_;         ///< without lists
+  std::vector<std::array<int, 4>> rows_;  ///< of each share's meshes
+  Mesh meshes_, others_;
+  std::vector<int> vertices_, triangles_;
+  std::vector<double> allowed_;
+};
+
+/// Reads what ShareTables wrote. Throws: BadInput if the rows of a table are not those of the shares.
 CheckShard read_shares(const Stream& stream);
 
 /// Puts what was measured of the shares into the stream, in place of everything else.

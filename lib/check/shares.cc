@@ -85,7 +85,7 @@ struct Side {
 
 /// Cuts the shares of one side; `common`: what all have.
 void cut_side(const Side& side, const std::vector<double>& allowed, int triangles, double edge,
-              const CheckShare& common, const std::function<void(CheckShare)>& take) {
+              const CheckShare& common, const std::function<void(const CheckShare&)>& take) {
   const auto boxes = split_into_boxes(side.mesh, all_rows(side.mesh), triangles);
   const double own_edge = size_for_count(total_area(side.mesh), (double)side.mesh.tris.size());
   const double edges = reach * std::max(1.0, edge / own_edge);
@@ -113,7 +113,7 @@ void cut_side(const Side& side, const std::vector<double>& allowed, int triangle
       share.vertices = rows;
     }
     forget(rows, number), forget(other_rows, other_number);
-    take(std::move(share));
+    take(share);
   }
 }
 
@@ -133,7 +133,7 @@ void cut_check(const Mesh& result, const Mesh& reference, const std::vector<doub
   auto shares_of = [&](const Mesh& mesh) { return ((int)mesh.tris.size() + triangles - 1) / triangles; };
   const int all = shares_of(result) + shares_of(pieces);
   int number = 0;
-  const auto number_it = [&](CheckShare share) { take(std::move(share), number++, all); };
+  const auto number_it = [&](const CheckShare& share) { take(share, number++, all); };
   cut_side({result, reference, true}, allowed, triangles, edge, common, number_it);
   cut_side({pieces, result, false}, allowed, triangles, edge, common, number_it);
 }

@@ -107,7 +107,9 @@ TEST(Shares, AreStreams) {
   cut_examination(result, reference, 1000, 10000, 0.01, [&](const CheckShare& share, int number, int all) {
     direct.push_back(measure(share));
     Stream s;
-    write_shares(s, {all, {number}, {share}});
+    ShareTables tables;
+    tables.add(number, share);
+    tables.write(s, all);
     CheckShard shard = read_shares(read_stream(write_stream(s, true), "share"));
     Stream out;
     write_findings(out, shard, {measure(shard.shares.at(0))});
