@@ -58,7 +58,7 @@ Task read_task(Io& io, Options& o) {
       task.kinds.push_back(l.kind);
       o.relax.keep_border = o.relax.keep_border || l.kept;
     }
-    task.corners = line_corners(reference, lines);
+    task.corners = is_between_passes(stream) ? read_corners(stream) : line_corners(reference, lines);
     o.relax.sheets_meet = has_sheets(stream);
     if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
     o.relax.target_triangles = stream.asked_triangles;

@@ -74,7 +74,7 @@ std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const Tiled
     write_as_it_is(io, stream);
     return {};
   }
-  TiledMesh whole = optimized ? read_tiled(stream, between) : as_tiled(std::move(mesh));
+  TiledMesh whole = optimized ? take_tiled(stream, std::move(mesh), between) : as_tiled(std::move(mesh));
   second_order = between.second_order;
   if (shards.from.empty()) {
     cut(io, whole, relax, false, shards);
@@ -91,11 +91,10 @@ std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const Tiled
              pass, between.counts);
   if (shards.count > 0) {
     cut(io, whole, relax, true, shards);
-    write_tiled(stream, whole, between);
+    write_tiled(stream, whole, relax.corner, between);
     write_as_it_is(io, stream);
     return {};
   }
-  stream.erase("relaxing");
   const RelaxReport report = relax.finish(whole, optimized ? 2 : 1, between.counts);
   mesh = std::move(whole.mesh);
   return report;

@@ -289,21 +289,40 @@ std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int ti
   return all;
 }
 
-void write_tiled(Stream& stream, const TiledMesh& mesh, const BetweenPasses& between) {
+void write_tiled(Stream& stream, const TiledMesh& mesh, const std::vector<char>& corner,
+                 const BetweenPasses& between) {
   write_lifted(stream, mesh.mesh);
   set_tiled(stream.surface, first_weights(mesh.mesh.place), mesh.hold, mesh.refinement);
-  Table table{"relaxing", 0, {}};
+  Table table{"relaxing", 0, {}}, corners{"relaxing_corner", 0, {}};
   for (const auto& [name, member] : count_columns) table.set(name, std::vector<int>{between.counts.*member});
   table.set("second_order", std::vector<int>{between.second_order});
   stream.set(std::move(table));
+  std::vector<int> vertices;
+  for (std::size_t v = 0; v < corner.size(); ++v)
+    if (corner[v]) vertices.push_back(static_cast<int>(v));
+  corners.set("vertex", std::move(vertices));
+  stream.set(std::move(corners));
 }
 
-TiledMesh read_tiled(const Stream& stream, BetweenPasses& between) {
+TiledMesh take_tiled(Stream& stream, LiftedMesh mesh, BetweenPasses& between) {
   const Table& table = stream.need("relaxing", "mrelax --join");
   if (table.rows != 1) throw BadInput("table 'relaxing' has " + std::to_string(table.rows) + " rows, not 1");
   for (const auto& [name, member] : count_columns) between.counts.*member = table.get<int>(name)[0];
   between.second_order = table.get<int>("second_order")[0] != 0;
-  return tiled_from(stream.surface, read_lifted(stream));
+  stream.erase("relaxing"), stream.erase("relaxing_corner");
+  return tiled_from(stream.surface, std::move(mesh));
+}
+
+std::vector<char> read_corners(const Stream& stream) {
+  const std::size_t n = stream.need("ref_vertex", "mlift").rows;
+  std::vector<char> corner(n);
+  for (int v : stream.need("relaxing_corner", "mrelax --join").get<int>("vertex")) {
+    if (v < 0 || v >= static_cast<int>(n))
+      throw BadInput("relaxing_corner names vertex " + std::to_string(v) + ", but there are " +
+                     std::to_string(n));
+    corner[v] = 1;
+  }
+  return corner;
 }
 
 }  // namespace meshpipe

@@ -58,8 +58,12 @@ struct BetweenPasses {
 };
 /// Returns whether the stream is between two passes: table `relaxing`.
 inline bool is_between_passes(const Stream& stream) { return stream.find("relaxing") != nullptr; }
-/// Requires write_reference before.
-void write_tiled(Stream& stream, const TiledMesh& mesh, const BetweenPasses& between);
-TiledMesh read_tiled(const Stream& stream, BetweenPasses& between);
+/// Requires write_reference before. `corner`: see relax.
+void write_tiled(Stream& stream, const TiledMesh& mesh, const std::vector<char>& corner,
+                 const BetweenPasses& between);
+/// Returns the mesh that has been read from the stream with what it remembers, and forgets the table.
+TiledMesh take_tiled(Stream& stream, LiftedMesh mesh, BetweenPasses& between);
+/// Returns the corners of such a stream's reference.
+std::vector<char> read_corners(const Stream& stream);
 
 }  // namespace meshpipe

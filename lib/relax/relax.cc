@@ -418,8 +418,7 @@ void TiledRelax::cut(const TiledMesh& whole, const TilePass& pass,
 
 void TiledRelax::join(TiledMesh& whole, std::vector<Tile> tiles, TilePass pass, RelaxCounts& counts) const {
   for (const Tile& tile : tiles) add(counts, tile.counts);
-  const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), options.tile);
-  for (std::size_t i = 0; i < tiles.size(); ++i) tiles[i].triangles = boxes.at(i);
+  tiles.at(0).triangles = all_triangles(whole.mesh);  // which they replace together
   const std::vector<int> seams = replace_tiles(whole, std::move(tiles));
   relax_region(*this, whole, triangles_near(whole.mesh, seams, rules::seam_rings), pass, 1, counts);
 }
