@@ -36,10 +36,12 @@ void cut_into_shards(Io& io, const ShardFiles& to, int tile, int samples, const 
     io.say(std::to_string(result.tris.size()) + " triangles are checked at once: no shards");
     return write_as_it_is(io, io.stream);
   }
+  const double most = distance_to_know(io.stream, contract, reference);
   make_directory(to.into);
+  write_as_it_is(io, io.stream);
+  io.stream.tables.clear();  // frees its memory now
   ShareTables some;
   int written = 0;
-  const double most = distance_to_know(io.stream, contract, reference);
   cut_examination(result, reference, tile, samples, most, [&](const CheckShare& share, int number, int all) {
     const int count = std::min(to.count, all);
     some.add(number, share);
@@ -53,7 +55,6 @@ void cut_into_shards(Io& io, const ShardFiles& to, int tile, int samples, const 
   io.say(std::to_string(written) + (written == 1 ? " shard of " : " shards of ") +
          std::to_string(result.tris.size()) + " triangles");
   io.report["shards"] = written;
-  write_as_it_is(io, io.stream);
 }
 
 std::vector<ShareFindings> read_checked(const Io& io, const ShardFiles& shards) {

@@ -77,8 +77,9 @@ std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const Tiled
   TiledMesh whole = optimized ? take_tiled(stream, std::move(mesh), between) : as_tiled(std::move(mesh));
   second_order = between.second_order;
   if (shards.from.empty()) {
-    cut(io, whole, relax, false, shards);
     write_as_it_is(io, stream);
+    stream.surface = {}, stream.tables.clear();  // frees its memory now
+    cut(io, whole, relax, false, shards);
     return {};
   }
   if (optimized && shards.count > 0) throw BadUsage("--shards: this is the last pass");
