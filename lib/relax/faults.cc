@@ -334,26 +334,45 @@ void refine_at(State& s, const Fault& fault) {
     for (int v : around) improve_vertex(s, v);
 }
 
+/// A patch as it was first, and what was found of it: an edit changes few of its triangles.
+struct Before {
+  Mesh mesh{};
+  std::vector<double> deviation{};
+  std::vector<std::pair<int, int>> pairs{};
+
+  bool has(const Mesh& now, int t) const {
+    if (t >= (int)mesh.tris.size() || now.tris[t] != mesh.tris[t]) return false;
+    const Tri& v = now.tris[t];
+    return std::all_of(v.begin(), v.end(), [&](int i) { return now.points[i] == mesh.points[i]; });
+  }
+};
+
 /// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
-/// what is bearable, there and from places of the reference, and 1/kappa of needles.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known) {
+/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
+/// is asked for becomes `before`.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
+                  Before& before) {
   double sum = 0;
   std::vector<std::pair<int, int>> pairs;
-  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
+  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0);
   const Mesh mesh{s.points, s.mesh.tris};
   std::vector<Box> box(mesh.tris.size());
+  std::vector<char> same(mesh.tris.size(), 0);
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
     if (s.mesh.dead(t)) continue;
     const auto [a, b, c] = mesh.tris[t];
+    same[t] = before.has(mesh, t);
     const double most = bearable_distance(s, t, mean);
-    const double there = deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
+    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
+    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
     sum += rules::far_weight * std::max(0.0, there / most - 1);
     if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
         k <= rules::bearable_kappa && !is_forced(s, t, k))
       sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
     for (int u = 0; u < t; ++u)
-      if (!s.mesh.dead(u) && overlap(box[t], box[u]) && triangles_intersect(mesh, u, t))
+      if (!s.mesh.dead(u) && !(same[t] && same[u]) && overlap(box[t], box[u]) &&
+          triangles_intersect(mesh, u, t))
         pairs.push_back({u, t});
     for (std::size_t i = 0; i < missed.size(); ++i)
       if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d < distance[i])
@@ -363,6 +382,9 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
   if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
+  for (auto [t, u] : before.pairs)
+    if (same[t] && same[u]) pairs.push_back({t, u});
+  if (before.deviation.empty()) before = {mesh, far, pairs};
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
@@ -400,10 +422,12 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     return found;
   };
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
-    return repaired(
-        s, triangles, true,
-        {[&](const State& patch) { return objective(patch) + faultiness(patch, item.missed, mean, known); },
-         true});
+    Before before;
+    return repaired(s, triangles, true,
+                    {[&](const State& patch) {
+                       return objective(patch) + faultiness(patch, item.missed, mean, known, before);
+                     },
+                     true});
   };
   change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <unordered_map>
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
@@ -59,6 +60,7 @@ struct Field {
   std::vector<SizeBound> bounds{};
   Surface given{};
   std::vector<int> root{};
+  std::unordered_map<std::uint64_t, double> asked{};  ///< by the two vertices, see there
 };
 
 std::vector<double> curvature_of(const Field& f) {
@@ -79,10 +81,18 @@ double by_curvature(const SizeOptions& o, double k) {
   return h;
 }
 
-double asked(const SizeOptions& o, Vec3 p, double curvature) {
-  const double h = o.at(p, curvature);
-  if (!(h > 0)) throw BadInput("the size at " + shown(p) + " is " + shown(h) + ", but sizes are positive");
-  return h;
+/// What the field asks for in the middle between two vertices, or at one that is given twice. Places do not
+/// change from pass to pass: what does not depend on the curvature is looked up once.
+double asked(Field& f, int a, int b, double curvature) {
+  const Vec3 p = lerp(f.s.points[a], f.s.points[b], 0.5);
+  double h = 0;
+  double& known =
+      f.o.at_curvature ? h : f.asked[(std::uint64_t)std::min(a, b) << 32 | (std::uint64_t)std::max(a, b)];
+  if (known > 0) return known;
+  known = f.o.at(p, curvature);
+  if (!(known > 0))
+    throw BadInput("the size at " + shown(p) + " is " + shown(known) + ", but sizes are positive");
+  return known;
 }
 
 /// Sets the wishes: what the sources ask for at the vertices.
@@ -108,11 +118,11 @@ void set_wishes(Field& f) {
     }
   }
   if (f.o.at)
-    for (std::size_t v = 0; v < n; ++v) f.wish[v] = std::min(f.wish[v], asked(f.o, f.s.points[v], most[v]));
+    for (int v = 0; v < (int)n; ++v) f.wish[v] = std::min(f.wish[v], asked(f, v, v, most[v]));
 }
 
 /// Returns what the sources ask for in the middle of an edge.
-double wish_between(const Field& f, int h) {
+double wish_between(Field& f, int h) {
   const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
   double least = infinite, most = 0;
   if (!f.curvature.empty()) {
@@ -123,7 +133,7 @@ double wish_between(const Field& f, int h) {
     const auto& data = f.s.vertex.get<double>(x.column);
     least = std::min(least, x.factor * 0.5 * (data[a] + data[b]));
   }
-  if (f.o.at) least = std::min(least, asked(f.o, lerp(f.s.points[a], f.s.points[b], 0.5), most));
+  if (f.o.at) least = std::min(least, asked(f, a, b, most));
   return least;
 }
 
@@ -224,7 +234,7 @@ void make_sizes(Field& f) {
 }
 
 /// Whether interpolation along the edge misses the field in its middle, on a scale that a mesh would show.
-bool bends(const Field& f, int h) {
+bool bends(Field& f, int h) {
   const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
   const double l = edge_length(f, h);
   if (l < 0.5 * std::min(f.size[a], f.size[b])) return false;
