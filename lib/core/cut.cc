@@ -336,12 +336,6 @@ int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, cons
              [&](int a, int b) { return std::clamp(crossing(field[a], field[b]), snap, 1 - snap); });
 }
 
-int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
-                   std::vector<int>& side) {
-  std::vector<int> none;
-  return cut_along_line(CutSurface{surface, none}, line, active, side);
-}
-
 int cut_along_line(const CutSurface& s, const LevelLine& line, const std::vector<char>& active,
                    std::vector<int>& side) {
   check_lengths(s.surface, line.sign.size(), active);

@@ -23,10 +23,8 @@ void name_origins(Surface& surface);
 int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
                         std::vector<int>& side, double snap = 0.1);
 
-/// Splits along a line as it is; side[t] follows the line's signs as that of the field.
-int cut_along_line(Surface& surface, const LevelLine& line, const std::vector<char>& active,
-                   std::vector<int>& side);
-/// The same where the opposite half-edges are known, and updated.
+/// Splits along a line as it is; side[t] follows the line's signs as that of the field. Opposite half-edges
+/// are updated, if there are any.
 int cut_along_line(const CutSurface& s, const LevelLine& line, const std::vector<char>& active,
                    std::vector<int>& side);
 

@@ -39,7 +39,8 @@ Surface cut_straight(const Surface& in, const std::vector<double>& field, int sw
   const std::vector<Hold> hold = given.empty() ? std::vector<Hold>(field.size(), Hold::moves) : given;
   pull_straight({s, opposite_halfedges(s.tris, (int)s.points.size())}, line, hold, snap, sweeps);
   std::vector<int> side;
-  cut_along_line(s, line, {}, side);
+  std::vector<int> none;
+  cut_along_line(CutSurface{s, none}, line, {}, side);
   s.face.set("part", side);
   return s;
 }
