@@ -22,6 +22,26 @@ bool has_area(Vec3 a, Vec3 b, Vec3 c) {
          orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) != 0;
 }
 
+/// Do two triangles with a common edge fold back on each other, other than at a convex ridge? A wrap has no
+/// cracks so narrow. Slivers do not count: they may face anywhere.
+bool folds_back(const Mesh& mesh, int s, int t) {
+  constexpr double most_turn = -0.9, ridge = 0.1, least_kappa = 0.05;  // 154 degrees; opening of 6 degrees
+  const Tri &a = mesh.tris[s], &b = mesh.tris[t];
+  auto is_of = [](int v, const Tri& f) { return v == f[0] || v == f[1] || v == f[2]; };
+  if (is_of(b[0], a) + is_of(b[1], a) + is_of(b[2], a) < 2) return false;
+  auto normal = [&](const Tri& f) {
+    return normalized(area_vector(mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]));
+  };
+  auto is_sliver = [&](const Tri& f) {
+    return kappa(mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]) < least_kappa;
+  };
+  if (dot(normal(a), normal(b)) > most_turn || is_sliver(a) || is_sliver(b)) return false;
+  const int apex = !is_of(b[0], a) ? b[0] : !is_of(b[1], a) ? b[1] : b[2];
+  const int shared = is_of(a[0], b) ? a[0] : a[1];
+  const Vec3 up = mesh.points[apex] - mesh.points[shared];
+  return dot(up, normal(a)) > -ridge * norm(up);
+}
+
 /// Both meshes as one, the soup's triangles and points after the wrap's.
 Mesh joined(const Mesh& wrap, const Mesh& soup) {
   Mesh both = wrap;
@@ -95,7 +115,8 @@ std::vector<std::uint8_t> triangles_that_meet_others(const Mesh& mesh,
   for (int t = 0; t < n; ++t)
     if (wanted[t])
       tree.overlapping(box_of(mesh, t), [&](int s) {
-        if (s != t && !(wanted[s] && s < t) && triangles_intersect(mesh, s, t)) met[t].push_back(s);
+        if (s != t && !(wanted[s] && s < t) && (triangles_intersect(mesh, s, t) || folds_back(mesh, s, t)))
+          met[t].push_back(s);
       });
   std::vector<std::uint8_t> marked(n, 0);
   for (int t = 0; t < n; ++t) {

@@ -9,8 +9,8 @@
 
 namespace meshpipe {
 
-/// Moves points of `mesh` back towards `base`, in steps, until the mesh neither meets itself nor the soup and
-/// the soup is inside. Returns the number of points moved.
+/// Moves points of `mesh` back towards `base`, in steps, until the mesh neither meets itself nor the soup nor
+/// folds back, and the soup is inside. Returns the number of points moved.
 /// Requires: the mesh at the points `base` has these properties.
 int keep_valid(Mesh& mesh, const std::vector<Vec3>& base, const Mesh& soup, double reach);
 
@@ -37,8 +37,8 @@ Mesh with_area(const Mesh& soup, double width);
 std::vector<std::uint8_t> triangles_that_meet(const Mesh& wrap, const std::vector<std::uint8_t>& wanted,
                                               const Mesh& soup);
 
-/// Marks the triangles of the mesh that meet another one other than in shared vertices or edges, where one of
-/// the two is wanted. Exact.
+/// Marks the triangles of the mesh that meet another one other than in shared vertices or edges, or fold back
+/// on it, where one of the two is wanted. Exact, except folds.
 std::vector<std::uint8_t> triangles_that_meet_others(const Mesh& mesh,
                                                      const std::vector<std::uint8_t>& wanted);
 

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int not_admissible = 4, goal_missed = 5, contract_missed = 6;
 
+constexpr double beyond_repair = 100;  ///< pairs of triangles of the result that cross
+
 /// A number as a message shows it, not below the value: what is at least that large still is.
 std::string at_least(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
@@ -55,6 +57,12 @@ struct Row {
   WayOut (*way)(const Case&);
 };
 const Row table[] = {
+    {[](const Case& c) {
+       return c.missed("intersections") && c.facts.value > beyond_repair && !c.ran("mwrap");
+     },
+     [](const Case&) {
+       return WayOut{"mwrap", "these are more crossings than a repair of the input removes"};
+     }},
     {[](const Case& c) {
        return c.found.spikes > 0 && c.status >= goal_missed && !c.used("mclean", "--drop-spikes");
      },

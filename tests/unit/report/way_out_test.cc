@@ -36,6 +36,17 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   EXPECT_EQ(named(missed, {}, found), "mclean --drop-spikes 5");
 }
 
+TEST(WayOut, ManyCrossingsAreForAWrap) {
+  Diagnosis found;
+  found.spikes = 1;
+  FailureFacts crossings;
+  crossings.requirement = "intersections";
+  crossings.value = 12;
+  EXPECT_EQ(named(missed, crossings, found), "mclean --drop-spikes 5");
+  crossings.value = 1200;
+  EXPECT_EQ(named(missed, crossings, found), "mwrap");
+}
+
 TEST(WayOut, NamesNothingThatWasTried) {
   Diagnosis found;
   found.weld = 1e-7;
