@@ -87,11 +87,11 @@ struct Side {
 void cut_side(const Side& side, const std::vector<double>& allowed, int triangles, double edge,
               const CheckShare& common, const std::function<void(const CheckShare&)>& take) {
   const auto boxes = split_into_boxes(side.mesh, all_rows(side.mesh), triangles);
-  const double own_edge = size_for_count(total_area(side.mesh), (double)side.mesh.tris.size());
+  const double area = total_area(side.mesh);
+  const double own_edge = size_for_count(area, (double)side.mesh.tris.size());
   const double edges = reach * std::max(1.0, edge / own_edge);
   const Lists others = around_tiles(side.mesh, boxes, edges, &side.other);
   const Lists next = side.of_result ? around_tiles(side.mesh, boxes, 1, nullptr) : Lists();
-  const double area = total_area(side.mesh);
   std::vector<int> number(side.mesh.points.size(), -1), other_number(side.other.points.size(), -1);
   for (int i = 0; i < (int)boxes.size(); ++i) {
     CheckShare share = common;
@@ -149,8 +149,9 @@ void measure_far(const CheckShare& share, const Mesh& own, OneWay& d, std::vecto
 }
 
 /// Measures distances and folds where there is.
-void measure_near(const CheckShare& share, const Mesh& own, ShareFindings& f, std::vector<double>& off) {
-  const Bvh own_tree(own), other_tree(share.other);
+void measure_near(const CheckShare& share, const Mesh& own, const Bvh& own_tree, ShareFindings& f,
+                  std::vector<double>& off) {
+  const Bvh other_tree(share.other);
   const std::vector<int> opposite = opposite_halfedges(share.other.tris, (int)share.other.points.size());
   const Connectivity other{share.other, opposite};
   OneWay& d = f.distance;
@@ -176,20 +177,18 @@ ShareFindings measure(const CheckShare& share) {
   f.of_result = share.of_result;
   const Mesh own{share.mesh.points, {share.mesh.tris.begin(), share.mesh.tris.begin() + share.own}};
   f.area = total_area(own);
+  const Bvh own_tree(own);
   std::vector<double> off;
   if (share.other.tris.empty())
     measure_far(share, own, f.distance, off);
   else
-    measure_near(share, own, f, off);
+    measure_near(share, own, own_tree, f, off);
   if (!share.of_result) return f;
   const std::vector<char> used = used_points(own);
   for (std::size_t v = 0; v < off.size(); ++v)
     if (used[v]) f.off.push_back({share.vertices[v], off[v]});
-  for (const auto& [s, t] : self_intersections(share.mesh))
-    if (std::min(s, t) < share.own) {
-      const int a = share.triangles[s], b = share.triangles[t];
-      f.crossings.push_back({std::min(a, b), std::max(a, b)});
-    }
+  for (const auto& [s, t] : self_intersections(share.mesh, own_tree))
+    f.crossings.push_back(std::minmax(share.triangles[s], share.triangles[t]));
   return f;
 }
 

@@ -194,23 +194,24 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
 }
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh) {
-  const int n = (int)mesh.tris.size();
+  const int n = (int)mesh.tris.size(), own = (int)bvh.order().size();
   // a few triangles that are neighbors in the tree look for partners together
-  constexpr int group = 4, chunk = 512;
-  const int chunks = (n + group * chunk - 1) / (group * chunk);
+  constexpr int group = 4, chunk = 2048;
+  const int chunks = (n + chunk - 1) / chunk;
   std::vector<std::vector<std::pair<int, int>>> found(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (int c = 0; c < chunks; ++c)
-    for (int first = c * group * chunk; first < std::min(n, (c + 1) * group * chunk); first += group) {
-      const int size = std::min(group, n - first);
-      const int* members = &bvh.order()[first];
+    for (int first = c * chunk, size; first < std::min(n, (c + 1) * chunk); first += size) {
+      size = first < own ? std::min({group, own - first, (c + 1) * chunk - first}) : 1;
+      const int* members = first < own ? &bvh.order()[first] : &first;
       Box boxes[group], all = box_of(mesh, members[0]);
       for (int i = 0; i < size; ++i) all = join(all, boxes[i] = box_of(mesh, members[i]));
       bvh.overlapping(all, [&](int t) {
         const Box box = box_of(mesh, t);
         for (int i = 0; i < size; ++i)
-          if (members[i] < t && overlap(boxes[i], box) && triangles_intersect(mesh, members[i], t))
-            found[c].push_back({members[i], t});
+          if ((members[i] < t || first >= own) && overlap(boxes[i], box) &&
+              triangles_intersect(mesh, members[i], t))
+            found[c].push_back(std::minmax(members[i], t));
       });
     }
   std::vector<std::pair<int, int>> all;

@@ -19,7 +19,7 @@ bool has_area(const Mesh& mesh, int t);
 /// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
 /// plane.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
-/// The same with the mesh's tree at hand.
+/// The same with a tree at hand, of the mesh or of its first triangles: then one of each pair is of these.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
 
 /// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
