@@ -50,7 +50,7 @@ Task read_task(Io& io, Options& o) {
   Task task;
   Surface& reference = task.reference;
   if (o.reference.empty()) {
-    task.mesh = read_lifted(stream);
+    stream.need("ref_face", "mlift"), stream.need("line", "mlines");  // what is missed first
     reference = read_reference(stream);
     expect_measurable(reference);
     const Lines lines = read_lines(stream);
@@ -62,6 +62,8 @@ Task read_task(Io& io, Options& o) {
     o.relax.sheets_meet = has_sheets(stream);
     if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
     o.relax.target_triangles = stream.asked_triangles;
+    if (o.shards.count > 0 && !is_between_passes(stream)) write_as_it_is(io, stream);  // then it is cut
+    task.mesh = take_lifted(stream);
     return task;
   }
   clean(stream.surface);

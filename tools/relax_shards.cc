@@ -38,7 +38,7 @@ void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, c
 }  // namespace
 
 void relax_shard(Io& io, int sweeps) {
-  TileShard shard = read_tiles(io.stream);
+  TileShard shard = take_tiles(io.stream);
   if (shard.relaxed) throw NotAdmissible("these tiles are relaxed; join them by mrelax --join");
   if (shard.pass.sweeps != sweeps)
     throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(shard.pass.sweeps));
@@ -71,13 +71,11 @@ std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const Tiled
     if (!shards.from.empty()) throw NotAdmissible("the mesh has no tiles; run mrelax without --join");
     io.say(std::to_string(mesh.tris.size()) + " triangles are optimized at once: no shards");
     io.report["shards"] = 0;
-    write_as_it_is(io, stream);
     return {};
   }
   TiledMesh whole = optimized ? take_tiled(stream, std::move(mesh), between) : as_tiled(std::move(mesh));
   second_order = between.second_order;
   if (shards.from.empty()) {
-    write_as_it_is(io, stream);
     stream.surface = {}, stream.tables.clear();  // frees its memory now
     cut(io, whole, relax, false, shards);
     return {};

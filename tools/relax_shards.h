@@ -12,8 +12,8 @@ namespace meshpipe {
 void relax_shard(Io& io, int sweeps);
 
 /// Joins and cuts as asked. Returns the report of the mesh when it is done; none if shards were cut, and the
-/// stream is written. `second_order`: whether the stream had nodes of second order, also before the first
-/// pass.
+/// stream is written (of the first pass before). `second_order`: whether the stream had nodes of second
+/// order, also before the first pass.
 std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
                                            const ShardFiles& shards, bool& second_order);
 

@@ -47,27 +47,27 @@ void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& verte
 
 }  // namespace
 
-LiftedMesh read_lifted(const Stream& stream) {
+LiftedMesh take_lifted(Stream& stream) {
   const int n_faces = static_cast<int>(stream.need("ref_face", "mlift").rows);
   const int n_lines = static_cast<int>(stream.need("line", "mlines").rows);
-  return lifted_from(stream.surface, n_faces, n_lines);
+  return take_lifted(stream.surface, n_faces, n_lines);
 }
 
-LiftedMesh lifted_from(const Surface& s, int n_faces, int n_lines) {
+LiftedMesh take_lifted(Surface& s, int n_faces, int n_lines) {
   if (!s.vertex.has("ref_face"))
     throw NotAdmissible("the vertices have no place on a reference; run mlift first");
   LiftedMesh mesh;
-  mesh.points = s.points;
-  mesh.tris = s.tris;
+  mesh.points = std::move(s.points);
+  mesh.tris = std::move(s.tris);
   const auto& face = s.vertex.get<int>("ref_face");
   const auto &b1 = s.vertex.get<double>("b1"), &b2 = s.vertex.get<double>("b2");
   const std::vector<double>* b0 = s.vertex.has("b0") ? &s.vertex.get<double>("b0") : nullptr;
-  mesh.kind = s.vertex.get<int>("kind");
-  mesh.line = s.vertex.get<int>("line");
-  mesh.size = s.vertex.get<double>("size");
-  mesh.place.reserve(s.points.size());
+  mesh.kind = std::move(s.vertex.get<int>("kind"));
+  mesh.line = std::move(s.vertex.get<int>("line"));
+  mesh.size = std::move(s.vertex.get<double>("size"));
+  mesh.place.reserve(mesh.points.size());
   constexpr double slack = 1e-9;  // barycentrics are rounded when they are computed
-  for (std::size_t v = 0; v < s.points.size(); ++v) {
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     auto bad = [&](const std::string& what) { throw BadInput("vertex " + std::to_string(v) + ' ' + what); };
     if (face[v] < 0 || face[v] >= n_faces)
       bad("is on ref_face " + std::to_string(face[v]) + ", but there are " + std::to_string(n_faces));
@@ -81,9 +81,9 @@ LiftedMesh lifted_from(const Surface& s, int n_faces, int n_lines) {
     if (!(mesh.size[v] > 0)) bad("has size " + std::to_string(mesh.size[v]) + ", but sizes are positive");
     mesh.place.push_back({face[v], b0 ? (*b0)[v] : 1 - b1[v] - b2[v], b1[v], b2[v]});
   }
-  mesh.patch = s.face.get<int>("patch");
-  mesh.part = s.face.get<int>("part");
-  mesh.model = s.face.get<std::uint8_t>("model");
+  mesh.patch = std::move(s.face.get<int>("patch"));
+  mesh.part = std::move(s.face.get<int>("part"));
+  mesh.model = std::move(s.face.get<std::uint8_t>("model"));
   return mesh;
 }
 

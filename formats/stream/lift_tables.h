@@ -6,13 +6,14 @@
 
 namespace meshpipe {
 
-/// Reads the mesh in `vertex` and `face` with each vertex's place on the reference.
+/// Takes the mesh in `vertex` and `face`, with each vertex's place on the reference, out of the stream: what
+/// it has the surface has no longer.
 /// Throws: NotAdmissible if mlift has not run; BadInput with the row of a wrong index or weight.
-LiftedMesh read_lifted(const Stream& stream);
+LiftedMesh take_lifted(Stream& stream);
 
-/// The mesh of a surface that has its columns, on a reference of `faces` triangles, with `lines` lines.
+/// The same from a surface that has its columns, on a reference of `faces` triangles, with `lines` lines.
 /// Throws: BadInput with the row of a wrong index or weight.
-LiftedMesh lifted_from(const Surface& surface, int faces, int lines);
+LiftedMesh take_lifted(Surface& surface, int faces, int lines);
 /// The mesh as a surface with its columns.
 Surface surface_from(LiftedMesh mesh);
 

@@ -176,7 +176,7 @@ void read_slices(const Stream& stream, const Table& table, TileShard& shard) {
              tris = spans_of(table, "ref_faces", face.rows),
              other_points = spans_of(table, "other_vertices", other_vertex.rows),
              other_tris = spans_of(table, "other_faces", other_face.rows),
-             vertices = spans_of(table, "vertices", stream.surface.points.size());
+             vertices = spans_of(table, "vertices", stream.surface.vertex.rows);
   for (std::size_t i = 0; i < shard.tiles.size(); ++i) {
     Tile& tile = shard.tiles[i];
     Surface& s = tile.slice;
@@ -201,21 +201,22 @@ void read_slices(const Stream& stream, const Table& table, TileShard& shard) {
 
 }  // namespace
 
-TileShard read_tiles(const Stream& stream) {
+TileShard take_tiles(Stream& stream) {
   const Table &table = stream.need("tile", writer), &edges = stream.need("tile_edge", writer);
   TileShard shard;
   shard.numbers = table.get<int>("number");
   shard.line_kind = stream.need("tile_line", writer).get<int>("kind");
   shard.pass = pass_from(stream);
   shard.relaxed = table.has("tries");
-  const Surface& s = stream.surface;
+  Surface& s = stream.surface;
   const TiledMesh all =
-      tiled_from(s, lifted_from(s,
+      tiled_from(s, take_lifted(s,
                                 shard.relaxed ? std::numeric_limits<int>::max()
                                               : static_cast<int>(stream.need("ref_face", writer).rows),
                                 static_cast<int>(shard.line_kind.size())));
-  const auto vertices = spans_of(table, "vertices", s.points.size()),
-             faces = spans_of(table, "faces", s.tris.size()), rim = spans_of(table, "edges", edges.rows);
+  const auto vertices = spans_of(table, "vertices", all.mesh.points.size()),
+             faces = spans_of(table, "faces", all.mesh.tris.size()),
+             rim = spans_of(table, "edges", edges.rows);
   for (std::size_t i = 0; i < table.rows; ++i) {
     Tile& tile = shard.tiles.emplace_back();
     const Span &v = vertices[i], &f = faces[i];
@@ -260,8 +261,8 @@ std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int ti
   std::vector<Tile> all(tiles);
   std::vector<const std::string*> from(tiles, nullptr);
   for (const std::string& name : names) try {
-      const Stream stream = read(name);
-      TileShard shard = read_tiles(stream);
+      Stream stream = read(name);
+      TileShard shard = take_tiles(stream);
       if (!shard.relaxed) throw BadInput("its tiles are not relaxed yet");
       const Provenance made = stream.history.empty() ? Provenance{} : stream.history.back();
       if (made.program != by.program || made.arguments != by.arguments)

@@ -41,8 +41,9 @@ class TileTables {
   std::vector<int> rim_[2];
 };
 
-/// Reads what TileTables wrote. Throws: BadInput if the rows of a table are not those of the tiles.
-TileShard read_tiles(const Stream& stream);
+/// Takes what TileTables wrote out of the stream. Throws: BadInput if the rows of a table are not those of
+/// the tiles.
+TileShard take_tiles(Stream& stream);
 
 /// Returns the tiles from all shards in their order, relaxed. `read` returns a shard by its name.
 /// Throws: BadInput, with a shard's name, for one that is none of this mesh and pass, tiles that are missing,

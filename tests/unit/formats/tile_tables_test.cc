@@ -57,7 +57,8 @@ struct Example {
 
 TEST(TileTables, HoldTilesToTheBit) {
   const Example e;
-  const TileShard shard = read_tiles(read_stream(write_stream(e.shard(false), true), "shard"));
+  Stream stream = read_stream(write_stream(e.shard(false), true), "shard");
+  const TileShard shard = take_tiles(stream);
   int next = 0;
   e.relax.cut(e.whole, e.pass, [&](const Tile& tile) {
     const Tile& read = shard.tiles.at(next++);
@@ -110,7 +111,7 @@ TEST(TileTables, WrongNumbersAreRefused) {
             if (relaxed)
               e.join({bad});
             else
-              read_tiles(bad);
+              take_tiles(bad);
           } catch (const BadInput&) {
           } catch (const NotAdmissible&) {
           }
