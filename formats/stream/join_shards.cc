@@ -77,8 +77,7 @@ Taken take_shard(const Stream& whole, const std::string& name, Stream shard, std
   Taken taken{name, number_shard(whole, parts), {}};
   expect_cut_from(whole, shard, taken.numbers);
   if (shard.find("chart_point")) shard.need("line_vertex", "mlines");  // which its rows point to
-  for (const char* name : {"part", "chart_vertex", "chart_point", "chart_face"})
-    if (const Table* table = shard.find(name)) taken.tables.push_back(*table);
+  taken.tables = std::move(shard.tables);
   return taken;
 }
 
