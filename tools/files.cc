@@ -77,21 +77,6 @@ std::string end_of_links(const std::string& path) {
 
 }  // namespace
 
-void FileBytes::Release::operator()(char* data) const {
-  if (mapped > 0)
-    ::munmap(data, mapped);
-  else
-    std::free(data);
-}
-
-bool FileBytes::map(int fd, std::size_t size) {
-  void* data = size > 0 ? ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
-  if (data == MAP_FAILED) return false;
-  data_ = {static_cast<char*>(data), Release{size}};
-  size_ = capacity_ = size;
-  return true;
-}
-
 void FileBytes::reserve(std::size_t more) {
   if (size_ + more <= capacity_) return;
   capacity_ = std::max(size_ + more, 2 * capacity_);
@@ -114,14 +99,8 @@ FileBytes read_file(const std::string& path) {
   FileBytes bytes;
   std::size_t size = 0;
   struct stat info {};
-  const bool regular = ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
-  if (regular && !standard && bytes.map(fd, info.st_size)) {
-    ::close(fd);
-    note_input_begins();
-    return bytes;
-  }
   // one byte more than the file has, so that its end is seen without growing
-  if (regular) bytes.reserve(info.st_size + 1);
+  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
   constexpr std::size_t pipe_block = 1 << 20;
 #ifdef F_SETPIPE_SZ
   // a pipe that holds more: its two programs wake each other sixteen times less often

@@ -12,13 +12,9 @@
 
 namespace meshpipe {
 
-/// The bytes of a file: the system's own copy of them, or a block that grows in place and is not filled with
-/// zeros first.
+/// The bytes of a file, in a block that grows in place and is not filled with zeros first.
 class FileBytes {
  public:
-  /// Takes all bytes of an open file from the system's copy, and makes none: fresh memory for hundreds of
-  /// megabytes takes longer than to parse them. Returns whether it can.
-  bool map(int fd, std::size_t size);
   /// Makes space for `more` bytes after those read. Throws std::bad_alloc.
   void reserve(std::size_t more);
   char* end() const { return data_.get() + size_; }
@@ -27,11 +23,7 @@ class FileBytes {
   operator std::string_view() const { return {data_.get(), size_}; }
 
  private:
-  struct Release {
-    std::size_t mapped;  ///< bytes; 0: allocated
-    void operator()(char* data) const;
-  };
-  std::unique_ptr<char, Release> data_{nullptr, Release{0}};
+  std::unique_ptr<char, decltype(&std::free)> data_{nullptr, std::free};
   std::size_t size_ = 0, capacity_ = 0;
 };
 
