@@ -115,6 +115,15 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
            " not plane, since the rim is not; --flatten cuts or raises such ends");
 }
 
+/// Throws: NotAdmissible if a new patch, with a tag from `first` on, has the name of another: solvers tell
+/// them apart by it.
+void expect_different(const std::vector<Name>& names, int first) {
+  for (const Name& n : names)
+    for (const Name& m : names)
+      if (n.dim == 2 && m.dim == 2 && n.tag >= first && n.tag != m.tag && n.text == m.text)
+        throw NotAdmissible("two patches would be named '" + n.text + "'; --names gives ends other names");
+}
+
 /// Names new patches after their ends, and a single one that is not named: wall.
 void name_patches(Stream& stream, const std::vector<End>& ends, const std::vector<EndReport>& done) {
   const std::vector<int>& patch = stream.surface.face.get<int>("patch");
@@ -133,6 +142,7 @@ void name_patches(Stream& stream, const std::vector<End>& ends, const std::vecto
   const bool one =
       std::all_of(patch.begin(), patch.end(), [&](int p) { return p >= least || p == patch[0]; });
   if (one && stream.name_of(2, patch[0]).empty()) stream.names.push_back({2, patch[0], "wall"});
+  expect_different(stream.names, least);
 }
 
 void run(Io& io, Options& o) {

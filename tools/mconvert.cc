@@ -99,6 +99,11 @@ void place(Stream& stream, const Options& o) {
   // halves: the sum of two coordinates may be infinite
   const Vec3 from = o.center ? 0.5 * low + 0.5 * high : Vec3{};
   for (Vec3& p : mesh.points) p = o.scale * (p - from);
+  for (Column& c : stream.surface.vertex.columns)  // lengths that msize gives
+    if (c.name == "size" || c.name == "radius" || c.name == "thickness" || c.name == "gap" ||
+        c.name == "layers")
+      if (auto* lengths = std::get_if<std::vector<double>>(&c.data))
+        for (double& x : *lengths) x *= o.scale;
 }
 
 }  // namespace

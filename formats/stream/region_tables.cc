@@ -17,7 +17,7 @@ void expect_no_sheets(const Stream& stream, const std::string& why) {
   Mesh joined = stream.surface;
   if (join_borders(joined).size() < stream.surface.points.size())
     throw NotAdmissible("sheets of the surface meet, and " + why +
-                        "; run mclean --resolve outer first to keep only what bounds the outside");
+                        "; run mclean --resolve outer first to keep only what bounds the outside, or mwrap");
 }
 
 std::vector<SheetPatch> read_sheets(const Stream& stream) {

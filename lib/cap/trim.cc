@@ -286,8 +286,10 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   for (int i = 0; i < n; ++i)
     if (const int rims = (int)ends[i].rims.size();
         planes[i] && (pieces[i].euler != 0 || pieces[i].loops != 2 * rims))
-      why[i] = "cutting at " + shown(planes[i]->point) + " would remove a branch: what is cut off has " +
-               std::to_string(pieces[i].loops) + " borders, not " + std::to_string(2 * rims);
+      why[i] = "cutting at " + shown(planes[i]->point) + " would remove a branch: what is cut off " +
+               (pieces[i].loops == 2 * rims
+                    ? "is no tube"
+                    : "has " + std::to_string(pieces[i].loops) + " borders, not " + std::to_string(2 * rims));
   if (!possible()) return why;
   std::vector<int> near(surface.points.size(), -1);  // which end a vertex of the cut belongs to
   std::vector<char> gone(surface.tris.size(), 0);
