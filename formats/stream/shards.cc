@@ -9,26 +9,12 @@
 #include "formats/stream/line_tables.h"
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/mesh2d/mesh2d.h"
 
 namespace meshpipe {
 namespace {
-
-/// Returns some rows of a table.
-Table rows_of(const Table& table, const std::vector<int>& rows) {
-  Table out{table.name, rows.size(), {}};
-  for (const Column& c : table.columns)
-    std::visit(
-        [&]<class T>(const std::vector<T>& from) {
-          std::vector<T> values;
-          values.reserve(rows.size());
-          for (int r : rows) values.push_back(from[r]);
-          out.columns.push_back({c.name, std::move(values)});
-        },
-        c.data);
-  return out;
-}
 
 /// Returns the row of the shard for each of `size` rows of the whole, or -1.
 std::vector<int> inverse(const std::vector<int>& rows, std::size_t size) {

@@ -44,9 +44,20 @@ bool sticks_out(const Rim& rim, double extents) {
   return rim.count > 2 && rim.nearest > extents * norm(rim.high - rim.low);
 }
 
+/// Has a triangle two edges longer than `extents` times the third, as those at a vertex that sticks out have?
+bool has_long_triangles(const Surface& s, double extents) {
+  return std::any_of(s.tris.begin(), s.tris.end(), [&](const Tri& t) {
+    double edge[3];
+    for (int i = 0; i < 3; ++i) edge[i] = norm(s.points[t[(i + 1) % 3]] - s.points[t[i]]);
+    std::sort(edge, edge + 3);
+    return edge[1] > extents * edge[0];
+  });
+}
+
 }  // namespace
 
 int flatten_spikes(Surface& s, double extents) {
+  if (!has_long_triangles(s, extents)) return 0;
   const std::vector<int> same = first_equal(s.points, used_points(s));
   const std::vector<Rim> rims = rims_of(s.points, s.tris, same);
   int n = 0;

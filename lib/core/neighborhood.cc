@@ -3,25 +3,10 @@
 
 #include <algorithm>
 
-#include "lib/core/edges.h"
+#include "lib/core/take_rows.h"
 
 namespace meshpipe {
 namespace {
-
-/// Copies rows of a table.
-Table rows_of(const Table& table, const std::vector<int>& rows) {
-  Table taken{table.name, rows.size(), {}};
-  for (const Column& c : table.columns)
-    std::visit(
-        [&]<class T>(const std::vector<T>& all) {
-          std::vector<T> values;
-          values.reserve(rows.size());
-          for (int row : rows) values.push_back(all[row]);
-          taken.columns.push_back({c.name, std::move(values)});
-        },
-        c.data);
-  return taken;
-}
 
 /// Writes the first rows of `part` into the listed rows of `whole`, and appends the others.
 void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {

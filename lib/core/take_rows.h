@@ -10,18 +10,22 @@
 
 namespace meshpipe {
 
-/// Makes row i of a table what row rows[i] was; rows may be left out or repeated.
-inline void take_rows(Table& table, const std::vector<int>& rows) {
-  for (Column& c : table.columns)
+/// Returns a table whose row i is row rows[i] of another; rows may be left out or repeated.
+inline Table rows_of(const Table& table, const std::vector<int>& rows) {
+  Table taken{table.name, rows.size(), {}};
+  for (const Column& c : table.columns)
     std::visit(
-        [&](auto& old) {
-          std::remove_reference_t<decltype(old)> values(rows.size());
-          for (std::size_t i = 0; i < rows.size(); ++i) values[i] = old[rows[i]];
-          old = std::move(values);
+        [&]<class T>(const std::vector<T>& from) {
+          std::vector<T> values;
+          values.reserve(rows.size());
+          for (int row : rows) values.push_back(from[row]);
+          taken.columns.push_back({c.name, std::move(values)});
         },
         c.data);
-  table.rows = rows.size();
+  return taken;
 }
+/// Makes row i of a table what row rows[i] was.
+inline void take_rows(Table& table, const std::vector<int>& rows) { table = rows_of(table, rows); }
 
 /// A row between two others, t = 0: a, 1: b.
 struct RowBetween {
