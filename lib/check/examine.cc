@@ -24,9 +24,7 @@ namespace {
 Mesh before_cuts(const Surface& reference) {
   const Mesh& cut = reference;
   if (!reference.face.has("origin")) return cut;
-  const std::vector<int>& origin = reference.face.get<int>("origin");
-  if (std::any_of(origin.begin(), origin.end(), [](int o) { return o < 0; })) return cut;
-  return recover_triangles(cut, origin);
+  return recover_triangles(cut, reference.face.get<int>("origin"));
 }
 
 /// The mean length of the edges at each vertex; 0 if it is unused.

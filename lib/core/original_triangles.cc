@@ -42,7 +42,26 @@ bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners)
         best = std::abs(a);
         corners = a > 0 ? Tri{v[i], v[j], v[k]} : Tri{v[i], v[k], v[j]};
       }
-  return std::abs(best - dot(whole, whole)) <= 1e-6 * dot(whole, whole);
+  return best > 0 && std::abs(best - dot(whole, whole)) <= 1e-6 * dot(whole, whole);
+}
+
+/// Returns the triangles in the order of their origins: by counting, unless there are none, or a damaged
+/// stream has other numbers than a surface of about this size.
+std::vector<int> by_origin(const std::vector<int>& origin) {
+  const std::size_t n = origin.size();
+  std::vector<int> order(n);
+  if (n == 0) return order;
+  const auto [least, most] = std::minmax_element(origin.begin(), origin.end());
+  if (*least < 0 || (std::size_t)*most > 1000 + 100 * n) {
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int s, int t) { return origin[s] < origin[t]; });
+    return order;
+  }
+  std::vector<int> start(*most + 2, 0);
+  for (int o : origin) ++start[o + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (std::size_t t = 0; t < n; ++t) order[start[origin[t]]++] = static_cast<int>(t);
+  return order;
 }
 
 }  // namespace
@@ -52,17 +71,13 @@ Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin, std::ve
   Mesh whole;
   whole.points = mesh.points;
   whole.tris.reserve(n);
-  // the triangles in the order of their origins, by counting
-  std::vector<int> start(n == 0 ? 1 : *std::max_element(origin.begin(), origin.end()) + 2, 0), order(n);
-  for (int o : origin) ++start[o + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  for (int t = 0; t < n; ++t) order[start[origin[t]]++] = t;
+  const std::vector<int> order = by_origin(origin);
   if (whole_of) whole_of->resize(n);
   for (int first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && origin[order[last]] == origin[order[first]];) ++last;
     Tri corners;
-    const bool one =
-        last - first > 1 && hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners);
+    const bool one = last - first > 1 && origin[order[first]] >= 0 &&
+                     hull_of_pieces(mesh, std::span(order).subspan(first, last - first), corners);
     if (one) whole.tris.push_back(corners);
     for (int i = first; i < last; ++i) {
       if (!one) whole.tris.push_back(mesh.tris[order[i]]);

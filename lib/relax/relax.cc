@@ -204,6 +204,7 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
   const std::vector<char> corner = ordered.of_points(corners);
   State s = start_state(mesh, *ordered.on, line_kind, corner, options.sheets_meet);
   s.keep_border = options.keep_border;
+  expect_single_fans(s);
   part_double_edges(s);
   std::vector<char> on_border(s.points.size());
   for (int v = 0; v < (int)on_border.size(); ++v)
@@ -361,6 +362,7 @@ void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& p
     if (tile.hold[row] == frozen && s.labels.line[v] >= 0) s.normal[v] = {};  // perhaps a model edge
     s.refinement[v] = tile.refinement[row];
   }
+  expect_single_fans(s);
   int tries = 1;
   if (pass.repair) {
     Samples samples{feature_samples(*ordered.on, pass.sample_size), {}};

@@ -3,7 +3,9 @@
 
 #include <bit>
 
+#include "lib/core/error.h"
 #include "lib/core/normals.h"
+#include "lib/core/number.h"
 #include "lib/core/parallel.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/junctions.h"
@@ -176,6 +178,17 @@ void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal) {
   s.points[v] = p;
   s.normal[v] = normal;
   if (s.reference->sizes) s.size[v] = s.reference->size(place);
+}
+
+void expect_single_fans(const State& s) {
+  for (int v = 0; v < (int)s.points.size(); ++v) {
+    if (s.mesh.out[v] < 0 || s.hold[v] == frozen) continue;
+    int edges = 0;
+    s.mesh.neighbors(v, [&](int) { ++edges; });
+    if (edges != s.mesh.valence(v))
+      throw NotAdmissible("the vertex at " + shown(s.points[v]) +
+                          " joins two fans of triangles, as mlift leaves none");
+  }
 }
 
 void mark_edited(State& s, int v) {

@@ -146,6 +146,8 @@ bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r);
 /// The mesh to optimize, which is moved from. The others as in relax.
 State start_state(LiftedMesh& mesh, const Reference& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner, bool sheets_meet = false);
+/// Throws: NotAdmissible if a vertex that is not frozen has several fans of triangles: edits would tear them.
+void expect_single_fans(const State& s);
 
 /// Numbers vertices and triangles without gaps and moves them to `mesh`; returns for each triangle its row
 /// there, or -1.

@@ -130,6 +130,17 @@ TEST(check, cuts_are_undone) {
   EXPECT_EQ(c.loops, 0);
 }
 
+//   3 - 2     two pieces of one triangle, by what a damaged stream may say of them
+//   | / |
+//   0 - 1
+TEST(check, pieces_that_are_none_stay) {
+  const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  for (int origin : {-1, 0, 2147483647})
+    EXPECT_EQ(recover_triangles(square, {origin, origin}).tris, square.tris);
+  const Mesh twice{square.points, {{0, 1, 2}, {0, 2, 1}}};  // their areas cancel out
+  EXPECT_EQ(recover_triangles(twice, {0, 0}).tris, twice.tris);
+}
+
 //        3      a sharp corner at vertex 0 of a fan: its triangles, and their neighbors, do not count
 //      / |
 //    0 --2      beyond 2-3 comes a strip of good triangles and one bad one

@@ -44,6 +44,18 @@ void expect_on_surface(const LiftedMesh& m, const Surface& s) {
   }
 }
 
+//   4 - 3
+//    \ /
+//     2       two fans
+//    / \.
+//   0 - 1
+TEST(Relax, RefusesAVertexOfTwoFans) {
+  const Surface s =
+      sized({{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}}, {{0, 1, 2}, {2, 3, 4}}}, 2);
+  LiftedMesh m = lifted_of(s);
+  EXPECT_THROW(relax(m, s, {}), NotAdmissible);
+}
+
 TEST(Relax, ATorusBecomesRegularAndStaysATorus) {
   const Surface s = sized(torus(0.4, 6000), 3000);
   LiftedMesh m = lifted_of(s);
