@@ -14,6 +14,7 @@
 #include "lib/size/size.h"
 #include "tools/common.h"
 #include "tools/report/chart_svg.h"
+#include "tools/shard_files.h"
 
 using namespace meshpipe;
 
@@ -41,21 +42,33 @@ static void draw(const std::string& directory, const std::vector<Chart>& charts,
   }
 }
 
+// Adds the meshes that were made of shards.
+static void join(Io& io, Stream& stream, const std::vector<std::string>& shards) {
+  join_shards(stream, shards, {io.program, "", io.arguments},
+              [&](const std::string& name) { return io.read(name); });
+  io.say(std::to_string(shards.size()) + " shards joined");
+  io.report["shards"] = shards.size();
+  io.write(stream);
+}
+
 static const std::map<std::string, Mesher> meshers = {
     {"frontal", Mesher::frontal}, {"delaunay", Mesher::delaunay}, {"meshadapt", Mesher::meshadapt}};
 
 int main(int argc, char** argv) {
-  std::string mesher = "frontal", pictures;
+  std::string mesher = "frontal", pictures, from;
   auto options = [&](CLI::App& app) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
+    auto* shards = add_join_option(app, from);
     app.add_option("--svg", pictures, "draw each chart in this directory, its map and its mesh side by side")
         ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
         ->type_name("DIR")
-        ->group("Reports");
+        ->group("Reports")
+        ->excludes(shards);
   };
   auto body = [&](Io& io) {
     Stream& stream = io.read();
+    if (!from.empty()) return join(io, stream, shards_in(from));
     std::vector<Chart> charts = read_charts(stream);
     const Lines lines = read_lines(stream);
     if (!stream.surface.vertex.has("size"))

@@ -10,6 +10,7 @@
 #include "tools/common.h"
 #include "tools/report/chart_report.h"
 #include "tools/report/charts_svg.h"
+#include "tools/shard_files.h"
 
 using namespace meshpipe;
 
@@ -43,19 +44,13 @@ void report_charts(Io& io, const ParamOptions& options, const std::vector<Chart>
                 n_parts, n_parts - n_before, repaired, other, median, p99, smallest);
   std::string line = text;
   const auto left = std::count_if(charts.begin(), charts.end(), [](const Chart& c) { return c.uv.empty(); });
-  if (left > 0) line += "; " + std::to_string(left) + " left to --resume";
+  if (left > 0) line += "; " + std::to_string(left) + " left to --join";
   io.say(line);
 }
 
-/// Returns the maps that the stream has, as map_surface takes them, and forgets who made them.
-/// Throws: NotAdmissible if that was not this program with these options.
-std::vector<Chart> known_charts(const Io& io, Stream& stream, int n_parts) {
+/// Returns the maps that the stream has, as map_surface takes them.
+std::vector<Chart> known_charts(const Stream& stream, int n_parts) {
   const Table& rows = stream.need("chart_vertex", "mparam");
-  const Provenance made = stream.history.empty() ? Provenance{} : stream.history.back();
-  if (made.program != io.program || made.arguments != io.arguments)
-    throw NotAdmissible("--resume: the maps were made with options '" + made.arguments + "', not '" +
-                        io.arguments + "'");
-  stream.history.pop_back();
   std::vector<Chart> charts(n_parts);
   const auto &part = rows.get<int>("part"), &vertex = rows.get<int>("vertex");
   const auto &u = rows.get<double>("u"), &v = rows.get<double>("v");
@@ -71,8 +66,7 @@ std::vector<Chart> known_charts(const Io& io, Stream& stream, int n_parts) {
 
 int main(int argc, char** argv) {
   ParamOptions options;
-  std::string svg;
-  bool resume = false;
+  std::string svg, from;
   auto add_options = [&](CLI::App& app) {
     auto name = [&]<class T>(const char* option, T& value, std::map<std::string, T> names, const char* help) {
       std::vector<std::string> words;
@@ -97,9 +91,7 @@ int main(int argc, char** argv) {
         ->type_name("N");
     app.add_flag("--strict", options.strict,
                  "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
-    app.add_flag("--resume", resume,
-                 "keep the maps that mshard --join has added, and make only those that are missing")
-        ->group("Shards");
+    add_join_option(app, from);
     app.add_option("--svg", svg, "draw the charts, colored by area scale")
         ->type_name("FILE")
         ->group("Reports");
@@ -107,6 +99,9 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     if (!svg.empty()) io.expect_report("--svg", svg);
     Stream& stream = io.read();
+    if (!from.empty())
+      join_shards(stream, shards_in(from), {io.program, "", io.arguments},
+                  [&](const std::string& name) { return io.read(name); });
     if (is_shard(stream)) {
       if (!svg.empty()) throw BadUsage("--svg draws all charts, but this is a shard");
       if (options.map != MapKind::conformal && !options.strict)
@@ -120,9 +115,9 @@ int main(int argc, char** argv) {
 
     std::vector<ParamReport> reports;
     std::vector<Chart> made;
-    if (resume) {
+    if (!from.empty()) {
       reports = read_chart_columns(stream.need("part", "mpartition"));
-      made = known_charts(io, stream, n_before);
+      made = known_charts(stream, n_before);
     }
     std::vector<Chart> charts =
         map_surface(surface, n_before, options, reports, std::move(made), is_shard(stream));

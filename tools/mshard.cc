@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join
-// them.
+// mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own.
 #include "formats/stream/shards.h"
 #include "tools/common.h"
 #include "tools/shard_files.h"
@@ -31,51 +30,27 @@ void cut(Io& io, int count, const std::string& directory) {
   write_as_it_is(io, whole);
 }
 
-void join(Io& io, const std::string& directory) {
-  const std::vector<std::string> names = shards_in(directory);
-  Stream& whole = io.read();
-  const int open = join_shards(whole, names, [&](const std::string& name) { return io.read(name); });
-  io.say(std::to_string(names.size()) + " shards joined" +
-         (open ? ", " + std::to_string(open) + (open == 1 ? " part is" : " parts are") +
-                     " left to mparam --resume"
-               : ""));
-  io.report["shards"] = names.size();
-  io.report["parts_left"] = open;
-  write_as_it_is(io, whole);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   int count = 0;
-  std::string into, from;
+  std::string into;
   auto options = [&](CLI::App& app) {
-    auto* shards =
-        app.add_option("--shards", count, "cut into N shards, of almost the same number of triangles")
-            ->check(CLI::Range(1, 100000))
-            ->type_name("N");
-    auto* directory =
-        app.add_option("--into", into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
-    auto* join = app.add_option("--join", from, "add to FILE what was made of the shards in this directory")
-                     ->type_name("DIR");
-    shards->needs(directory)->excludes(join);
-    directory->needs(shards)->excludes(join);
-  };
-  auto body = [&](Io& io) {
-    if (count == 0 && from.empty()) throw BadUsage("expected --shards N --into DIR, or --join DIR");
-    if (count > 0)
-      cut(io, count, into);
-    else
-      join(io, from);
+    app.add_option("--shards", count, "cut into N shards, of almost the same number of triangles")
+        ->required()
+        ->check(CLI::Range(1, 100000))
+        ->type_name("N");
+    app.add_option("--into", into, "where they go: DIR/1.ply, DIR/2.ply, ...")->required()->type_name("DIR");
   };
   return run_tool(
       argc, argv, "mshard",
-      "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, and join what "
-      "they have made.\n\nexamples:\n"
+      "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, whose --join "
+      "joins "
+      "what they have made.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
       "mshard --shards 2 --into in stages/08-lines.ply -o all.ply\n"
       "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply -o all.ply && "
       "mkdir out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && "
-      "mshard --join out all.ply | mlift -o lifted.ply",
-      options, body, {.passes = true, .any_size = true});
+      "mmesh2d --join out all.ply | mlift -o lifted.ply",
+      options, [&](Io& io) { cut(io, count, into); }, {.passes = true, .any_size = true});
 }

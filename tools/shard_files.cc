@@ -16,10 +16,15 @@ void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& wha
           ->type_name("N");
   auto* into =
       app.add_option("--into", shards.into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
-  auto* join = app.add_option("--join", shards.from, "join what was made of the shards in this directory")
-                   ->type_name("DIR");
+  auto* join = add_join_option(app, shards.from);
   count->needs(into), into->needs(count);
   for (CLI::Option* option : {count, into, join}) option->group("Shards")->excludes(excluded);
+}
+
+CLI::Option* add_join_option(CLI::App& app, std::string& from) {
+  return app.add_option("--join", from, "join what was made of the shards in this directory")
+      ->type_name("DIR")
+      ->group("Shards");
 }
 
 void make_directory(const std::string& directory) {

@@ -16,6 +16,8 @@ struct ShardFiles {
 };
 /// Adds --shards, --into and --join, which exclude another option. `what`: the shards are of.
 void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& what, CLI::Option* excluded);
+/// Adds --join DIR.
+CLI::Option* add_join_option(CLI::App& app, std::string& from);
 
 /// Makes a directory if it is not there. Throws: CannotWrite.
 void make_directory(const std::string& directory);

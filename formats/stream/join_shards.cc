@@ -54,8 +54,8 @@ void expect_cut_from(const Stream& whole, const Stream& shard, const ShardNumber
 }
 
 /// Checks a shard, and takes the tables that its program has made.
-Taken take_shard(const Stream& whole, const std::string& name, Stream shard, std::vector<Provenance>& made) {
-  const std::size_t n_parts = whole.need("part", "mpartition").rows, before = whole.history.size();
+Taken take_shard(const Stream& whole, const std::string& name, Stream shard, const Provenance& by) {
+  const std::size_t n_parts = whole.need("part", "mpartition").rows;
   const std::vector<int>& parts = shard.need("shard", "mshard").get<int>("part");
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (parts[i] < (i ? parts[i - 1] + 1 : 0) || parts[i] >= static_cast<int>(n_parts))
@@ -64,16 +64,11 @@ Taken take_shard(const Stream& whole, const std::string& name, Stream shard, std
   if (const std::size_t rows = shard.need("part", "mpartition").rows; rows != parts.size())
     throw BadInput("there are " + std::to_string(rows) + " parts, but " + std::to_string(parts.size()) +
                    " were cut out of the whole");
-  auto text = [](const Provenance& p) {
-    return p.program + ' ' + p.version + (p.arguments.empty() ? "" : ' ' + p.arguments);
-  };
-  std::vector<Provenance> added(
-      shard.history.begin() + static_cast<std::ptrdiff_t>(std::min(before, shard.history.size())),
-      shard.history.end());
-  if (added.empty()) throw BadInput("no program has run on the shard");
-  if (!made.empty() && (added.size() != made.size() || text(added.back()) != text(made.back())))
-    throw BadInput("it was made by '" + text(added.back()) + "', others by '" + text(made.back()) + "'");
-  made = std::move(added);
+  if (shard.history.size() <= whole.history.size()) throw BadInput("no program has run on the shard");
+  const Provenance& made = shard.history.back();
+  auto text = [](const Provenance& p) { return p.program + (p.arguments.empty() ? "" : ' ' + p.arguments); };
+  if (text(made) != text(by))
+    throw BadInput("it was made by '" + text(made) + "', not by '" + text(by) + "'");
   Taken taken{name, number_shard(whole, parts), {}};
   expect_cut_from(whole, shard, taken.numbers);
   if (shard.find("chart_point")) shard.need("line_vertex", "mlines");  // which its rows point to
@@ -164,16 +159,15 @@ Table joined_parts(const std::vector<Taken>& taken, std::size_t n_parts) {
 
 }  // namespace
 
-int join_shards(Stream& whole, const std::vector<std::string>& names,
-                const std::function<Stream(const std::string&)>& read) {
+void join_shards(Stream& whole, const std::vector<std::string>& names, const Provenance& by,
+                 const std::function<Stream(const std::string&)>& read) {
   std::vector<Taken> taken;
   std::vector<Home> homes(whole.need("part", "mpartition").rows);
-  std::vector<Provenance> made;
   for (const std::string& name : names) {
     Stream shard = read(name);
     auto failed = [&](const std::exception& e) { return BadInput(name + ": " + e.what()); };
     try {
-      taken.push_back(take_shard(whole, name, std::move(shard), made));
+      taken.push_back(take_shard(whole, name, std::move(shard), by));
     } catch (const BadInput& e) {
       throw failed(e);
     } catch (const NotAdmissible& e) {
@@ -190,19 +184,16 @@ int join_shards(Stream& whole, const std::vector<std::string>& names,
   for (std::size_t p = 0; p < homes.size(); ++p)
     if (homes[p].shard < 0)
       throw BadInput("part " + std::to_string(p) + " of " + std::to_string(homes.size()) + " is in no shard");
-  whole.history.insert(whole.history.end(), made.begin(), made.end());
   if (taken[0].find("chart_point")) {
     const Merged points("chart_point", taken, homes), faces("chart_face", taken, homes);
     whole.set(points.table());
     whole.set(faces.table(&points));
-    return 0;
+    return;
   }
   const Merged charts("chart_vertex", taken, homes);
   drop_downstream(whole, Stage::charts);
   whole.set(joined_parts(taken, homes.size()));
   whole.set(charts.table());
-  return static_cast<int>(std::count_if(homes.begin(), homes.end(),
-                                        [&](const Home& h) { return charts.begin(h) == charts.end(h); }));
 }
 
 }  // namespace meshpipe

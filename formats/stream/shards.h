@@ -33,11 +33,11 @@ ShardNumbers number_shard(const Stream& whole, std::vector<int> parts);
 /// `kept`: kept_vertices of the whole; empty if sizes are not known yet.
 Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::vector<char>& kept);
 
-/// Adds to the whole what programs have made of its shards, as they make it of the whole: plane meshes, else
-/// charts. `read` returns a shard by its name. Returns the number of parts without a chart.
+/// Adds to the whole what a program has made of its shards, as it makes it of the whole: plane meshes, else
+/// charts, without those that are missing. `read` returns a shard by its name.
 /// Throws: BadInput, with a shard's name, for one that is none of the whole, parts that are missing, doubled
-/// or cut, and shards that were made by different programs or options.
-int join_shards(Stream& whole, const std::vector<std::string>& names,
-                const std::function<Stream(const std::string&)>& read);
+/// or cut, and shards that were not made by `by`, in any version.
+void join_shards(Stream& whole, const std::vector<std::string>& names, const Provenance& by,
+                 const std::function<Stream(const std::string&)>& read);
 
 }  // namespace meshpipe

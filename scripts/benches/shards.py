@@ -68,11 +68,7 @@ class Steps:
         count = ["--shards", str(shards)]
         if program in ("mparam", "mmesh2d"):
             out = self.work(["mshard", source, *count], [program], "/dev/null")
-            self.call("mshard", "--join", out, source, "-o", self.path("joined.ply"))
-            if program == "mparam":
-                self.call("mparam", "--resume", self.path("joined.ply"), "-o", result)
-            else:
-                os.replace(self.path("joined.ply"), result)
+            self.call(program, "--join", out, source, "-o", result)
             return
         command = [program, "--tile", tile]
         out = self.work([*command, source, *count], command, "/dev/null")

@@ -75,8 +75,9 @@ class Steps:
         """Returns the file of the mesh between the two passes over its tiles."""
         return os.path.join(self.folder, "repair", "half.ply")
 
-    def join(self, stage, kind, result):
-        call("mshard", "-q", "--join", os.path.join(self.folder, kind + "-done"), self.stage(stage), "-o", result)
+    def join(self, stage, kind, program):
+        command, result = self.program(program)
+        call(*command, "--join", os.path.join(self.folder, kind + "-done"), self.stage(stage), "-o", result)
 
     def work(self, kind, program, number):
         shard = os.path.join(self.folder, kind, number + ".ply")
@@ -92,16 +93,13 @@ class Steps:
         elif kind == "map":
             self.work(kind, "mparam", number)
         elif step == "middle":
-            command, result = self.program("mparam")
-            self.join("multiscale", "map", result + ".part.ply")
-            call(*command, "--resume", result + ".part.ply", "-o", result)
-            os.remove(result + ".part.ply")
+            self.join("multiscale", "map", "mparam")
             self.chain("--from", "size", "--to", "lines")
             self.cut("plane", ["mshard", "-q"], self.stage("lines"))
         elif kind == "plane":
             self.work(kind, "mmesh2d", number)
         elif step == "lift":
-            self.join("lines", "plane", self.program("mmesh2d")[1])
+            self.join("lines", "plane", "mmesh2d")
             self.chain("--from", "lift", "--to", "lift")
             self.cut("relax", self.program("mrelax")[0], self.stage("lift"))
         elif kind in ("relax", "repair"):

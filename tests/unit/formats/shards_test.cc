@@ -71,7 +71,8 @@ TEST(shards, are_joined_only_with_the_tables_that_theirs_point_to) {
   points.set("part", std::vector<int>{0, 1});
   points.set("line_vertex", std::vector<int>{7, 1 << 30});
   shard.set(std::move(points));
-  EXPECT_THROW(join_shards(whole, {"a"}, [&](const std::string&) { return shard; }), BadInput);
+  EXPECT_THROW(join_shards(whole, {"a"}, {"mmesh2d", "", ""}, [&](const std::string&) { return shard; }),
+               BadInput);
 }
 
 TEST(shards, that_lack_a_table_of_the_others_are_named) {
@@ -89,7 +90,7 @@ TEST(shards, that_lack_a_table_of_the_others_are_named) {
   for (const char* lacks : {"column 'vertex'", "table 'chart_vertex'"}) {
     Stream all = whole;
     try {
-      join_shards(all, {"a", "b"}, read);
+      join_shards(all, {"a", "b"}, {"mparam", "", ""}, read);
       ADD_FAILURE();
     } catch (const BadInput& e) {
       EXPECT_TRUE(std::string(e.what()).starts_with("b: ")) << e.what();
