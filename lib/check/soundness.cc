@@ -10,20 +10,6 @@
 namespace meshpipe {
 namespace {
 
-/// Finds vertices with more than one fan of triangles.
-void find_pinched(const Mesh& mesh, Soundness& c) {
-  const auto& opposite = c.opposite;
-  const int n = 3 * (int)mesh.tris.size();
-  std::vector<char> corner_seen(n, 0), vertex_seen(mesh.points.size(), 0);
-  for (int h = 0; h < n; ++h) {
-    if (corner_seen[h]) continue;
-    char& vertex = vertex_seen[origin(mesh.tris, h)];
-    if (vertex) c.pinched.push_back(h / 3);
-    vertex = 1;
-    for_each_spoke(opposite, h, [&](int g) { corner_seen[g] = 1; });
-  }
-}
-
 void find_components(Soundness& c) {
   std::vector<int> component;
   c.components = components(c.opposite, component);
@@ -69,7 +55,8 @@ Soundness soundness_of(const Mesh& mesh) {
     c.opposite[h] = g;
     c.opposite[g] = h;
   });
-  if (c.sound()) find_pinched(mesh, c);
+  if (c.sound())
+    for (int h : further_fans(mesh.tris, c.opposite, n)) c.pinched.push_back(h / 3);
   if (!c.sound()) return c;
   find_components(c);
   find_loops(mesh, c);

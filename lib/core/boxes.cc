@@ -93,10 +93,9 @@ Lists triangles_in_cubes(const Mesh& mesh, const Grid& grid, const Lists& tiles_
       const auto [a, b, c] = mesh.tris[t];
       near.clear();
       grid.for_cubes(mesh.points[a], mesh.points[b], mesh.points[c], [&](int cube) {
-        for_rows(tiles_at, cube, [&](int tile) {
+        for (int tile : tiles_at[cube])
           if ((own.empty() || own[t] != tile) && std::find(near.begin(), near.end(), tile) == near.end())
             near.push_back(tile);
-        });
       });
       for (int tile : near) found[k].push_back({tile, t});
     }

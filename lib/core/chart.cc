@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "lib/core/error.h"
 #include "lib/core/predicates.h"
@@ -111,7 +110,7 @@ struct Nearest {
 Place look_up(const Chart& chart, Vec2 p) {
   const ChartGrid& g = chart.grid;
   Nearest nearest{chart, p, {}};
-  if (g.start.empty()) {
+  if (g.triangles.start.empty()) {
     for (int t = 0; t < (int)chart.mesh.tris.size(); ++t) {
       if (holds(chart, t, p)) return place_inside(chart, t, p);
       nearest.look_at(t);
@@ -120,8 +119,8 @@ Place look_up(const Chart& chart, Vec2 p) {
   }
   int column = cell_of(p.x, g.low.x, g.cells_per_unit, g.columns);
   int row = cell_of(p.y, g.low.y, g.cells_per_unit, g.rows);
-  for (int k = g.start[row * g.columns + column]; k < g.start[row * g.columns + column + 1]; ++k)
-    if (holds(chart, g.triangle[k], p)) return place_inside(chart, g.triangle[k], p);
+  for (int t : g.triangles[row * g.columns + column])
+    if (holds(chart, t, p)) return place_inside(chart, t, p);
   for (int ring = 0; ring < std::max(g.columns, g.rows); ++ring) {
     // everything in this ring and beyond is at least ring - 1 cells away, whether p is in its cell or outside
     // the grid
@@ -132,7 +131,7 @@ Place look_up(const Chart& chart, Vec2 p) {
       for (int c = column - ring; c <= column + ring; c += edge_row || ring == 0 ? 1 : 2 * ring) {
         if (c < 0 || c >= g.columns) continue;
         int cell = r * g.columns + c;
-        for (int k = g.start[cell]; k < g.start[cell + 1]; ++k) nearest.look_at(g.triangle[k]);
+        for (int t : g.triangles[cell]) nearest.look_at(t);
       }
     }
   }
@@ -159,7 +158,6 @@ void index_chart(Chart& chart) {
   g.cells_per_unit = std::min(g.cells_per_unit, (double)tris.size() / std::max(width, height));
   g.columns = (int)(width * g.cells_per_unit) + 1;
   g.rows = (int)(height * g.cells_per_unit) + 1;
-  g.start.assign(g.columns * g.rows + 1, 0);
   std::vector<int> cells, end;  // of each triangle
   cells.reserve(4 * tris.size());
   end.reserve(tris.size());
@@ -167,12 +165,10 @@ void index_chart(Chart& chart) {
     visit_cells(g, corners(chart, t), [&](int cell) { cells.push_back(cell); });
     end.push_back((int)cells.size());
   }
-  for (int cell : cells) ++g.start[cell + 1];
-  std::partial_sum(g.start.begin(), g.start.end(), g.start.begin());
-  g.triangle.resize(cells.size());
-  std::vector<int> at(g.start.begin(), g.start.end() - 1);
-  for (int t = 0, i = 0; t < (int)tris.size(); ++t)
-    for (; i < end[t]; ++i) g.triangle[at[cells[i]]++] = t;
+  g.triangles = lists_of(g.columns * g.rows, [&](auto use) {
+    for (int t = 0, i = 0; t < (int)tris.size(); ++t)
+      for (; i < end[t]; ++i) use(cells[i], t);
+  });
 }
 
 std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex, int n_parts) {
@@ -183,7 +179,6 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
   int n_rows = (int)part.size(), n_vertices = (int)surface.points.size();
   auto row_name = [&](int row) { return "chart_vertex row " + std::to_string(row); };
 
-  std::vector<int> first(n_parts + 1, 0), row_of(n_rows);
   for (int r = 0; r < n_rows; ++r) {
     if (part[r] < 0 || part[r] >= n_parts)
       throw BadInput(row_name(r) + " names part " + std::to_string(part[r]) + ", but there are " +
@@ -191,11 +186,8 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
     if (vertex[r] < 0 || vertex[r] >= n_vertices)
       throw BadInput(row_name(r) + " names vertex " + std::to_string(vertex[r]) + ", but there are " +
                      std::to_string(n_vertices));
-    ++first[part[r] + 1];
   }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<int> at(first.begin(), first.end() - 1);
-  for (int r = 0; r < n_rows; ++r) row_of[at[part[r]]++] = r;
+  const Lists rows = lists_by(n_parts, part);
 
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   std::vector<Chart> charts(n_parts);
@@ -207,8 +199,8 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
     for (int i = 0; i < n; ++i) local[chart.mesh.vertex[i]] = i;
     chart.uv.resize(n);
     std::vector<char> seen(n, 0);
-    for (int k = first[p]; k < first[p + 1]; ++k) {
-      int r = row_of[k], i = local[vertex[r]];
+    for (int r : rows[p]) {
+      const int i = local[vertex[r]];
       if (i < 0)
         throw BadInput(row_name(r) + " puts vertex " + std::to_string(vertex[r]) + " in part " +
                        std::to_string(p) + ", which does not have it");

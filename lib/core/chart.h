@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A chart: one part of the surface with its map to the plane, and how to find points in it.
 #pragma once
+#include "lib/core/lists.h"
 #include "lib/core/mesh.h"
 
 namespace meshpipe {
@@ -10,7 +11,7 @@ struct ChartGrid {
   Vec2 low;
   double cells_per_unit = 0;
   int columns = 0, rows = 0;  ///< cell c = row * columns + column
-  std::vector<int> start, triangle;
+  Lists triangles;            ///< by cell
 };
 
 /// uv[i] belongs to mesh.points[i]; every triangle is positively oriented in the plane.

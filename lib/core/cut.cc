@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "lib/core/lists.h"
 #include "lib/core/take_rows.h"
 
 namespace meshpipe {
@@ -65,24 +66,18 @@ class Signs {
     std::sort(candidates_.begin(), candidates_.end());
     for (std::size_t i = 0; i < candidates_.size(); ++i) rank_[candidates_[i].second] = (int)i;
 
-    start_.assign(candidates_.size() + 1, 0);
-    auto each_corner = [&](auto&& use) {
+    star_ = lists_of((int)candidates_.size(), [&](auto use) {
       for (std::size_t t = 0; t < tris_.size(); ++t)
         if (active.empty() || active[t])
           for (int i = 0; i < 3; ++i)
             if (int r = rank_[tris_[t][i]]; r >= 0) use(r, (int)(3 * t + i));
-    };
-    each_corner([&](int r, int) { ++start_[r + 1]; });
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    star_.resize(start_.back());
-    std::vector<int> fill(start_.begin(), start_.end() - 1);
-    each_corner([&](int r, int h) { star_[fill[r]++] = h; });
+    });
   }
 
   /// An earlier candidate may have taken the crossing away.
   bool still_close(int v) const {
-    for (int k = start_[rank_[v]]; k < start_[rank_[v] + 1]; ++k)
-      for (int w : {target(tris_, star_[k]), origin(tris_, prev(star_[k]))})
+    for (int h : star_[rank_[v]])
+      for (int w : {target(tris_, h), origin(tris_, prev(h))})
         if (sign[v] * sign[w] < 0 && crossing(field_[v], field_[w]) <= snap_) return true;
     return false;
   }
@@ -92,8 +87,8 @@ class Signs {
   bool stays_a_curve(int v) {
     int branches = 0;
     link_.clear();
-    for (int k = start_[rank_[v]]; k < start_[rank_[v] + 1]; ++k) {
-      int a = target(tris_, star_[k]), b = origin(tris_, prev(star_[k]));
+    for (int h : star_[rank_[v]]) {
+      int a = target(tris_, h), b = origin(tris_, prev(h));
       if (sign[a] == 0 && sign[b] == 0) return false;
       branches += sign[a] * sign[b] < 0;
       link_.push_back({a, sign[a] + sign[b]});
@@ -117,7 +112,8 @@ class Signs {
   const std::vector<double>& field_;
   double snap_;
   std::vector<std::pair<double, int>> candidates_;
-  std::vector<int> rank_, start_, star_;   // half-edges of active triangles leaving each candidate
+  std::vector<int> rank_;                  // of candidates
+  Lists star_;                             // the half-edges of active triangles that leave each candidate
   std::vector<std::pair<int, int>> link_;  // scratch of stays_a_curve
 
  public:

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "lib/core/connectivity.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -57,11 +58,7 @@ std::vector<int> by_origin(const std::vector<int>& origin) {
     std::stable_sort(order.begin(), order.end(), [&](int s, int t) { return origin[s] < origin[t]; });
     return order;
   }
-  std::vector<int> start(*most + 2, 0);
-  for (int o : origin) ++start[o + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  for (std::size_t t = 0; t < n; ++t) order[start[origin[t]]++] = static_cast<int>(t);
-  return order;
+  return lists_by(*most + 1, origin).row;
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 #include "lib/core/spatial_order.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -77,13 +78,12 @@ std::vector<int> number_by_first_use(std::vector<Tri>& tris, std::size_t n) {
 }
 
 SpatialOrder spatial_order(const Mesh& mesh) {
-  SpatialOrder order{along_curve(mesh.points), std::vector<int>(mesh.tris.size())};
+  SpatialOrder order{along_curve(mesh.points), {}};
   const std::vector<int> row = new_rows(order.vertices);
-  auto first = [&](const Tri& t) { return std::min({row[t[0]], row[t[1]], row[t[2]]}); };
-  std::vector<int> next(mesh.points.size() + 1);
-  for (const Tri& t : mesh.tris) ++next[first(t) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) order.tris[next[first(mesh.tris[t])]++] = t;
+  std::vector<int> first;
+  first.reserve(mesh.tris.size());
+  for (const auto& [a, b, c] : mesh.tris) first.push_back(std::min({row[a], row[b], row[c]}));
+  order.tris = lists_by((int)mesh.points.size(), first).row;
   return order;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "lib/core/edges.h"
 #include "lib/core/eigenvectors.h"
@@ -89,16 +90,21 @@ std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite) {
   return loops;
 }
 
-int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices) {
+std::vector<int> further_fans(const std::vector<Tri>& tris, const std::vector<int>& opposite,
+                              int n_vertices) {
   std::vector<char> seen(opposite.size(), 0), has_fan(n_vertices, 0);
-  int pinched = n_vertices;
+  std::vector<int> fans;
   for (int h = 0; h < (int)opposite.size(); ++h) {
     if (seen[h]) continue;
-    const int v = origin(tris, h);
-    if (has_fan[v]) pinched = std::min(pinched, v);
-    has_fan[v] = 1;
+    if (std::exchange(has_fan[origin(tris, h)], 1)) fans.push_back(h);
     for_each_spoke(opposite, h, [&](int g) { seen[g] = 1; });
   }
+  return fans;
+}
+
+int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices) {
+  int pinched = n_vertices;
+  for (int h : further_fans(tris, opposite, n_vertices)) pinched = std::min(pinched, origin(tris, h));
   return pinched < n_vertices ? pinched : -1;
 }
 

@@ -25,6 +25,8 @@ int components(const std::vector<int>& opposite, std::vector<int>& component);
 /// star).
 std::vector<std::vector<int>> boundary_loops(const std::vector<int>& opposite);
 
+/// Returns a half-edge that leaves the vertex in each fan of its triangles but the first.
+std::vector<int> further_fans(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices);
 /// Returns the first vertex whose triangles do not form a single fan, or -1.
 int find_pinched_vertex(const std::vector<Tri>& tris, const std::vector<int>& opposite, int n_vertices);
 inline int find_pinched_vertex(const Connectivity& c) {

@@ -9,6 +9,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -67,17 +68,14 @@ void lift_line_points(const Surface& s, const Lines& lines, const std::vector<in
     }
 
   // a triangle that has the edge: rows by their first vertex, met by the half-edges that leave it either way
-  std::vector<int> start(s.points.size() + 1, 0), row(n_rows);
-  for (const LinePoint& p : lines.points) ++start[p.a + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (int i = 0; i < n_rows; ++i) row[at[lines.points[i].a]++] = i;
+  const Lists rows = lists_of(static_cast<int>(s.points.size()), [&](auto use) {
+    for (int row = 0; row < n_rows; ++row) use(lines.points[row].a, row);
+  });
   for (int t = 0; t < static_cast<int>(s.tris.size()); ++t)
     for (int i = 0; i < 3; ++i) {
-      const int a = s.tris[t][i];
-      for (int k = start[a]; k < start[a + 1]; ++k) {
-        const LinePoint& p = lines.points[row[k]];
-        Place& place = out.place[vertex[row[k]]];
+      for (int row : rows[s.tris[t][i]]) {
+        const LinePoint& p = lines.points[row];
+        Place& place = out.place[vertex[row]];
         if (place.face >= 0) continue;
         for (int j = 0; j < 3; ++j) {
           if (s.tris[t][j] != p.b) continue;

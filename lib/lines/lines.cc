@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
 #include "lib/core/junctions.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/lines/noncrossing.h"
@@ -66,17 +66,13 @@ std::vector<SpecialEdge> special_edges(const Connectivity& mesh, const std::vect
 Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner,
                    const Places& place, std::vector<int>* tag = nullptr) {
   const int n_vertices = static_cast<int>(corner.size());
-  std::vector<int> start(n_vertices + 1, 0), star(2 * edges.size());
-  for (const SpecialEdge& e : edges) ++start[place(e.a) + 1], ++start[place(e.b) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
-    star[at[place(edges[i].a)]++] = i;
-    star[at[place(edges[i].b)]++] = i;
-  }
+  const Lists stars = lists_of(n_vertices, [&](auto use) {
+    for (int i = 0; i < static_cast<int>(edges.size()); ++i)
+      use(place(edges[i].a), i), use(place(edges[i].b), i);
+  });
   auto is_joint = [&](int v) {
-    return corner[v] || start[v + 1] - start[v] != 2 ||
-           edges[star[start[v]]].tag != edges[star[start[v] + 1]].tag;
+    const auto star = stars[v];
+    return corner[v] || star.size() != 2 || edges[star[0]].tag != edges[star[1]].tag;
   };
 
   Chains chains;
@@ -94,17 +90,16 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
       v = place(chains.vertex.back());
       ++c.count;
       if (closed ? v == origin : is_joint(v)) break;
-      const int s = start[v];
-      e = star[s] == e ? star[s + 1] : star[s];
+      e = stars[v][stars[v][0] == e];
     }
     chains.chain.push_back(c);
     if (tag) tag->push_back(first.tag);
   };
   for (bool closed : {false, true})
     for (int v = 0; v < n_vertices; ++v) {
-      if (start[v] == start[v + 1] || (!closed && !is_joint(v))) continue;
-      for (int i = start[v]; i < start[v + 1]; ++i)
-        if (!used[star[i]]) walk(v, star[i], closed);
+      if (stars[v].empty() || (!closed && !is_joint(v))) continue;
+      for (int e : stars[v])
+        if (!used[e]) walk(v, e, closed);
     }
   return chains;
 }
@@ -156,11 +151,9 @@ void mark_changes(const Connectivity& mesh, const Places& place, std::vector<cha
 void copy_lines(const Connectivity& mesh, const std::vector<int>& part, const Places& place, Chains& chains,
                 std::vector<int>& tag) {
   const Border border(mesh);
-  std::vector<int> start(mesh.n_vertices() + 1, 0), member(mesh.n_vertices());
-  for (int v = 0; v < mesh.n_vertices(); ++v) ++start[place(v) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (int v = 0; v < mesh.n_vertices(); ++v) member[at[place(v)]++] = v;
+  const Lists members = lists_of(mesh.n_vertices(), [&](auto use) {
+    for (int v = 0; v < mesh.n_vertices(); ++v) use(place(v), v);
+  });
   std::vector<int> part_after(mesh.n_vertices(), -1);  // of the border edge that leaves a vertex
   for (int h = 0; h < mesh.n_half_edges(); ++h)
     if (mesh.is_border(h)) part_after[mesh.from(h)] = part[h / 3];
@@ -183,10 +176,10 @@ void copy_lines(const Connectivity& mesh, const std::vector<int>& part, const Pl
       continue;
     }
     const int from = place(v[0]), to = place(v[1]);
-    for (int k = start[from]; k < start[from + 1]; ++k)
+    for (int member : members[from])
       for (bool along : {true, false}) {
         const std::vector<int>& beyond = along ? border.after : border.before;
-        int w = member[k];
+        int w = member;
         if (beyond[w] < 0 || place(beyond[w]) != to) continue;
         const int p = part_after[along ? w : beyond[w]];
         add({c.kind, 0, c.count, c.closed, along ? p : -1, along ? -1 : p});

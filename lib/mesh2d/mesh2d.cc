@@ -61,9 +61,9 @@ struct Drawing {
 
 Drawing draw(const PartLines& parts, int part) {
   Drawing d;
-  for (int i = parts.start[part]; i < parts.start[part + 1]; ++i) {
-    const int line = parts.line[i];
-    if (i > parts.start[part] && line == parts.line[i - 1]) continue;
+  int last = -1;
+  for (int line : parts.lines_of_part[part]) {
+    if (line == std::exchange(last, line)) continue;
     const Line& l = parts.lines.lines[line];
     // a model line may lie inside the part: it does if no other part uses it
     const bool border = l.kind != model_line || parts.shared[line];
@@ -244,20 +244,16 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
 }  // namespace
 
 PartLines::PartLines(const Lines& given, int n_parts)
-    : lines(given),
-      start(n_parts + 1, 0),
-      line(given.uses.size()),
-      shared(given.lines.size()),
-      point(given.points.size()) {
+    : lines(given), shared(given.lines.size()), point(given.points.size()) {
   std::vector<int> part(lines.lines.size(), -1);
   for (const LineUse& u : lines.uses) {
-    ++start[u.part + 1];
     if (part[u.line] >= 0 && part[u.line] != u.part) shared[u.line] = 1;
     part[u.line] = u.part;
   }
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (const LineUse& u : lines.uses) line[at[u.part]++] = u.line;
+  lines_of_part = lists_of(n_parts, [&](auto use) {
+    for (const LineUse& u : lines.uses) use(u.part, u.line);
+  });
+  auto& [start, line] = lines_of_part;
   for (int p = 0; p < n_parts; ++p) std::sort(line.begin() + start[p], line.begin() + start[p + 1]);
 
   std::iota(point.begin(), point.end(), 0);

@@ -2,6 +2,7 @@
 // Meshing of a chart in the plane under the metric of its map (the paper's step 5).
 #pragma once
 #include "lib/core/chart.h"
+#include "lib/core/lists.h"
 #include "lib/lines/lines.h"
 
 namespace meshpipe {
@@ -29,7 +30,7 @@ enum class Mesher { frontal, delaunay, meshadapt };
 struct PartLines {
   PartLines(const Lines& given, int n_parts);
   const Lines& lines;
-  std::vector<int> start, line;      ///< part p uses line[start[p]..start[p+1]), ascending
+  Lists lines_of_part;               ///< ascending
   std::vector<std::uint8_t> shared;  ///< per line: several parts use it
   std::vector<int> point;  ///< per row of Lines::points: the first line end at its vertex, or the row itself
 };

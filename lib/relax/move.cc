@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <numeric>
 #include <span>
 
 #include "lib/relax/junctions.h"
@@ -182,20 +181,15 @@ bool advance(State& s, int v, int now) {
 
 /// Lists the vertices that may move by themselves, by the level of the blocks that have their neighbors.
 void list_by_level(State& s) {
-  std::vector<int>& start = s.schedule.start;
   const int n = (int)s.mesh.out.size();
   auto moves = [&](int v) { return s.mesh.out[v] >= 0 && s.hold[v] < fixed && !is_shared(s, v); };
   auto level = [&](int v) {
     return std::max(0, s.schedule.span[v] - rules::block_bits + rules::level_bits - 1) / rules::level_bits;
   };
-  start.assign(2 + 32 / rules::level_bits, 0);
-  for (int v = 0; v < n; ++v)
-    if (moves(v)) ++start[level(v) + 1];
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> next(start.begin(), start.end() - 1);
-  s.schedule.order.resize(start.back());
-  for (int v = 0; v < n; ++v)
-    if (moves(v)) s.schedule.order[next[level(v)]++] = v;
+  s.schedule.order = lists_of(1 + 32 / rules::level_bits, [&](auto use) {
+    for (int v = 0; v < n; ++v)
+      if (moves(v)) use(level(v), v);
+  });
   s.schedule.listed = true;
 }
 
@@ -343,13 +337,11 @@ bool improve_vertex(State& s, int v) {
 
 void smooth(State& s, int sweeps) {
   if (!s.schedule.listed) list_by_level(s);
-  const std::vector<int>& start = s.schedule.start;
+  const Lists& order = s.schedule.order;
   for (int i = 0; i < sweeps; ++i) {
     int moves = 0;
-    for (std::size_t level = 0; level + 1 < start.size(); ++level)
-      moves +=
-          smooth_level(s, std::span(s.schedule.order).subspan(start[level], start[level + 1] - start[level]),
-                       std::min(31, rules::block_bits + rules::level_bits * (int)level));
+    for (int level = 0; level + 1 < (int)order.start.size(); ++level)
+      moves += smooth_level(s, order[level], std::min(31, rules::block_bits + rules::level_bits * level));
     s.counts.moves += moves + slide_shared(s);
   }
 }

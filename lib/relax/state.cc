@@ -7,6 +7,7 @@
 #include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/parallel.h"
+#include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/junctions.h"
 
@@ -181,14 +182,10 @@ void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal) {
 }
 
 void expect_single_fans(const State& s) {
-  for (int v = 0; v < (int)s.points.size(); ++v) {
-    if (s.mesh.out[v] < 0 || s.hold[v] == frozen) continue;
-    int edges = 0;
-    s.mesh.neighbors(v, [&](int) { ++edges; });
-    if (edges != s.mesh.valence(v))
-      throw NotAdmissible("the vertex at " + shown(s.points[v]) +
+  for (int h : further_fans(s.mesh.tris, s.mesh.opp, (int)s.points.size()))
+    if (s.hold[s.mesh.from(h)] != frozen)
+      throw NotAdmissible("the vertex at " + shown(s.points[s.mesh.from(h)]) +
                           " joins two fans of triangles, as mlift leaves none");
-  }
 }
 
 void mark_edited(State& s, int v) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/edit_mesh.h"
+#include "lib/core/lists.h"
 #include "lib/core/surface_walk.h"
 #include "lib/relax/relax.h"
 #include "lib/relax/rules.h"
@@ -66,8 +67,8 @@ struct Clocks {
 /// What can move in parallel: vertices of different blocks, 2^b with the same higher bits of their numbers,
 /// that have all neighbors in their own block.
 struct Schedule {
-  std::vector<char> span;         ///< per vertex, the least b for which its neighbors are in its block
-  std::vector<int> order, start;  ///< vertices that may move, by the level of their span, while `listed`
+  std::vector<char> span;  ///< per vertex, the least b for which its neighbors are in its block
+  Lists order;             ///< vertices that may move, by the level of their span, while `listed`
   bool listed = false;
 };
 

@@ -36,8 +36,7 @@ std::vector<int> vertices_near(const Mesh& mesh, const Lists& at_vertex, std::ve
   for (int ring = 0; ring < rings; ++ring) {
     std::vector<int> found;
     for (int v : outer)
-      for_rows(at_vertex, v,
-               [&](int t) { found.insert(found.end(), mesh.tris[t].begin(), mesh.tris[t].end()); });
+      for (int t : at_vertex[v]) found.insert(found.end(), mesh.tris[t].begin(), mesh.tris[t].end());
     sort_unique(found);
     outer.clear();
     std::set_difference(found.begin(), found.end(), vertices.begin(), vertices.end(),
@@ -52,12 +51,10 @@ std::vector<int> vertices_near(const Mesh& mesh, const Lists& at_vertex, std::ve
 /// See excess.
 int excess_in(const Mesh& mesh, const Lists& at_vertex, int v) {
   std::vector<int> neighbors;
-  int triangles = 0;
-  for_rows(at_vertex, v, [&](int t) {
-    ++triangles;
+  const int triangles = (int)at_vertex[v].size();
+  for (int t : at_vertex[v])
     for (int w : mesh.tris[t])
       if (w != v) neighbors.push_back(w);
-  });
   sort_unique(neighbors);
   const int valence = (int)neighbors.size();
   return valence - (valence == triangles ? 6 : 4);
@@ -142,7 +139,7 @@ Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& ref
   if (!others.start.empty())
     t.others = part_of(whole.mesh,
                        {others.row.data() + others.start[tile], others.row.data() + others.start[tile + 1]});
-  for_rows(faces, tile, [&](int f) { t.faces.push_back(f); });
+  t.faces.assign(faces[tile].begin(), faces[tile].end());
   take_slice(t, reference, corner);
   return t;
 }
@@ -230,7 +227,7 @@ std::vector<int> triangles_near(const Mesh& mesh, std::vector<int> vertices, int
   const Lists at_vertex = triangles_at_vertices(mesh);
   std::vector<int> triangles;
   for (int v : vertices_near(mesh, at_vertex, std::move(vertices), rings - 1))
-    for_rows(at_vertex, v, [&](int t) { triangles.push_back(t); });
+    triangles.insert(triangles.end(), at_vertex[v].begin(), at_vertex[v].end());
   sort_unique(triangles);
   return triangles;
 }

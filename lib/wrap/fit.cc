@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/wrap/fit.h"
 
-#include <numeric>
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -99,20 +99,11 @@ Quadric planes_at(Vec3 s, const Mesh& soup, const Bvh& tree, double offset, doub
   return q;
 }
 
-/// The quadrilaterals at each point: quad[start[p]..start[p + 1]), as 4 * quad + corner.
-struct Incidence {
-  std::vector<int> start, corner;
-};
-Incidence corners_at_points(const QuadMesh& m) {
-  Incidence r;
-  r.start.assign(m.points.size() + 1, 0);
-  for (const auto& q : m.quads)
-    for (int p : q) ++r.start[p + 1];
-  std::partial_sum(r.start.begin(), r.start.end(), r.start.begin());
-  r.corner.resize(4 * m.quads.size());
-  std::vector<int> at(r.start.begin(), r.start.end() - 1);
-  for (std::size_t c = 0; c < r.corner.size(); ++c) r.corner[at[m.quads[c / 4][c % 4]]++] = (int)c;
-  return r;
+/// The quadrilaterals at each point, as 4 * quad + corner.
+Lists corners_at_points(const QuadMesh& m) {
+  return lists_of((int)m.points.size(), [&](auto use) {
+    for (int c = 0; c < 4 * (int)m.quads.size(); ++c) use(m.quads[c / 4][c % 4], c);
+  });
 }
 
 }  // namespace
@@ -150,7 +141,7 @@ QuadMesh boundary_of(const Voxels& v) {
 
 std::vector<Vec3> fitted_points(const QuadMesh& m, const Mesh& soup, const Bvh& tree, double offset,
                                 double spacing) {
-  const Incidence incidence = corners_at_points(m);
+  const Lists corners = corners_at_points(m);
   const int n = (int)m.points.size(), n_quads = (int)m.quads.size();
   const double reach = offset + fit_reach * spacing, tiny = 1e-7 * spacing;
   std::vector<Vec3> points = m.points, moved(n);
@@ -166,10 +157,10 @@ std::vector<Vec3> fitted_points(const QuadMesh& m, const Mesh& soup, const Bvh& 
     for (int p = 0; p < n; ++p) {
       Quadric sum;
       Vec3 middle;
-      const int degree = incidence.start[p + 1] - incidence.start[p];
+      const int degree = (int)corners[p].size();
       bool fitted = true;
-      for (int i = incidence.start[p]; i < incidence.start[p + 1]; ++i) {
-        const int quad = incidence.corner[i] / 4, corner = incidence.corner[i] % 4;
+      for (int c : corners[p]) {
+        const int quad = c / 4, corner = c % 4;
         sum.add(at_quad[quad]);
         fitted &= !m.bridge[quad];
         middle = middle + (1.0 / degree) * points[m.quads[quad][(corner + 1) % 4]];

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows by key, in flat arrays.
+#pragma once
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace meshpipe {
+
+/// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].
+struct Lists {
+  std::vector<int> start, row;
+  std::span<const int> operator[](int key) const {
+    return std::span(row).subspan(start[key], start[key + 1] - start[key]);
+  }
+};
+
+/// The lists of the pairs (key, row) that `each` calls its argument for, twice the same, in this order.
+/// Linear.
+template <class Each>
+Lists lists_of(int keys, Each each) {
+  Lists lists{std::vector<int>(keys + 1, 0), {}};
+  each([&](int key, int) { ++lists.start[key + 1]; });
+  std::partial_sum(lists.start.begin(), lists.start.end(), lists.start.begin());
+  lists.row.resize(lists.start.back());
+  std::vector<int> at(lists.start.begin(), lists.start.end() - 1);
+  each([&](int key, int row) { lists.row[at[key]++] = row; });
+  return lists;
+}
+
+/// The rows of each of these keys, which are not negative.
+inline Lists lists_by(int keys, const std::vector<int>& key) {
+  return lists_of(keys, [&](auto use) {
+    for (int row = 0; row < (int)key.size(); ++row) use(key[row], row);
+  });
+}
+
+}  // namespace meshpipe
