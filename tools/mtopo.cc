@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
         const bool cleaned = stream.input_triangles > 0;
         std::vector<int> component;
         auto components_of = [&](const Mesh& mesh) {
-          const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+          const std::vector<int> opposite = opposite_halfedges(mesh);
           const int n = components(opposite, component);
           if (n == (int)s.tris.size() && n > 1 && !cleaned)
             throw NotAdmissible("no two of the " + std::to_string(n) +

@@ -160,7 +160,7 @@ struct Treatment {
   }
 
   void find_faces_like() {
-    const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+    const std::vector<int> opposite = opposite_halfedges(surface);
     std::vector<int> at(surface.points.size(), -1);
     for (std::size_t h = 0; h < opposite.size(); ++h)
       if (opposite[h] < 0) at[origin(surface.tris, (int)h)] = (int)h / 3;
@@ -298,7 +298,7 @@ struct Treatment {
     auto& model = surface.face.get<std::uint8_t>("model");
     for (std::size_t t = 0; t < owner.size(); ++t)
       if (owner[t] >= 0) model[t] = 0;
-    const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+    const std::vector<int> opposite = opposite_halfedges(surface);
     for (int h = 0; h < (int)opposite.size(); ++h) {
       const int g = opposite[h];
       if (g < 0 || patch[h / 3] == patch[g / 3] || std::max(patch[h / 3], patch[g / 3]) < first) continue;

@@ -137,7 +137,7 @@ bool orient_outward(Surface& surface) {
 }
 
 std::vector<End> find_ends(const Mesh& mesh) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   const Connectivity c{mesh, opposite};
   if (const int v = find_pinched_vertex(c); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) + " joins two fans of triangles; run mclean first");

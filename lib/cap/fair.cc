@@ -24,7 +24,7 @@ constexpr int sweeps = 200;
 void refine(Surface& cap, double length) {
   const int rim = (int)cap.points.size();
   for (int round = 0; round < most_splits; ++round) {
-    std::vector<int> opposite = opposite_halfedges(cap.tris, (int)cap.points.size());
+    std::vector<int> opposite = opposite_halfedges(cap);
     std::vector<char> mark(opposite.size(), 0);
     const Connectivity c{cap, opposite};
     for (int h = 0; h < c.n_half_edges(); ++h)

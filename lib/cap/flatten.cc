@@ -203,7 +203,7 @@ std::vector<Collision> collisions_of_new(const Mesh& mesh, const std::vector<int
 }
 
 void split_chords(Surface& surface, const std::vector<End>& ends) {
-  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  std::vector<int> opposite = opposite_halfedges(surface);
   std::vector<char> rim(surface.points.size(), 0), mark(3 * surface.tris.size(), 0);
   for (const End& end : ends)
     for (const std::vector<int>& loop : end.rims)

@@ -181,7 +181,7 @@ std::vector<Piece> pieces_cut_off(const Mesh& mesh, const std::vector<int>& owne
   const std::vector<SubMesh> parts = split_by_label(mesh, label, n);
   for (int i = 0; i < n; ++i) {
     if (parts[i].tris.empty()) continue;
-    const auto opposite = opposite_halfedges(parts[i].tris, (int)parts[i].points.size());
+    const auto opposite = opposite_halfedges(parts[i]);
     const int border = (int)std::count(opposite.begin(), opposite.end(), -1);
     const int faces = (int)parts[i].tris.size();
     pieces[i] = {(int)parts[i].points.size() - (3 * faces + border) / 2 + faces,
@@ -221,7 +221,7 @@ std::vector<int> drop_triangles(Surface& s, const std::vector<char>& gone) {
 std::vector<std::optional<Plane>> planes_within(const Mesh& mesh, const std::vector<End>& ends,
                                                 const std::vector<double>& length,
                                                 std::vector<std::string>& why) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   WallFinder walls({mesh, opposite});
   std::vector<std::optional<Plane>> planes(ends.size());
   for (int i = 0; i < (int)ends.size(); ++i) {
@@ -260,7 +260,7 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   auto possible = [&] { return std::all_of(why.begin(), why.end(), [](auto& w) { return w.empty(); }); };
   if (std::none_of(planes.begin(), planes.end(), [](const auto& p) { return p.has_value(); })) return why;
   Surface surface = whole;
-  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity c{surface, opposite};
   std::vector<int> border_at(c.n_vertices(), -1), owner(c.n_tris(), -1);
   for (int h = 0; h < c.n_half_edges(); ++h)
@@ -311,7 +311,7 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   for (int i = 0; i < n; ++i)
     for (std::vector<int>& rim : ends[i].rims)
       for (int& v : rim) v = number[v];
-  opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  opposite = opposite_halfedges(surface);
   for (int i = 0; i < n; ++i)
     if (planes[i]) ends[i].rims.clear();
   for (std::vector<int>& rim : rims_of({surface, opposite}))

@@ -41,7 +41,7 @@ void find_short_edges(const Mesh& mesh, Diagnosis& d) {
 }
 
 void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const std::vector<int> opposite = opposite_halfedges(s);
   const std::vector<int>* patch = s.face.has("patch") ? &s.face.get<int>("patch") : nullptr;
   const auto* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
   for (int h = 0; h < (int)opposite.size(); ++h) {

@@ -76,10 +76,8 @@ void lower_to_curved(const Surface& result, const Surface& reference, std::vecto
 void find_needles(Findings& f, const Connectivity& result, const Surface& reference) {
   f.worst_unforced = f.quality.worst;
   if (!(f.quality.kappa_min <= 0.1) || !f.mesh.sound() || !f.reference.sound()) return;
-  const std::vector<int> opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
-  const std::vector<std::uint8_t> none;
-  const auto& model = reference.face.has("model") ? reference.face.get<std::uint8_t>("model") : none;
-  f.forced = forced_needles(result, f.quality.kappas, {reference, opposite, model});
+  const std::vector<int> opposite = opposite_halfedges(reference);
+  f.forced = forced_needles(result, f.quality.kappas, {reference, opposite, model_of(reference)});
   f.worst_unforced = -1;
   for (int t = 0; t < (int)f.forced.size(); ++t)
     if (!f.forced[t] && (f.worst_unforced < 0 || f.quality.kappas[t] < f.quality.kappas[f.worst_unforced]))
@@ -183,7 +181,7 @@ void find_chords(Findings& f, const Connectivity& result, const Surface& given) 
   add(found, f.intersections);
   Mesh known;
   if (f.reference.sound()) {
-    const std::vector<int> opposite = opposite_halfedges(given.tris, (int)given.points.size());
+    const std::vector<int> opposite = opposite_halfedges(given);
     known = contacts(given, chord_pairs({given, opposite, model_of(given)}));
   }
   add(new_intersections(result.mesh, found, known), f.new_intersections);
@@ -329,7 +327,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
     f.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));
     if (!f.unmarked_borders.empty()) {
-      const std::vector<int> opposite = opposite_halfedges(given.tris, (int)given.points.size());
+      const std::vector<int> opposite = opposite_halfedges(given);
       if (!unmarked_borders({given, opposite, given.face.get<std::uint8_t>("model")},
                             given.face.get<int>("patch"))
                .empty())

@@ -152,7 +152,7 @@ void measure_far(const CheckShare& share, const Mesh& own, OneWay& d, std::vecto
 void measure_near(const CheckShare& share, const Mesh& own, const Bvh& own_tree, ShareFindings& f,
                   std::vector<double>& off) {
   const Bvh other_tree(share.other);
-  const std::vector<int> opposite = opposite_halfedges(share.other.tris, (int)share.other.points.size());
+  const std::vector<int> opposite = opposite_halfedges(share.other);
   const Connectivity other{share.other, opposite};
   OneWay& d = f.distance;
   d = distance_from(own, own_tree, other, other_tree,
@@ -164,7 +164,7 @@ void measure_near(const CheckShare& share, const Mesh& own, const Bvh& own_tree,
   if (d.deviation.triangle >= 0) d.deviation.triangle = share.triangles[d.deviation.triangle];
   if (!share.of_result) return;
   off = vertex_distances(own, own_tree, other, other_tree);
-  const std::vector<int> next = opposite_halfedges(share.mesh.tris, (int)share.mesh.points.size());
+  const std::vector<int> next = opposite_halfedges(share.mesh);
   auto whole = [&](int h) { return 3 * share.triangles[h / 3] + h % 3; };
   for (int h : find_folds({share.mesh, next}, share.other, other_tree))
     if (h / 3 < share.own) f.folds.push_back(std::min(whole(h), whole(next[h])));

@@ -179,7 +179,7 @@ void split_at(Surface& s, Table* chart, const std::vector<Missing>& points) {
 int match_borders(Surface& surface, Table* chart) {
   const std::size_t before = surface.points.size();
   for (;;) {
-    const std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+    const std::vector<int> opposite = opposite_halfedges(surface);
     const Connectivity c{surface, opposite};
     const std::vector<int> place = first_at_border(c);
     const std::vector<Missing> missing = Comparison(surface, c, place).missing();

@@ -31,7 +31,7 @@ double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& 
 
 SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model)
     : mesh_(mesh),
-      opposite_(opposite_halfedges(mesh.tris, (int)mesh.points.size())),
+      opposite_(opposite_halfedges(mesh)),
       beyond_(opposite_),
       normals_(face_normals(mesh)),
       degree_(mesh.points.size()) {

@@ -260,17 +260,15 @@ std::vector<Topology> for_parts(int n, const Of& of) {
 }  // namespace
 
 Topology topology_of(const Mesh& mesh) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   std::vector<int> component;
   return measure({mesh, opposite}, components(opposite, component), {});
 }
 
 std::vector<Topology> topology_of_parts(const Mesh& mesh, const std::vector<int>& part, int n) {
   const std::vector<SubMesh> meshes = split_by_label(mesh, part, n);
-  return for_parts(n, [&](int p) {
-    return of_part(meshes[p], p,
-                   [&] { return opposite_halfedges(meshes[p].tris, (int)meshes[p].points.size()); });
-  });
+  return for_parts(
+      n, [&](int p) { return of_part(meshes[p], p, [&] { return opposite_halfedges(meshes[p]); }); });
 }
 
 std::vector<Topology> topology_of_parts(const Connectivity& c, const std::vector<int>& part, int n) {

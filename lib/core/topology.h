@@ -11,6 +11,9 @@ namespace meshpipe {
 /// vertex), no hashing. Throws NotAdmissible naming the edge if it has more than two triangles, or two that
 /// disagree on direction, and naming the triangle if it has a repeated vertex.
 std::vector<int> opposite_halfedges(const std::vector<Tri>& tris, int n_vertices);
+inline std::vector<int> opposite_halfedges(const Mesh& mesh) {
+  return opposite_halfedges(mesh.tris, (int)mesh.points.size());
+}
 
 /// The same for the sub-meshes that split_by_label has made of a mesh by these labels, from those of the
 /// whole.

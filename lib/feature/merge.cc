@@ -91,7 +91,7 @@ void merge_groups(PatchMerge& merge, const std::vector<std::vector<int>>& groups
 void merge_automatically(PatchMerge& merge, const Surface& surface, double h, double angle) {
   const int n = static_cast<int>(merge.patch.size());
   if (n < 2) return;
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity sides{surface, opposite};
   const std::vector<Vec3> normal = side_normals(sides, 0);
   const auto& label = surface.face.get<int>("patch");

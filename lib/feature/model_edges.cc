@@ -68,7 +68,7 @@ ModelSegments segments_after_ends(const ModelSegments& segments, const Mesh& bef
   if (before.tris.size() <= after.tris.size() &&
       std::equal(before.tris.begin(), before.tris.end(), after.tris.begin(), same))
     return moved_segments(segments, under, {after.points, before.tris}, under);
-  const std::vector<int> opposite = opposite_halfedges(before.tris, static_cast<int>(before.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(before);
   std::vector<char> gone(segments.tris.size(), 0);
   for (int h = 0; h < static_cast<int>(under.size()); ++h)
     if (under[h] >= 0 && opposite[h] < 0) gone[under[h]] = 1;

@@ -140,8 +140,7 @@ std::vector<char> feature_edges(const Surface& reference, const Connectivity& wh
   std::vector<char> feature(whole.n_half_edges(), 0);
   for (int h = 0; h < whole.n_half_edges(); ++h) feature[h] = whole.is_border(h);
   if (!reference.face.has("model")) return feature;
-  const std::vector<int> opposite =
-      opposite_halfedges(reference.tris, static_cast<int>(reference.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(reference);
   const Connectivity cut{reference, opposite, reference.face.get<std::uint8_t>("model")};
   for (int g = 0; g < cut.n_half_edges(); ++g) {
     if (!cut.is_model(g)) continue;
@@ -166,7 +165,7 @@ CurvedSurface::CurvedSurface(const Surface& reference) : reference_(reference) {
     whole_ = reference;
     std::iota(below_.begin(), below_.end(), 0);
   }
-  const std::vector<int> opposite = opposite_halfedges(whole_.tris, static_cast<int>(whole_.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(whole_);
   const Connectivity whole{whole_, opposite};
   const std::vector<char> feature = feature_edges(reference, whole, below_);
   const std::vector<Vec3> normal = Corners(whole, feature).normals(side_normals(whole, 0));

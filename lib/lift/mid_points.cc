@@ -14,8 +14,7 @@ namespace {
 class Ground {
  public:
   explicit Ground(const Surface& reference) : mesh_(reference), walk(reference, model_of(reference)) {
-    const std::vector<int> opposite =
-        opposite_halfedges(reference.tris, static_cast<int>(reference.points.size()));
+    const std::vector<int> opposite = opposite_halfedges(reference);
     const Connectivity mesh{reference, opposite, model_of(reference)};
     for (int h = 0; h < mesh.n_half_edges(); ++h)
       if (mesh.is_border(h) || mesh.is_model(h))
@@ -86,7 +85,7 @@ bool is_sound(const Vec3 (&x)[3], const Vec3 (&m)[3]) {
 
 MidPoints mid_points(const LiftedMesh& mesh, const Surface& reference, const CurvedSurface* surface) {
   const Ground ground(reference);
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, static_cast<int>(mesh.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   const int n = static_cast<int>(opposite.size());
   std::vector<Vec3> middle(n);
   auto chord = [&](int h) {

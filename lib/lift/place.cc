@@ -53,7 +53,7 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   r.model = model_bits(mesh);
   const int n = (int)mesh.points.size();
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, n),
-                         ref_opposite = opposite_halfedges(reference.tris, (int)reference.points.size());
+                         ref_opposite = opposite_halfedges(reference);
   const Connectivity below{reference, ref_opposite, model_of(reference)};
   std::vector<char> on(n, inside);
   for (int h = 0; h < (int)opposite.size(); ++h) {

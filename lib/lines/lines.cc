@@ -406,7 +406,7 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
 }  // namespace
 
 std::vector<char> input_border(const Surface& surface) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity mesh{surface, opposite};
   const std::vector<int>* source = surface.face.has("origin") ? &surface.face.get<int>("origin") : nullptr;
   std::vector<char> found(mesh.n_vertices(), 0);
@@ -423,7 +423,7 @@ std::vector<char> input_border(const Surface& surface) {
 }
 
 std::vector<char> model_corners(const Surface& surface, double corner) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity mesh{surface, opposite, model_of(surface)};
   return mark_corners(surface, special_edges(mesh, surface.face.get<int>("part")), {}, corner,
                       sharp_peaks(mesh, surface.vertex.get<double>("size")));

@@ -140,7 +140,7 @@ CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& f
     return cut;
   }
   // the sides that coarse vertices give to those that have become them have as many pieces
-  ConnectedPart model{{coarse, {}, {}}, opposite_halfedges(coarse.tris, (int)coarse.points.size()), {}};
+  ConnectedPart model{{coarse, {}, {}}, opposite_halfedges(coarse), {}};
   CutMaps cut = best_cut_of(model, share);
   field.clear();
   for (int v : coarse.of) field.push_back(cut.field[v]);

@@ -17,7 +17,7 @@ struct Ear {
 std::vector<Ear> ears_of(const Surface& surface, int n_parts) {
   std::vector<Ear> ears;
   for (const SubMesh& part : split_by_label(surface, surface.face.get<int>("part"), n_parts)) {
-    std::vector<int> opposite = opposite_halfedges(part.tris, (int)part.points.size());
+    std::vector<int> opposite = opposite_halfedges(part);
     const std::vector<std::vector<int>> loops = boundary_loops(opposite);
     if (loops.empty()) continue;
     const std::vector<int>& longest = loops[longest_loop(part, loops)];

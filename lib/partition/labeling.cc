@@ -339,7 +339,7 @@ Labeling best_labeling(Component& c, bool homology, int seed) {
   if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
     ConnectedPart part;
     static_cast<Mesh&>(part) = coarse;
-    part.opposite = opposite_halfedges(coarse.tris, (int)coarse.points.size());
+    part.opposite = opposite_halfedges(coarse);
     Component small = make_component(std::move(part), c.whole);
     small.of_fine = n;
     small.share = c.share;

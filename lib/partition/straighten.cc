@@ -209,7 +209,7 @@ Bands make_bands(const CutSurface& cut, const std::vector<Curve>& curves, const 
       }
   }
   // where two fans of a band meet in a vertex, the line could move in one of them only
-  bands.opposite = opposite_halfedges(bands.mesh.tris, (int)bands.mesh.points.size());
+  bands.opposite = opposite_halfedges(bands.mesh);
   std::vector<int> fans(bands.mesh.points.size(), 0);
   for (int h = 0; h < (int)bands.opposite.size(); ++h)
     if (bands.opposite[h] < 0 && ++fans[origin(bands.mesh.tris, h)] > 1)

@@ -81,7 +81,7 @@ bool halves_well(const Mesh& mesh, std::vector<double> field, double level) {
   cut_by_scalar_field(trial, field, {}, side);
   for (const SubMesh& half : split_by_label(trial, side, 2)) {
     if (half.tris.empty()) return false;
-    auto opposite = opposite_halfedges(half.tris, (int)half.points.size());
+    auto opposite = opposite_halfedges(half);
     if (components(opposite, component) != 1 || find_pinched_vertex({half, opposite}) >= 0) return false;
   }
   return true;

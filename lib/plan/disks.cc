@@ -68,7 +68,7 @@ int label_faces(const Connectivity& mesh, std::vector<int>& label) {
 }  // namespace
 
 int partition_to_disks(Surface& surface, const PartitionOptions& options, std::vector<int>* neighbors) {
-  std::vector<int> opposite = opposite_halfedges(surface.tris, (int)surface.points.size());
+  std::vector<int> opposite = opposite_halfedges(surface);
   if (int v = find_pinched_vertex({surface, opposite}); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) + " is pinched; run mclean first");
   std::vector<int> component;

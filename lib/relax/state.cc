@@ -60,8 +60,7 @@ Reference::Reference(const Surface& reference)
     : surface(reference),
       sizes(reference.vertex.has("size") ? &reference.vertex.get<double>("size") : nullptr),
       patches(reference.face.has("patch") ? &reference.face.get<int>("patch") : nullptr),
-      walk(reference, reference.face.has("model") ? reference.face.get<std::uint8_t>("model")
-                                                  : std::vector<std::uint8_t>{}),
+      walk(reference, model_of(reference)),
       normals(vertex_area_vectors(reference)) {}
 
 Vec3 Reference::normal(const Place& p) const {

@@ -249,7 +249,7 @@ void add_noise(Mesh& mesh, double amount, int seed) {
 }
 
 void add_slivers(Surface& s, double fraction, int seed) {
-  const std::vector<int> opposite = opposite_halfedges(s.tris, (int)s.points.size());
+  const std::vector<int> opposite = opposite_halfedges(s);
   Random random(seed);
   std::vector<char> done(s.tris.size(), 0);
   std::vector<Tri> tris;

@@ -365,7 +365,7 @@ void cut_ends(Mesh& mesh, const std::vector<End>& ends) {
   cut_by_scalar_field(s, field, {}, side, 0.2);
   mesh = static_cast<Mesh&>(split_by_label(s, side, 1)[0]);
   // vertices that the cut was snapped to are put into the plane too
-  for (const auto& loop : boundary_loops(opposite_halfedges(mesh.tris, (int)mesh.points.size())))
+  for (const auto& loop : boundary_loops(opposite_halfedges(mesh)))
     for (int h : loop) {
       Vec3& p = mesh.points[origin(mesh.tris, h)];
       const End* nearest = &ends[0];

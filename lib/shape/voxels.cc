@@ -35,8 +35,7 @@ struct Grid {
 
 /// Closes border loops by fans around their centers, for the test of what is inside.
 void close_loops(Mesh& mesh) {
-  for (const auto& loop :
-       boundary_loops(opposite_halfedges(mesh.tris, static_cast<int>(mesh.points.size())))) {
+  for (const auto& loop : boundary_loops(opposite_halfedges(mesh))) {
     Vec3 center;
     for (int h : loop) center = center + (1.0 / loop.size()) * mesh.points[origin(mesh.tris, h)];
     const int c = static_cast<int>(mesh.points.size());

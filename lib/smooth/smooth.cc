@@ -280,7 +280,7 @@ void refuse_small_bound(Motion& m, const SmoothReport& r, double edge) {
 
 SmoothReport smooth(Surface& surface, const SmoothOptions& options) {
   if (surface.tris.empty()) throw NotAdmissible("the surface has no triangles");
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const auto model = model_of(surface);
   const Connectivity c{surface, opposite, model};
   const double edge = mean_edge(surface);

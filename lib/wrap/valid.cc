@@ -53,7 +53,7 @@ Mesh joined(const Mesh& wrap, const Mesh& soup) {
 
 /// Marks the triangles of the closed mesh near points of the soup that are not inside.
 std::vector<std::uint8_t> triangles_near_lost_points(const Mesh& mesh, const Mesh& soup, double reach) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   const Bvh tree(mesh);
   const InsideTest test({mesh, opposite}, tree);
   const std::vector<char> used = used_points(soup);
