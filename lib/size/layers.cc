@@ -58,7 +58,7 @@ Layers parse_layers(const std::string& text) {
 }
 
 LayerReport check_layers(Surface& surface, const Layers& layers) {
-  const std::vector<int> opposite = opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const auto model = model_of(surface);
   const Connectivity c{surface, opposite, model};
   const double sign = layers.outside ? -1 : 1;

@@ -325,21 +325,24 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
   return n;
 }
 
-std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked) {
+std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
+                                       double least, double most_triangles) {
   const Measure measure(surface, asked);
   constexpr int chunk = 340;  // triangles, neighbors in space
   const std::vector<int>& order = measure.tree().order();
   const int n = surface.n_tris();
   std::vector<std::vector<SizeBound>> found((n + chunk - 1) / chunk);
+  // both are measured as time permits: of fans of needles each point sees all
+  std::vector<SizeBound> all;
+  for (bool line : {true, false}) {
 #pragma omp parallel
-  {
-    Search search(surface);
+    {
+      Search search(surface);
 #pragma omp for schedule(dynamic)
-    for (int c = 0; c < (int)found.size(); ++c) {
-      // fans of needles, of which each point sees all: strips are measured first, and sheets as time permits
-      const long long most = search.work + 3LL * chunk * most_looks;
-      for (bool line : {true, false})
-        for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
+      for (int c = 0; c < (int)found.size(); ++c) {
+        search.work = 0;
+        for (int i = 3 * c * chunk;
+             i < 3 * std::min(n, (c + 1) * chunk) && search.work < 3LL * chunk * most_looks; ++i) {
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           const double length = surface.length(h);
@@ -350,10 +353,13 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
             for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
               if (x.size < infinite) found[c].push_back(x);
         }
+      }
     }
+    all.clear();
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    for (SizeBound& x : all) x.size = std::max(x.size, least);
+    if (triangles_of_strips(all, infinite) > most_triangles) return all;
   }
-  std::vector<SizeBound> all;
-  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
   std::stable_sort(all.begin(), all.end(),
                    [](const SizeBound& a, const SizeBound& b) { return a.half_edge < b.half_edge; });
   drop_intersecting(measure, surface, all);

@@ -23,8 +23,10 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);
 /// Measures where a surface comes so close to itself that edges of the length `asked` (per vertex) cannot be
 /// good: a strip between two lines (borders or model edges) permits a multiple of its width, and a bent sheet
 /// whose chords sag towards another sheet permits those that sag by a share of the gap. Lines and sheets that
-/// meet nearby are adjacent, not near. Returns the bounds in the order of half-edges; for edges that are on
-/// no line, at one of the two. Near-linear where few places are narrow.
-std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked);
+/// meet nearby are adjacent, not near. Bounds are at least `least`. Returns them in the order of half-edges;
+/// for edges that are on no line, at one of the two. Near-linear where few places are narrow. Where strips
+/// ask for more triangles than `most_triangles` it returns their bounds, and looks for no sheets.
+std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
+                                       double least, double most_triangles);
 
 }  // namespace meshpipe

@@ -261,7 +261,7 @@ bool bends(Field& f, int h) {
   return misses;
 }
 
-void connect(Field& f) { f.opposite = opposite_halfedges(f.s.tris, static_cast<int>(f.s.points.size())); }
+void connect(Field& f) { f.opposite = opposite_halfedges(f.s); }
 
 /// Splits the edges that pass the test; returns whether there were any.
 template <class Test>
@@ -289,9 +289,8 @@ bool split(Field& f, const Test& test) {
 
 /// Lowers sizes to the local feature size; reports the place where that is most.
 void lower_where_narrow(Field& f, SizeReport& report) {
-  const auto model = model_of(f.s);
   if (f.curvature.empty()) f.curvature = curvature_of(f);
-  const auto feature = local_feature_size({f.s, f.opposite, model}, f.curvature, f.size);
+  const auto feature = local_feature_size({f.s, f.opposite, model_of(f.s)}, f.curvature, f.size);
   for (std::size_t v = 0; v < feature.size(); ++v) f.permits[v] = std::min(f.permits[v], feature[v]);
   double most = 1;
   for (std::size_t v = 0; v < f.permits.size(); ++v) {
@@ -315,10 +314,13 @@ void convert_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Returns how many triangles narrow places may ask for.
+double most_for(double triangles) { return std::max(most_times * triangles, many_triangles); }
+
 /// Throws: GoalMissed if narrow strips ask for many times as many triangles as there should be.
 void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const SizeReport& r) {
   const double strips = triangles_of_strips(bounds, infinite);
-  const double limit = std::max(most_times * triangles, many_triangles);
+  const double limit = most_for(triangles);
   if (strips <= limit) return;
   FailureFacts facts;
   facts.strip_width = std::max(wide_strip * r.narrow_from, 2 * r.narrow_gap);
@@ -355,8 +357,7 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
   std::vector<char> seen(n, 0), open(n, 0);
   for (int t = 0; t < (int)s.tris.size(); ++t) {
     const int c = component[t];
-    area[c] +=
-        0.5 * norm(area_vector(s.points[s.tris[t][0]], s.points[s.tris[t][1]], s.points[s.tris[t][2]]));
+    area[c] += triangle_area(s, t);
     box[c] = seen[c] ? join(box[c], box_of(s, t)) : box_of(s, t);
     seen[c] = 1;
     for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= opposite[h] < 0;
@@ -381,14 +382,13 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
 std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& opposite,
                                     const std::vector<double>& size, const SizeOptions& o,
                                     SizeReport& report) {
-  const auto model = model_of(s);
   std::vector<double> most = size;
   if (o.triangles > 0)
     for (double& h : most) h *= most_growth;
-  auto bounds = permitted_sizes({s, opposite, model}, most);
+  const double triangles = o.triangles > 0 ? o.triangles : count_for_size(s, size);
+  auto bounds = permitted_sizes({s, opposite, model_of(s)}, most, o.min, most_for(triangles));
   report.narrow = 0;
-  for (SizeBound& x : bounds) {
-    x.size = std::max(x.size, o.min);
+  for (const SizeBound& x : bounds) {
     const int a = origin(s.tris, x.half_edge), b = target(s.tris, x.half_edge);
     const double h = 0.5 * (size[a] + size[b]);
     if (!(x.size < h)) continue;
@@ -399,7 +399,7 @@ std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& op
     report.narrow_to = x.size;
   }
   if (report.narrow == 0) bounds.clear();
-  refuse_costly_strips(bounds, o.triangles > 0 ? o.triangles : count_for_size(s, size), report);
+  refuse_costly_strips(bounds, triangles, report);
   return bounds;
 }
 
@@ -521,7 +521,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   }
   if (!bounds.empty()) {
     if (!(triangles > 0)) triangles = count_for_size(s, f.size);
-    limit = std::max(most_times * triangles, many_triangles);
+    limit = most_for(triangles);
     f.bounds = std::move(bounds);
     f.given = s;
     f.root.resize(s.tris.size());
@@ -613,8 +613,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     if (options.max > 0) h = std::min(h, options.max);
     h = std::max(h, options.min);
     size.assign(surface.points.size(), h);
-    const std::vector<int> opposite =
-        opposite_halfedges(surface.tris, static_cast<int>(surface.points.size()));
+    const std::vector<int> opposite = opposite_halfedges(surface);
     const double triangles = area / (0.25 * std::sqrt(3.0) * h * h);
     refuse_costly_tubes(surface, opposite, h, triangles);
     Known known{.bounds = bounds_below(surface, opposite, size, options, report), .triangles = triangles};

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<SizeBound> bounds_of(const Mesh& mesh, double asked) {
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  return permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), asked));
+  return permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), asked), 0, 1e300);
 }
 
 /// A flat rectangle of two triangles.
@@ -51,6 +51,19 @@ TEST(Permitted, SevenWidthsOfAStrip) {
     EXPECT_NEAR(b.place.y, b.half_edge == 0 ? 0 : 0.2, 1e-12);
   }
   EXPECT_TRUE(bounds_of(rectangle(8, 0.2), 1.3).empty());
+}
+
+TEST(Permitted, StripsThatAskForTooMuchAreAllThatIsMeasured) {
+  Mesh mesh = rectangle(8, 0.2);
+  add_tube(mesh, 1, 8);
+  add_tube(mesh, 1.01, 8);
+  const std::vector<int> opposite = opposite_halfedges(mesh);
+  auto sheets = [&](double most) {
+    const auto all = permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), 1.5), 0, most);
+    return std::count_if(all.begin(), all.end(), [](const SizeBound& x) { return x.length == 0; });
+  };
+  EXPECT_GT(sheets(1e300), 0);
+  EXPECT_EQ(sheets(1), 0);
 }
 
 TEST(Permitted, LinesThatMeetAreNotNear) {
