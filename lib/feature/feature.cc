@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -42,6 +43,7 @@ constexpr double elongated =
 constexpr double least_fading = 10;    ///< target lengths: of a crease that ends freely
 constexpr double short_rim = 0.5;      ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by
+constexpr double own_chain = 0.7;      ///< of the root of the area: so do bits; edges of tetrahedra have 0.76
 
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 struct Network {
@@ -105,7 +107,7 @@ double length(const Network& net, const Chain& chain) {
 
 Network find_edges(const Surface& s, const FeatureOptions& options, const std::vector<int>* before,
                    const std::vector<int>* given, int& slivers) {
-  Network net{.s = s, .opposite = opposite_halfedges(s.tris, (int)s.points.size())};
+  Network net{.s = s, .opposite = opposite_halfedges(s)};
   const int n = (int)net.opposite.size();
   net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
   const std::vector<Vec3> normal = side_normals({s, net.opposite}, sliver * net.size);
@@ -264,10 +266,7 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
   std::vector<double> sharp(n, 0), smooth(n, 0), between(n, 0), area(n, 0);
-  for (int t = 0; t < m / 3; ++t) {
-    const Tri& v = net.s.tris[t];
-    area[component[t]] += 0.5 * norm(area_vector(net.s.points[v[0]], net.s.points[v[1]], net.s.points[v[2]]));
-  }
+  for (int t = 0; t < m / 3; ++t) area[component[t]] += triangle_area(net.s, t);
   for (int h = 0; h < m; ++h) {
     if (net.opposite[h] < h) continue;
     if (net.cap[h]) continue;
@@ -280,11 +279,11 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
   for (const Chain& chain : chains_of(net)) {
     // a rim of many edges is long, however long edges are elsewhere
     const bool rim = net.to(chain.back()) == net.from(chain[0]) && (double)chain.size() > long_chain;
-    if (!((rim || length(net, chain) > net.telling) && roughness(net, chain) < smooth_turn)) continue;
-    double counted = 0;
+    const int c = component[chain[0] / 3];
+    const bool tells = length(net, chain) > std::min(net.telling, own_chain * std::sqrt(area[c]));
+    if (!((rim || tells) && roughness(net, chain) < smooth_turn)) continue;
     for (int h : chain)
-      if (net.strong[h]) counted += net.length(h);
-    smooth[component[chain[0] / 3]] += counted;
+      if (net.strong[h]) smooth[c] += net.length(h);
   }
   std::vector<char> designed = made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
   for (int h = 0; !known.empty() && h < m; ++h)

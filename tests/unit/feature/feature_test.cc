@@ -62,6 +62,18 @@ TEST(Feature, ACubeHasTwelveCreasesAndEightCorners) {
   EXPECT_EQ(mark_features(s, angles(91, 90.5)).model_edges, 0);
 }
 
+TEST(Feature, TinyComponentsKeepTheirCreases) {
+  Surface s;
+  for (const Vec3 o : {Vec3{0, 0, 0}, Vec3{1000, 0, 0}, Vec3{0, 1000, 0}}) {
+    const int n = (int)s.points.size();
+    for (const Vec3 p : {Vec3{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}) s.points.push_back(o + p);
+    for (const Tri& t : {Tri{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
+      s.tris.push_back({n + t[0], n + t[1], n + t[2]});
+  }
+  s.face.rows = s.tris.size();
+  EXPECT_EQ(mark_features(s, {}).crease_edges, 18);
+}
+
 TEST(Feature, PatchBordersAreModelEdgesInEveryMode) {
   Surface s = terrain(4, 4, [](int, int) { return 0.0; });
   std::vector<int> patch(32, 1);
