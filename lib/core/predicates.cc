@@ -121,6 +121,8 @@ int exact_incircle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
 }
 
 int exact_orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  auto same = [](double p, double q, double r, double s) { return p == q && q == r && r == s; };
+  if (same(a.x, b.x, c.x, d.x) || same(a.y, b.y, c.y, d.y) || same(a.z, b.z, c.z, d.z)) return 0;
   double s = scale_to_one(a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z);
   a = s * a, b = s * b, c = s * c, d = s * d;
   auto ax = difference(a.x, d.x), ay = difference(a.y, d.y), az = difference(a.z, d.z);
