@@ -67,7 +67,10 @@ bool has_outgrown(std::string_view verdict, double triangles, double next) {
 }
 
 bool another_round(const std::vector<Score>& rounds, int most) {
-  if ((int)rounds.size() >= most) return false;
+  const Score& last = rounds.back();
+  if ((int)rounds.size() >= most ||
+      (last.requirement == "intersections" && -last.value > (rounds.size() == 1 ? 10 : 1) * many_crossings))
+    return false;
   std::map<std::string, double> best;
   int vain = 0;
   for (const Score& s : rounds) {
@@ -75,9 +78,7 @@ bool another_round(const std::vector<Score>& rounds, int most) {
     if (s.requirement.empty() || first || s.value > at->second) {
       vain = 0;
       at->second = s.value;
-    } else if (++vain == most_vain_rounds ||
-               (s.requirement == "intersections" &&
-                s.value < std::min(more_crossings * at->second, -many_crossings))) {
+    } else if (++vain == most_vain_rounds) {
       return false;
     }
   }

@@ -57,10 +57,12 @@ TEST(rounds, fewer_pairs_are_progress_and_requirements_are_compared_with_themsel
   EXPECT_FALSE(asks_for_another(verdict_of(more)));
 }
 
-TEST(Rounds, ManyMoreCrossingsAreTheLast) {
+TEST(Rounds, ManyCrossingsAreTheLast) {
   EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 1}, {"intersections", 90}})));
-  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 60}, {"intersections", 110}})));
-  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 40}, {"intersections", 110}})));
+  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 60}, {"intersections", 110}})));
+  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 900}})));
+  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 1100}})));
+  EXPECT_FALSE(asks_for_another(verdict_of({{"kappa", 0.01}, {"intersections", 110}})));
 }
 
 TEST(rounds, a_difference_beyond_six_digits_is_no_progress) {
