@@ -87,7 +87,7 @@ bool agree(const Repair& r, const std::vector<char>& side, int h) {
 double shorten(const Repair& r, const std::vector<Vec3>& points, const std::vector<int>& members,
                std::vector<char>& side) {
   auto length = [&](int h) {
-    return norm(points[r.vertex[origin(r.tris, h)]] - points[r.vertex[target(r.tris, h)]]);
+    return norm(point(r, points, origin(r.tris, h)) - point(r, points, target(r.tris, h)));
   };
   for (std::vector<int> todo = members; !todo.empty();) {
     const int t = todo.back();

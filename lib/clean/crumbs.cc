@@ -27,7 +27,7 @@ std::vector<char> new_points(const Mesh& mesh, const Mesh& input) {
 }  // namespace
 
 std::vector<char> find_crumbs(const Mesh& mesh, const Mesh& input, int& n_crumbs) {
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+  const std::vector<int> opposite = opposite_halfedges(mesh);
   const std::vector<char> is_new = new_points(mesh, input);
   std::vector<int> component;
   const int n = components(opposite, component);

@@ -2,6 +2,7 @@
 // Triangles that lie on others: second copies of a sheet, and contacts between two solids.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <span>
 #include <tuple>
@@ -31,10 +32,6 @@ struct Quad {
 
 std::vector<Quad> find_quads(const Repair& r, const std::vector<Vec3>& points) {
   std::vector<Quad> quads;
-  auto normal = [&](int t) {
-    auto p = [&](int i) { return points[r.vertex[r.tris[t][i]]]; };
-    return area_vector(p(0), p(1), p(2));
-  };
   for (int h = 0; h < (int)r.opposite.size(); ++h) {
     const int g = r.opposite[h];
     if (g < h || origin(r.tris, h) == origin(r.tris, g)) continue;
@@ -42,7 +39,7 @@ std::vector<Quad> find_quads(const Repair& r, const std::vector<Vec3>& points) {
            {h / 3, g / 3},
            {}};
     if (std::none_of(q.corners.begin(), q.corners.end(), [&](int v) { return r.split[v]; })) continue;
-    const Vec3 m = normal(h / 3), n = normal(g / 3);
+    const Vec3 m = area_vector(r, points, h / 3), n = area_vector(r, points, g / 3);
     if (!(norm(m) > 0 && norm(n) > 0 && angle(m, n) < flat)) continue;
     q.normal = m + n;
     std::sort(q.corners.begin(), q.corners.end());
@@ -54,79 +51,91 @@ std::vector<Quad> find_quads(const Repair& r, const std::vector<Vec3>& points) {
 
 enum Sheet : char { single, first, second };
 
-/// Contacts: sets of doubled triangles connected by edges, in complexes of triangles connected by edges.
-struct Contacts {
-  UnionFind complex, contact;
+/// Sets of triangles connected by edges of two, and of doubled ones connected by edges, in complexes of
+/// triangles connected by edges.
+struct Flaps {
+  UnionFind flap, complex;
+  std::vector<char> odd;      ///< per flap: an edge has an odd number of its triangles
+  std::vector<char> rim;      ///< per flap: an edge has two of its triangles, one on the other, and no others
+  std::vector<char> bounded;  ///< per flap: an edge has others too
   std::vector<char> open;     ///< per complex: not as many triangles run in either direction along every edge
-  std::vector<char> rim;      ///< per contact: both sheets end at an edge of no other triangle
-  std::vector<char> bounded;  ///< per contact: other triangles are at its edges
 };
 
-Contacts find_contacts(const Repair& r, const std::vector<char>& sheet, const std::vector<char>& gone) {
+Flaps find_flaps(const Repair& r, const std::vector<char>& sheet, const std::vector<char>& gone) {
   const int n = (int)r.tris.size();
-  Contacts c{UnionFind(n), UnionFind(n), std::vector<char>(n, 0), std::vector<char>(n, 0), {}};
-  c.bounded = c.rim;
-  for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
-    int any = -1, last = -1, count = 0, doubled = 0, ascending = 0;
-    bool both = false;
-    for (EdgeUse e : uses) {
-      const int h = half_edge(e), t = h / 3;
-      if (gone[t]) continue;
-      if (count++) c.complex.join(t, any);
-      any = t;
+  const std::vector<char> none(n, 0);
+  Flaps f{UnionFind(n), UnionFind(n), none, none, none, none};
+  std::vector<int> of;
+  auto each_edge = [&](auto visit) {
+    for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
+      of.clear();
+      for (EdgeUse e : uses)
+        if (!gone[half_edge(e) / 3]) of.push_back(half_edge(e));
+      if (!of.empty()) visit();
+    });
+  };
+  each_edge([&] {
+    int last = -1, ascending = 0;
+    for (int h : of) {
+      f.complex.join(h / 3, of[0] / 3);
       ascending += origin(r.tris, h) < target(r.tris, h);
-      if (sheet[t] == single) continue;
-      if (doubled++) {
-        c.contact.join(t, last);
-        both = both || sheet[t] != sheet[last];
-      }
-      last = t;
+      if (of.size() != 2 && sheet[h / 3] == single) continue;
+      if (last >= 0) f.flap.join(h / 3, last);
+      last = h / 3;
     }
-    if (2 * ascending != count) c.open[any] = 1;
-    if (doubled && doubled < count) c.bounded[last] = 1;
-    if (count == 2 && both) c.rim[last] = 1;
+    if (2 * ascending != (int)of.size()) f.open[of[0] / 3] = 1;
   });
-  for (int t = 0; t < n; ++t) {
-    if (c.open[t]) c.open[c.complex.find(t)] = 1;
-    if (c.rim[t]) c.rim[c.contact.find(t)] = 1;
-    if (c.bounded[t]) c.bounded[c.contact.find(t)] = 1;
-  }
-  return c;
+  for (int t = 0; t < n; ++t)
+    if (f.open[t]) f.open[f.complex.find(t)] = 1;
+  each_edge([&] {
+    const bool ends = of.size() == 2 && (sheet[of[0] / 3] == single || sheet[of[0] / 3] != sheet[of[1] / 3]);
+    for (int& h : of) h = f.flap.find(h / 3);
+    std::sort(of.begin(), of.end());
+    for (std::size_t i = 0, j; i < of.size(); i = j) {
+      for (j = i; j < of.size() && of[j] == of[i];) ++j;
+      f.odd[of[i]] |= (j - i) % 2;
+      f.bounded[of[i]] |= j - i < of.size();
+      f.rim[of[i]] |= ends && j - i == 2;
+    }
+  });
+  return f;
 }
 
-/// Drops both sheets of fins: contacts that end freely and are too small to be meant, as intersecting bodies
-/// in rounded coordinates leaves them, or of one triangle, as coarsening does.
+/// Drops fins: closed sets of triangles that end freely, enclose nothing, whatever their diagonals, and are
+/// too small to be meant, as intersecting bodies in rounded coordinates leaves them, or are one triangle and
+/// its double, as coarsening does.
 void drop_fins(const Repair& r, const std::vector<Vec3>& points, const std::vector<char>& sheet,
                std::vector<char>& gone) {
-  constexpr double fin = 1e-6;  // of the area of all: the fins of bodies put together have 1e-8, or less
-  if (std::find(sheet.begin(), sheet.end(), second) == sheet.end()) return;
+  constexpr double fin = 1e-6;    // of the area of all: the fins of bodies put together have 1e-7, or less
+  constexpr double empty = 1e-3;  // of the area to the power 3/2: a cube has 0.07 as its volume
   const int n = (int)r.tris.size();
-  Contacts c = find_contacts(r, sheet, gone);
-  std::vector<double> area(n, 0);
+  Flaps f = find_flaps(r, sheet, gone);
+  std::vector<double> area(n, 0), volume(n, 0);
   std::vector<int> size(n, 0);
   double whole = 0;
   for (int t = 0; t < n; ++t) {
-    const auto& [i, j, k] = r.tris[t];
-    const double a = norm(area_vector(points[r.vertex[i]], points[r.vertex[j]], points[r.vertex[k]]));
-    whole += a;
-    if (gone[t] || sheet[t] == single) continue;
-    area[c.contact.find(t)] += a;
-    ++size[c.contact.find(t)];
+    const Vec3 normal = area_vector(r, points, t);
+    whole += norm(normal);
+    if (gone[t]) continue;
+    const int k = f.flap.find(t);
+    area[k] += norm(normal);
+    volume[k] += dot(point(r, points, r.tris[t][0]) - point(r, points, r.tris[k][0]), normal) / 3;
+    ++size[k];
   }
   for (int t = 0; t < n; ++t) {
-    const int k = c.contact.find(t);
-    const bool small = area[k] < fin * whole || size[k] == 2;
-    if (sheet[t] != single && c.rim[k] && c.bounded[k] && small) gone[t] = 1;
+    const int k = f.flap.find(t);
+    const bool small = area[k] < fin * whole && std::abs(volume[k]) < empty * std::pow(area[k], 1.5);
+    if (f.rim[k] && f.bounded[k] && !f.odd[k] && (small || size[k] == 2)) gone[t] = 1;
   }
 }
 
 /// Drops the second sheets of contacts, except those that other triangles bound, in a complex of closed
 /// solids.
 void drop_other_contacts(const Repair& r, const std::vector<char>& sheet, std::vector<char>& gone) {
-  Contacts c = find_contacts(r, sheet, gone);
+  Flaps f = find_flaps(r, sheet, gone);
   for (int t = 0; t < (int)r.tris.size(); ++t) {
-    const int k = c.contact.find(t);
-    if (sheet[t] == second && (c.open[c.complex.find(t)] || c.rim[k] || !c.bounded[k])) gone[t] = 1;
+    const int k = f.flap.find(t);
+    if (sheet[t] == second && (f.open[f.complex.find(t)] || f.rim[k] || !f.bounded[k])) gone[t] = 1;
   }
 }
 
@@ -155,9 +164,8 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
   for (std::size_t i = 1; i < quads.size(); ++i) {
     const Quad &q = quads[i - 1], &p = quads[i];
     // two of the three triangles around a vertex have all its neighbors as corners, whichever two
-    const bool overlap =
-        q.tris[0] == p.tris[0] || q.tris[0] == p.tris[1] || q.tris[1] == p.tris[0] || q.tris[1] == p.tris[1];
-    if (overlap || q.corners != p.corners || taken(q.tris[0]) || taken(q.tris[1]) || taken(p.tris[0]) ||
+    auto free = [&](int t) { return !taken(t) && t != p.tris[0] && t != p.tris[1]; };
+    if (q.corners != p.corners || !free(q.tris[0]) || !free(q.tris[1]) || taken(p.tris[0]) ||
         taken(p.tris[1]))
       continue;
     const double bend = angle(q.normal, p.normal);

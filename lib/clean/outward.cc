@@ -90,28 +90,6 @@ std::vector<std::vector<int>> containers(const Repair& r, const std::vector<Vec3
   return inside;
 }
 
-/// May one closed component be within another, by their boxes?
-bool boxes_nest(const Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component,
-                const std::vector<char>& closed) {
-  constexpr std::size_t most = 2000;  // components, which are compared in pairs
-  if (closed.size() > most) return true;
-  constexpr double far = std::numeric_limits<double>::infinity();
-  std::vector<Box> boxes(closed.size(), {{far, far, far}, {-far, -far, -far}});
-  for (std::size_t t = 0; t < component.size(); ++t)
-    for (int v : r.tris[t]) {
-      Box& box = boxes[component[t]];
-      const Vec3& p = points[r.vertex[v]];
-      box = {lower(box.lo, p), upper(box.hi, p)};
-    }
-  for (std::size_t a = 0; a < boxes.size(); ++a)
-    for (std::size_t b = 0; b < boxes.size(); ++b) {
-      const Vec3 below = boxes[a].lo - boxes[b].lo, above = boxes[b].hi - boxes[a].hi;
-      if (closed[a] && closed[b] && std::min({below.x, below.y, below.z, above.x, above.y, above.z}) > 0)
-        return true;
-    }
-  return false;
-}
-
 }  // namespace
 
 bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<int>& component, int n) {
@@ -123,11 +101,9 @@ bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<
     if (seed[c] < 0) seed[c] = r.tris[t][0];
     for (int h = 3 * t; h < 3 * t + 3; ++h)
       if (r.opposite[h] < 0) closed[c] = 0;
-    const Vec3 o = points[r.vertex[seed[c]]];  // near, for the digits
-    const Vec3 a = points[r.vertex[r.tris[t][0]]] - o, b = points[r.vertex[r.tris[t][1]]] - o,
-               d = points[r.vertex[r.tris[t][2]]] - o;
-    volume[c] += dot(a, cross(b, d)) / 6;
-    area[c] += 0.5 * norm(area_vector(a, b, d));
+    const Vec3 twice = area_vector(r, points, t);  // places from near, for the digits
+    volume[c] += dot(point(r, points, r.tris[t][0]) - point(r, points, seed[c]), twice) / 6;
+    area[c] += 0.5 * norm(twice);
   }
   std::vector<char> inward(n, 0), mixed(n, 0), unclear(n, 0);
   int n_closed = 0, n_inward = 0;
@@ -139,8 +115,7 @@ bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<
     n_inward += closed[c] && inward[c];
   }
   std::vector<std::vector<int>> inside(n);
-  if (n_closed > 1 && (n_inward > 0 || boxes_nest(r, points, component, closed)))
-    inside = containers(r, points, component, closed, unclear);
+  if (n_closed > 1) inside = containers(r, points, component, closed, unclear);
   if (n_inward == 0)
     return std::any_of(inside.begin(), inside.end(), [](const auto& of) { return !of.empty(); });
   auto outermost = [&](int c) {

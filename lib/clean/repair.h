@@ -19,6 +19,13 @@ struct Repair {
   std::vector<char> flipped;  ///< flags triangles whose orientation was reversed
 };
 
+inline Vec3 point(const Repair& r, const std::vector<Vec3>& points, int v) { return points[r.vertex[v]]; }
+/// Returns twice the area of triangle t, along its normal.
+inline Vec3 area_vector(const Repair& r, const std::vector<Vec3>& points, int t) {
+  const auto& [i, j, k] = r.tris[t];
+  return area_vector(point(r, points, i), point(r, points, j), point(r, points, k));
+}
+
 /// Returns the vertex that v is, or is a copy of.
 inline int base(const Repair& r, int v) {
   const int n = (int)(r.vertex.size() - r.copied.size());

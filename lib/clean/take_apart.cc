@@ -50,7 +50,7 @@ std::vector<int> open_slits(Surface& s) {
 /// Reverses the sheets that have the outside behind them, and a region in front.
 void face_outside(Surface& surface, Solids& solids) {
   std::vector<int> component;
-  const int n = components(opposite_halfedges(surface.tris, (int)surface.points.size()), component);
+  const int n = components(opposite_halfedges(surface), component);
   std::vector<int> balance(n, 0);  // triangles: with the outside in front, less those with it behind
   for (std::size_t t = 0; t < component.size(); ++t)
     balance[component[t]] += (solids.sides[t][1] != 0) - (solids.sides[t][0] != 0);

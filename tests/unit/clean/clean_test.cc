@@ -740,6 +740,28 @@ TEST(Clean, SolidsThatTouchStayClosedEach) {
   }
 }
 
+//  a triangle on an edge inside a valley, seen from the side: to p it ends freely, to q it crosses the slope
+//   \ p  /
+//    \--x--q
+//     \/
+TEST(Clean, BitsOfASheetThatIntersectsItselfAreDebris) {
+  for (const double y : {6.0, 9.0}) {
+    constexpr int n = 12;
+    Surface s;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) s.points.push_back({(double)i, (double)j, std::abs(j - 6.0)});
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const int a = j * (n + 1) + i, d = a + n + 1;
+        s.tris.insert(s.tris.end(), {{a, a + 1, d + 1}, {a, d + 1, d}});
+      }
+    s.points.push_back({5.5, y, 1});
+    s.tris.push_back({5 * (n + 1) + 5, 5 * (n + 1) + 6, (int)s.points.size() - 1});
+    s = surface(s.points, s.tris);
+    EXPECT_EQ(clean(s, {.sheets = CleanOptions::automatic}).sheets.kept, y == 6);
+  }
+}
+
 //  a fin of two triangles on an edge of a cube, each there in both orientations: d high
 //     q-------p
 //     | \_    | d
@@ -762,6 +784,29 @@ TEST(Clean, TinyFinsVanishAndLargeOnesStay) {
     EXPECT_EQ(r.duplicate, dropped);
     EXPECT_EQ(r.opened_edges, dropped < 2 * n_tris);
     EXPECT_EQ(s.tris.size(), 12 + 2 * n_tris - dropped);
+  }
+}
+
+//  the two sides of a tiny fin have different diagonals, or only one has a vertex m between b and p
+//     q-------p
+//     |       m
+//   --a-------b--
+TEST(Clean, TinyFinsVanishWhateverTheirDiagonals) {
+  for (bool middle : {false, true}) {
+    constexpr double d = 1e-7;
+    Surface s = cubes({{0, 0, 0}});
+    const Tri t = s.tris[0];
+    const int a = t[0], b = t[1], p = (int)s.points.size(), q = p + 1, m = p + 2;
+    const Vec3 up = {-d, -d, -d};
+    s.points.insert(s.points.end(), {s.points[b] + 1.1 * up, s.points[a] + up, s.points[b] + 0.5 * up});
+    s.tris.insert(s.tris.end(), {{a, b, p}, {a, p, q}});
+    if (middle)
+      s.tris.insert(s.tris.end(), {{b, a, q}, {b, q, m}, {m, q, p}, {b, m, p}});
+    else
+      s.tris.insert(s.tris.end(), {{b, a, q}, {b, q, p}});
+    s = surface(s.points, s.tris);
+    EXPECT_EQ(clean(s, {.sheets = CleanOptions::automatic}).opened_edges, 0);
+    EXPECT_EQ(s.tris.size(), 12u);
   }
 }
 
