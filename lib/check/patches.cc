@@ -54,8 +54,7 @@ std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& op
 
 std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
                                          const std::vector<Patch>& result) {
-  constexpr double rough =
-      0.5;  // of the area: steps of voxels have up to sqrt(3) times that of what they stand for
+  constexpr double rough = 0.5;  // of the area: steps of voxels have up to sqrt(3) times the smooth one
   std::vector<std::string> faults;
   auto before = [](const Patch& p, const std::string& name) { return p.name < name; };
   for (const Patch& p : reference) {

@@ -110,8 +110,7 @@ std::string name_of(int label) { return label > 0 ? "region " + std::to_string(l
 
 /// The volume between the boundary of a region and a surface that is a share of an edge length away.
 double offset_of(const RegionMeasure& r) {
-  constexpr double most_offset =
-      0.1;  // of the edge length: chords sag by that where the radius is 1.25 edges
+  constexpr double most_offset = 0.1;  // of the edge length: chords sag so much at a radius of 1.25 edges
   return most_offset * size_for_count(r.area, r.triangles) * r.area;
 }
 

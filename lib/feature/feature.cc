@@ -20,8 +20,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
-constexpr double near_cosine =
-    0.8;  ///< of normals that turn by less than continue_turn, whose cosine is 0.71
+constexpr double near_cosine = 0.8;            ///< of normals that turn by less than continue_turn: 0.71
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
@@ -35,11 +34,10 @@ constexpr double widest_band = 0.5;  ///< times `sliver`, to either side
 /// Times further across an edge, for each 1 - cosine of its angle. Creases of 12 CAD surfaces are the same
 /// from 30 to 120; below it two of them lack some.
 constexpr double far_turn = 30;
-constexpr double rounding = 3e-6;  ///< of the diagonal: single-precision coordinates, with a margin
-constexpr double long_chain = 5;   ///< mean edges of the input
-constexpr double short_chain = 3;  ///< target lengths, or mean edges of the input
-constexpr double elongated =
-    1.5;  ///< mean edge over that of equal triangles: long edges are no measure of width
+constexpr double rounding = 3e-6;      ///< of the diagonal: single-precision coordinates, with a margin
+constexpr double long_chain = 5;       ///< mean edges of the input
+constexpr double short_chain = 3;      ///< target lengths, or mean edges of the input
+constexpr double elongated = 1.5;      ///< mean edge over that of equal triangles: long ones measure no width
 constexpr double least_fading = 10;    ///< target lengths: of a crease that ends freely
 constexpr double short_rim = 0.5;      ///< the same of the rim of a hole
 constexpr double longest_chain = 0.1;  ///< of the diagonal: coarse models have no longer chains to judge by

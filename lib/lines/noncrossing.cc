@@ -45,10 +45,8 @@ constexpr double most_between = 0.3;  // area between a segment and its chain, o
                                       // three chords of a circle, the fewest, have 0.2
 constexpr double least_area = 0.3;  // of a loop's segments, over that of its chains; the same three have 0.41
 constexpr double most_step = 3;     // between the measures of neighboring segments of a refined line
-constexpr double tiny_measure =
-    1e-6;  // of a line's mean segment: shorter ones do not ask for short neighbors
-constexpr int patience =
-    40;  // rounds of halving before a line is cut at all its vertices: 2^-40 of a segment
+constexpr double tiny_measure = 1e-6;  // of a line's mean segment: shorter ones bound no neighbors
+constexpr int patience = 40;           // rounds of halving before a line is cut at all its vertices
 
 /// A chain drawn in a chart. side: +1 the chart is on its left, -1 on its right, 0 on both.
 struct Drawn {

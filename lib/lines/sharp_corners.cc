@@ -10,8 +10,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double per_width =
-    8;  ///< length over width of segments; sizes ask for 7, from 10 on kappa is below 0.1
+constexpr double per_width = 8;  ///< length of segments over width; sizes ask for 7, 10 makes kappa 0.1
 constexpr double widest = 1 / per_width;  ///< radians: in wider sectors the first segments are good
 constexpr double most_of_line = 0.7;      ///< of the shortest line: its other end may be sharp, too
 constexpr int most_cuts = 300;            ///< of a line: corners that need more are left as they are

@@ -15,8 +15,7 @@ namespace meshpipe {
 namespace {
 
 using std::numbers::pi;
-constexpr double flat_to =
-    0.1;  // radians that a hole's border may turn more or less than 2 pi on a flat part
+constexpr double flat_to = 0.1;  // radians from 2 pi, by which a hole's border turns on a flat part
 
 std::vector<double> lengths_of(const SubMesh& part, const std::vector<int>& loop) {
   std::vector<double> length;

@@ -14,8 +14,7 @@ struct Collapse {
 };
 
 // normals
-constexpr double least_cosine =
-    0.5;  // triangle against reference normal; beyond 60 degrees it counts as folded
+constexpr double least_cosine = 0.5;   // of normal and reference normal: a triangle with less is folded
 constexpr double same_cosine = 1e-12;  // cosines that differ by less are rounding errors
 
 // moves (move.cc)

@@ -19,6 +19,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
+constexpr double least_triangles = 12;  ///< of a closed component: those of a sphere with four edges around
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
 constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not asked for by peaks
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
@@ -94,6 +95,17 @@ class TubeFinder {
   std::vector<int> from_, branch_, reached_, near_;
 };
 
+/// Returns per triangle the area of its component; infinity if that has borders or model edges.
+std::vector<double> closed_areas(const Connectivity& surface) {
+  std::vector<int> component;
+  std::vector<double> area(components(surface.opposite, component), 0), whole;
+  for (int h = 0; h < surface.n_half_edges(); ++h)
+    area[component[h / 3]] +=
+        surface.is_border(h) || surface.is_model(h) ? infinite : triangle_area(surface.mesh, h / 3) / 3;
+  for (int c : component) whole.push_back(area[c]);
+  return whole;
+}
+
 }  // namespace
 
 std::vector<double> closed_line_lengths(const Connectivity& surface) {
@@ -143,10 +155,14 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const double least = least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
   for (const Peak& p : sharp_peaks(surface, size))
     feature[p.vertex] = std::max(least, size[p.vertex] * std::max(p.angle, least_peak) / ring_edges);
+  const std::vector<double> whole = closed_areas(surface);
   const Neighbors next(mesh);
-
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)
-    for (int v : mesh.tris[t]) bend[v] = std::max(bend[v], curvature[t]);
+    for (int v : mesh.tris[t]) {
+      const double most = size_for_count(whole[t], least_triangles);
+      if (most < size[v]) feature[v] = std::min(feature[v], most);
+      bend[v] = std::max(bend[v], curvature[t]);
+    }
   TubeFinder tubes(mesh, next);
   std::vector<char> done(n, 0);
   for (int v = 0; v < static_cast<int>(n); ++v) {

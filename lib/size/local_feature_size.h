@@ -15,7 +15,7 @@ std::vector<double> closed_line_lengths(const Connectivity& surface);
 /// infinity, or more than the size), so that four edges fit around it. A ring is a closed line of border or
 /// model edges that meets no other, or the shortest closed path of edges around a tube, or the ring at a
 /// size's distance around a peak (sharp_peaks). Tubes are searched where the curvature (per triangle) permits
-/// one.
+/// one. A component without borders and model edges has the size of twelve triangles at most.
 std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
                                        const std::vector<double>& size);
 

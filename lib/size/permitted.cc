@@ -15,8 +15,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
-constexpr double most_sag =
-    0.3;  ///< of the gap; triangles sag by 4/3 of what edges do, and edges grow nearby
+constexpr double most_sag = 0.3;      ///< of the gap; triangles sag by 4/3 of what edges do
 constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
 constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
 constexpr double lowered = 0.62;          ///< of the size asked for: sheets that permit more have not failed

@@ -8,8 +8,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double met =
-    0.01;  // of the number of triangles: the search for the scale ends within a tenth of it
+constexpr double met = 0.01;  // of the number of triangles: the search ends within a tenth of it
 constexpr double more = 0.2;  // of the number of triangles: more is reported even if the user asked for none
 constexpr double much = 0.1;  // of the number of triangles: a smaller difference is not worth a line
 

@@ -29,8 +29,7 @@ const double opposed =
 const double parallel = std::cos(150 * degree);
 constexpr double least_slanted = 0.5;
 const double smooth = std::cos(40 * degree);  ///< least cosine between normals of one smooth surface
-constexpr int averaged =
-    4;  ///< rings of triangles for a normal: noise of a tenth of an edge tilts it by 2 degrees
+constexpr int averaged = 4;        ///< rings for a normal: noise of a tenth of an edge tilts it by 2 degrees
 constexpr double fold_angle = 75;  ///< degrees; a little above that of sheets that face each other
 /// Of the distance from a fold, within an edge of it: smaller balls touch its other side.
 constexpr double least_resolved = 0.8;

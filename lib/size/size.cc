@@ -63,10 +63,7 @@ struct Field {
   std::unordered_map<std::uint64_t, double> asked{};  ///< by the two vertices, see there
 };
 
-std::vector<double> curvature_of(const Field& f) {
-  const auto model = model_of(f.s);
-  return face_curvature({f.s, f.opposite, model});
-}
+std::vector<double> curvature_of(const Field& f) { return face_curvature({f.s, f.opposite, model_of(f.s)}); }
 
 double edge_length(const Field& f, int h) { return edge_length(f.s, h); }
 
@@ -422,8 +419,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   for (double& x : column()) x *= kind.balls;
   auto bound_by_sections = [&] {  // ends and rims are sections, however they are shaped
     if (kind.balls != 1) return;
-    const auto model = model_of(f.s);
-    const std::vector<double> around = closed_line_lengths({f.s, f.opposite, model});
+    const std::vector<double> around = closed_line_lengths({f.s, f.opposite, model_of(f.s)});
     for (std::size_t v = 0; v < around.size(); ++v)
       column()[v] = std::min(column()[v], around[v] / (2 * std::numbers::pi));
   };
@@ -467,8 +463,7 @@ struct Known {
 /// Is the surface a tube or a closed line somewhere that is too narrow for these sizes? Sets `curvature`.
 bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const std::vector<double>& size,
                       std::vector<double>& curvature) {
-  const auto& model = model_of(s);
-  const Connectivity surface{s, opposite, model};
+  const Connectivity surface{s, opposite, model_of(s)};
   // averages may exceed what they are made of by rounding
   const double least = (1 - 1e-9) * least_tube_curvature(size);
   curvature = face_curvature(surface, least);

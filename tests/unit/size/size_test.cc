@@ -274,6 +274,16 @@ TEST(LocalFeatureSize, BoundsNothingOnBallsBodiesAndRims) {
   EXPECT_EQ(least(permitted(cube(3000), 0.4)), INFINITY);
 }
 
+TEST(LocalFeatureSize, TwelveTrianglesOfAClosedComponent) {
+  const Mesh octahedron{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  for (double x : permitted(octahedron, 50)) EXPECT_NEAR(x, size_for_count(4 * std::sqrt(3), 12), 1e-12);
+  Mesh open = octahedron;
+  open.tris.pop_back();
+  EXPECT_GT(largest(permitted(open, 50)), 50);
+}
+
 TEST(Size, IsLoweredOnTubesAndReported) {
   Surface s;
   static_cast<Mesh&>(s) = tube(20, 24, false);
