@@ -91,9 +91,9 @@ class OffReader {
       text_.need_line("face", f, n_faces);
       const int n = checked_corners(text_.integer("a number of corners"), f,
                                     [&](const std::string& what) { text_.fail(what); });
-      for (int i = 0; i < n; ++i)
-        polygons_.corners.push_back(
-            vertex(text_.integer("a vertex number"), f, [&](const std::string& what) { text_.fail(what); }));
+      for (int i = 0; i < n; ++i)  // they may go on in the next line
+        polygons_.corners.push_back(vertex(next_integer(text_, "a vertex number"), f,
+                                           [&](const std::string& what) { text_.fail(what); }));
       polygons_.ends.push_back(polygons_.corners.size());
       if (text_.line_ends()) continue;
       const bool whole = rest_of_line(more);

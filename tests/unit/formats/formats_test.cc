@@ -297,6 +297,9 @@ TEST(Off, KinAreReadAndCountsChecked) {
                      "in")
                 .surface.tris.size(),
             1u);
+  // a face may go on in the next line
+  EXPECT_EQ(read_any("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n\n2 \n3 2 1 0\n", "in").surface.tris,
+            (std::vector<Tri>{{0, 1, 2}, {2, 1, 0}}));
   EXPECT_EQ(failure("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "in:6: face 0 uses vertex 3, but there are 3");
   EXPECT_EQ(failure("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
