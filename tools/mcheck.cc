@@ -30,8 +30,10 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : warnings_of(io.stream, f)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
   if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
-    io.say(std::to_string(n) +
-           " pairs of triangles intersect, as those of the input do: --resolve outer resolves them");
+    io.say(
+        std::to_string(n) +
+        " pairs of triangles intersect, as those of the input do: --resolve outer resolves those of closed "
+        "components, mwrap all");
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);
 }

@@ -23,10 +23,11 @@ bool has_sound_indices(const Mesh& mesh) {
   return !mesh.tris.empty();
 }
 
-void find_short_edges(const Mesh& mesh, Diagnosis& d) {
+void look_at_edges(const Mesh& mesh, Diagnosis& d) {
   std::vector<double> length;
   for_each_edge(mesh.tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
     length.push_back(edge_length(mesh, half_edge(uses[0])));
+    d.open |= uses.size() == 1;
   });
   std::sort(length.begin(), length.end());
   const double most = short_share * length[length.size() / 2];
@@ -64,10 +65,9 @@ Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
   if (!has_sound_indices(surface)) return d;
   if (const auto pairs = self_intersections(surface); !pairs.empty()) {
     d.intersections = pairs.size();
-    d.tangled = pairs.size() > surface.tris.size();
     d.intersection = contacts(surface, {pairs[0]}).points.at(0);
   }
-  find_short_edges(surface, d);
+  look_at_edges(surface, d);
   try {
     if (reach > 0) find_lines_near(surface, place, reach, d);
   } catch (const NotAdmissible&) {  // not a manifold: it has no borders to be near to

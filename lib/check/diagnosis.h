@@ -10,7 +10,7 @@ namespace meshpipe {
 struct Diagnosis {
   std::size_t intersections = 0;  ///< pairs of triangles that intersect,
   Vec3 intersection{};            ///< and where the first of them do
-  bool tangled = false;           ///< there are more of them than triangles
+  bool open = false;              ///< there are borders: what crosses may have no inside
   double weld = 0;                ///< tolerance that merges points almost at one place; 0: there are none
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others

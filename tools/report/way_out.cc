@@ -12,7 +12,7 @@ namespace {
 
 constexpr int not_admissible = 4, goal_missed = 5, contract_missed = 6;
 
-constexpr double beyond_repair = 100;  ///< pairs of triangles of the result that cross
+constexpr double beyond_repair = 100;  ///< pairs of triangles that cross, of the input or new ones
 
 /// A number as a message shows it, not below the value: what is at least that large still is.
 std::string at_least(double x) {
@@ -100,9 +100,11 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.intersections > 0 && !c.ran("mwrap"); },
      [](const Case& c) {
-       return WayOut{c.found.tangled || c.used("mclean", "--resolve") ? "mwrap"
-                     : c.found.sheets                                 ? "mclean --resolve all"
-                                                                      : "mclean --resolve outer",
+       const bool wrap = c.found.intersections > beyond_repair || c.used("mclean", "--resolve") ||
+                         (c.found.open && !c.found.sheets);
+       return WayOut{wrap             ? "mwrap"
+                     : c.found.sheets ? "mclean --resolve all"
+                                      : "mclean --resolve outer",
                      std::to_string(c.found.intersections) +
                          " pairs of triangles of the input intersect, first at " +
                          shown(c.found.intersection)};
