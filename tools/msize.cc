@@ -13,6 +13,7 @@
 #include "lib/size/size.h"
 #include "tools/common.h"
 #include "tools/files.h"
+#include "tools/report/size_report.h"
 
 using namespace meshpipe;
 
@@ -52,7 +53,7 @@ std::unique_ptr<Bvh> read_field(const Io& io, const std::string& text, SizeField
 }
 
 void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
-  for (const std::string& line : describe(r, o, counted)) io.say(line);
+  for (const std::string& line : size_lines(r, o, counted)) io.say(line);
   io.report["size"] = r.smallest;
   io.report["largest_size"] = r.largest;
   io.report["expected_triangles"] = r.triangles;

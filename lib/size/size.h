@@ -68,13 +68,6 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
 /// above. Returns the number of vertices added.
 int match_sheets(Surface& surface, Table* chart, double slope);
 
-/// Whether the field asks for the number of triangles that was requested; bounds may prevent that.
-bool met_count(const SizeReport& report, const SizeOptions& options);
-
-/// Returns lines for the user: the sizes, and where they differ from what was requested. `counted`: the
-/// number of triangles was requested by the user.
-std::vector<std::string> describe(const SizeReport& report, const SizeOptions& options, bool counted);
-
 /// Throws: GoalMissed, with both numbers, if a field asks for more triangles than `limit`. Fields with values
 /// that are not positive pass.
 void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit);

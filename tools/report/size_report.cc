@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/report/size_report.h"
+
 #include <cmath>
 #include <cstdio>
 
 #include "lib/core/number.h"
-#include "lib/size/size.h"
 
 namespace meshpipe {
 namespace {
@@ -20,7 +21,7 @@ bool within(const SizeReport& r, const SizeOptions& o, double tolerance) {
 
 bool met_count(const SizeReport& r, const SizeOptions& o) { return o.triangles > 0 && within(r, o, met); }
 
-std::vector<std::string> describe(const SizeReport& r, const SizeOptions& o, bool counted) {
+std::vector<std::string> size_lines(const SizeReport& r, const SizeOptions& o, bool counted) {
   std::vector<std::string> lines;
   char text[160];
   if (r.smallest == r.largest)
