@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
+#include "lib/core/union_find.h"
 
 namespace meshpipe {
 namespace {
@@ -40,10 +42,34 @@ Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
   return l > 0 ? lerp(a, b, clamp01(dot(p - a, d) / l)) : a;
 }
 
-/// Visits the triangles around a point that are connected within a distance.
+/// Looks at what is connected, in one place after the other.
 class Search {
  public:
-  explicit Search(const Connectivity& surface) : surface_(surface), seen_(surface.n_tris(), 0) {}
+  explicit Search(const Connectivity& surface)
+      : surface_(surface), seen_(surface.n_tris(), 0), sets_(surface.n_vertices()) {}
+
+  /// Whether the triangles of the tree within `reach` of a box are all connected, by ways around vertices
+  /// nearer than `most` to all of it.
+  bool connected(const Bvh& tree, const Box& box, double reach, double most) {
+    const Vec3 margin{reach, reach, reach};
+    bool all = true;
+    tree.overlapping({box.lo - margin, box.hi + margin}, [&](int t) {
+      if (!all) return;
+      ++work;
+      int before = -1;
+      for (int v : surface_.mesh.tris[t]) {
+        const Vec3 far = upper(surface_.point(v) - box.lo, box.hi - surface_.point(v));
+        if (!(dot(far, far) < most * most)) continue;
+        if (before >= 0) sets_.join(before, v);
+        used_.push_back(before = v);
+      }
+      all = before >= 0;
+    });
+    for (int v : used_) all = all && sets_.find(v) == sets_.find(used_[0]);
+    for (int v : used_) sets_.merge_into(v, v);
+    used_.clear();
+    return all;
+  }
 
   /// Calls visit(t) for the triangles nearer to p than reach(), from the first one on, across edges that pass
   /// the test; it returns false to stop.
@@ -70,8 +96,16 @@ class Search {
 
  private:
   const Connectivity& surface_;
-  std::vector<int> seen_, queue_;
+  std::vector<int> seen_, queue_, used_;
   int turn_ = 0;
+  UnionFind sets_;
+};
+
+/// How an edge bends.
+struct Bend {
+  Vec3 up{};           ///< to the side where the surface is hollow
+  double heights = 0;  ///< of its two triangles
+  double gap = 0;      ///< sheets farther away are not near; 0: it is flat, or its triangles are
 };
 
 /// What is measured at one point after the other.
@@ -84,6 +118,8 @@ class Measure {
     const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
     return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
   }
+  /// How half-edge h bends, which is not on a line.
+  Bend bend(int h) const;
   /// The size asked for on an edge.
   double asked(int h) const { return 0.5 * (asked_[surface_.from(h)] + asked_[surface_.to(h)]); }
   /// Whether a triangle that passes the test is connected with the edge of h within a distance from p.
@@ -96,6 +132,7 @@ class Measure {
     return found;
   }
   const Bvh& tree() const { return tree_; }
+  const Connectivity& surface() const { return surface_; }
   /// Does the line of h turn at its start? For half-edges on lines.
   bool turns(int h) const {
     const int g = before_[h];
@@ -233,25 +270,31 @@ double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) c
   return reach;
 }
 
+Bend Measure::bend(int h) const {
+  const int s = h / 3, t = surface_.opposite[h] / 3;
+  const Vec3 along = surface_.point(surface_.to(h)) - surface_.point(surface_.from(h));
+  const double length = norm(along);
+  const double angle =
+      std::atan2(dot(cross(normal_[s], normal_[t]), along) / length, dot(normal_[s], normal_[t]));
+  auto height = [&](int face) { return norm(surface_.area_vector(face)) / length; };
+  const double at_s = height(s), at_t = height(t);
+  if (!(std::abs(angle) > least_bend) || !(std::min(at_s, at_t) > flat_triangle * length)) return {};
+  // a chord of the size asked sags to the side where the surface is hollow, at most by this
+  const double most = asked(h);
+  const double sag = std::min(0.125 * most * most * std::abs(angle) / ((at_s + at_t) / 3), 0.5 * most);
+  return {normalized((angle > 0 ? -1.0 : 1.0) * (normal_[s] + normal_[t])), at_s + at_t,
+          lowered * lowered * sag / most_sag};
+}
+
 SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   const SizeBound none{h, p, infinite, 0};
   const int s = h / 3, t = surface_.opposite[h] / 3;
-  const Vec3 along = surface_.point(surface_.to(h)) - surface_.point(surface_.from(h));
-  const double bend =
-      std::atan2(dot(cross(normal_[s], normal_[t]), along) / norm(along), dot(normal_[s], normal_[t]));
-  auto height = [&](int face) { return norm(surface_.area_vector(face)) / norm(along); };
-  const double heights = height(s) + height(t);
-  if (!(std::abs(bend) > least_bend) || !(std::min(height(s), height(t)) > flat_triangle * norm(along)))
-    return none;
-  const double most = asked(h);
-  // a chord of the size asked sags to the side where the surface is hollow, at most by this
-  const double sag = std::min(0.125 * most * most * std::abs(bend) / (heights / 3), 0.5 * most);
-  const Vec3 normal = normalized(normal_[s] + normal_[t]), up = bend > 0 ? -1.0 * normal : normal;
-  double gap = lowered * lowered * sag / most_sag;
+  auto [up, heights, gap] = bend(h);
+  if (!(gap > 0)) return none;
   int other = -1;
-  tree_.in_cone(p, up, opposed, gap, [&](int u) {
+  tree_.in_cone(p, up, opposed, gap, [&, &up = up, &gap = gap](int u) {
     ++search.work;
-    if (u == s || u == t || std::abs(dot(normal_[u], normal)) < opposed) return gap;
+    if (u == s || u == t || std::abs(dot(normal_[u], up)) < opposed) return gap;
     const auto& [i, j, k] = surface_.mesh.tris[u];
     auto rises = [&](int v) { return dot(surface_.point(v) - p, up) > 0; };
     if (!rises(i) && !rises(j) && !rises(k)) return gap;
@@ -262,8 +305,8 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
     return gap = l;
   });
   if (other < 0) return none;
-  const double size =
-      std::max({2 * until_sag(h, p, up, most_sag * gap, search), least_height * heights, least_share * most});
+  const double most = asked(h), size = std::max({2 * until_sag(h, p, up, most_sag * gap, search),
+                                                 least_height * heights, least_share * most});
   // what is connected within the size is a fold that a mesh of this size leaves out
   if (size > lowered * most || joins(
                                    h, p, most, [&](int u) { return u == other; }, search))
@@ -273,19 +316,44 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
 
 /// Measures a half-edge between two parameters at points about as far apart as the sizes they permit, also
 /// where a strip tapers.
-void measure_along(const Measure& measure, int h, double from, double to, double length, Search& search,
+void measure_along(const Measure& measure, int h, double from, double to, Search& search,
                    std::vector<SizeBound>& found, double apart = 1) {
   SizeBound x = measure.at(h, 0.5 * (from + to), search);
   if (x.size == infinite) return;
-  const double piece = (to - from) * length;
+  const double length = measure.surface().length(h), piece = (to - from) * length;
   if (piece < apart * x.size || piece < least_piece * length) {
     x.length = measure.is_line(h) ? piece : 0;
     return found.push_back(x);
   }
   const int n = (int)std::min(std::ceil(piece / x.size), (double)most_pieces);
   for (int i = 0; i < n; ++i)
-    measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, length, search,
-                  found, 2);
+    measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, search, found, 2);
+}
+
+/// Measures a half-edge in pieces no longer than the size.
+void measure_edge(const Measure& measure, int h, Search& search, std::vector<SizeBound>& found) {
+  const double ratio = std::ceil(measure.surface().length(h) / measure.asked(h));
+  const int pieces = (int)std::clamp(ratio, 1.0, (double)most_pieces);
+  for (int k = 0; k < pieces; ++k)
+    measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, search, found);
+}
+
+/// Measures edges next to each other, where bounds in their middles are on sheets within the gap; at once if
+/// all of the surface near them is connected.
+void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Search& search,
+                    long long most_work, std::vector<SizeBound>& found) {
+  if (edges.empty() || search.work >= most_work) return;
+  Box box{edges[0].place, edges[0].place};
+  double gap = 0, asked = infinite;
+  for (const SizeBound& x : edges) {
+    box = join(box, {x.place, x.place});
+    gap = std::max(gap, x.gap);
+    asked = std::min(asked, x.size);
+  }
+  if (edges.size() == 1) return measure_edge(measure, edges[0].half_edge, search, found);
+  if (norm(box.hi - box.lo) + 2 * gap < asked && search.connected(measure.tree(), box, gap, asked)) return;
+  for (auto part : {edges.first(edges.size() / 2), edges.subspan(edges.size() / 2)})
+    measure_sheets(measure, part, search, most_work, found);
 }
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
@@ -336,22 +404,29 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
   for (bool line : {true, false}) {
 #pragma omp parallel
     {
+      constexpr long long most = 3LL * chunk * most_looks;
       Search search(surface);
+      std::vector<SizeBound> edges;
 #pragma omp for schedule(dynamic)
       for (int c = 0; c < (int)found.size(); ++c) {
         search.work = 0;
-        for (int i = 3 * c * chunk;
-             i < 3 * std::min(n, (c + 1) * chunk) && search.work < 3LL * chunk * most_looks; ++i) {
+        edges.clear();
+        for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
-          const double length = surface.length(h);
-          const int pieces = (int)std::clamp(std::ceil(length / measure.asked(h)), 1.0, (double)most_pieces);
-          for (int k = 0; k < pieces; ++k)
-            measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, length, search, found[c]);
-          if (line && measure.turns(h))
+          if (!line) {
+            const double size = measure.asked(h),
+                         gap = surface.length(h) > size ? infinite : measure.bend(h).gap;
+            const Vec3 middle = lerp(surface.point(surface.from(h)), surface.point(surface.to(h)), 0.5);
+            if (gap > 0) edges.push_back({h, middle, size, gap});
+            continue;
+          }
+          measure_edge(measure, h, search, found[c]);
+          if (measure.turns(h))
             for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
               if (x.size < infinite) found[c].push_back(x);
         }
+        measure_sheets(measure, edges, search, most, found[c]);
       }
     }
     all.clear();
