@@ -23,7 +23,7 @@ constexpr double least_triangles = 12;  ///< of a closed component: those of a s
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
 constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not asked for by peaks
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
-constexpr double opposite_sides = 0.6 * pi;  ///< least angle between the two ends of a ring at its vertex
+constexpr double opposite_sides = -0.31;     ///< largest cosine between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
 constexpr double least_area = 0.2;  ///< of a circle as long: a path there and back the same way has none
 
@@ -69,10 +69,9 @@ class TubeFinder {
  private:
   /// Whether the paths to a and b leave v on opposite sides, and their ring lies across the surface.
   bool is_ring(int v, int a, int b) const {
-    const Vec3 p = mesh_.points[v];
-    if (a == v || b == v ||
-        angle(mesh_.points[branch_[a]] - p, mesh_.points[branch_[b]] - p) < opposite_sides)
-      return false;
+    if (a == v || b == v) return false;
+    const Vec3 p = mesh_.points[v], x = mesh_.points[branch_[a]] - p, y = mesh_.points[branch_[b]] - p;
+    if (dot(x, y) > opposite_sides * norm(x) * norm(y)) return false;
     Vec3 area = cross(mesh_.points[a] - p, mesh_.points[b] - p);
     for (int x = a; x != v; x = from_[x])
       area = area + cross(mesh_.points[from_[x]] - p, mesh_.points[x] - p);
@@ -80,10 +79,10 @@ class TubeFinder {
       area = area + cross(mesh_.points[x] - p, mesh_.points[from_[x]] - p);
     double along = 0;
     int n = 1;
-    auto look = [&](int x) { along += std::abs(std::cos(angle(area, normal_[x]))), ++n; };
+    auto look = [&](int u) { along += std::abs(dot(normalized(area), normalized(normal_[u]))), ++n; };
     look(v);
     for (int end : {a, b})
-      for (int x = end; x != v; x = from_[x]) look(x);
+      for (int u = end; u != v; u = from_[u]) look(u);
     const double length = distance_[a] + distance_[b] + norm(mesh_.points[a] - mesh_.points[b]);
     return along < across * n && norm(area) > least_area * length * length / (2 * pi);
   }

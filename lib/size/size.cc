@@ -65,6 +65,14 @@ struct Field {
 
 std::vector<double> curvature_of(const Field& f) { return face_curvature({f.s, f.opposite, model_of(f.s)}); }
 
+/// Returns the local feature size where it is below the size; `curvature` may be empty.
+std::vector<double> feature_size(const Connectivity& surface, const std::vector<double>& curvature,
+                                 const std::vector<double>& size) {
+  // averages may exceed what they are made of by rounding
+  const double least = (1 - 1e-5) * least_tube_curvature(size);
+  return local_feature_size(surface, curvature.empty() ? face_curvature(surface, least) : curvature, size);
+}
+
 double edge_length(const Field& f, int h) { return edge_length(f.s, h); }
 
 /// Returns the size that a curvature asks for.
@@ -286,8 +294,7 @@ bool split(Field& f, const Test& test) {
 
 /// Lowers sizes to the local feature size; reports the place where that is most.
 void lower_where_narrow(Field& f, SizeReport& report) {
-  if (f.curvature.empty()) f.curvature = curvature_of(f);
-  const auto feature = local_feature_size({f.s, f.opposite, model_of(f.s)}, f.curvature, f.size);
+  const auto feature = feature_size({f.s, f.opposite, model_of(f.s)}, f.curvature, f.size);
   for (std::size_t v = 0; v < feature.size(); ++v) f.permits[v] = std::min(f.permits[v], feature[v]);
   double most = 1;
   for (std::size_t v = 0; v < f.permits.size(); ++v) {
@@ -452,32 +459,11 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
           f.s.points[at]};
 }
 
-/// What was measured of a surface for a uniform size.
-struct Known {
-  std::vector<SizeBound> bounds{};
-  bool unbounded = false;           ///< there are none
-  double triangles = 0;             ///< that the size asks for; 0: not known
-  std::vector<double> curvature{};  ///< per triangle of the surface as it came; empty: not known
-};
-
-/// Is the surface a tube or a closed line somewhere that is too narrow for these sizes? Sets `curvature`.
-bool has_narrow_tubes(const Surface& s, const std::vector<int>& opposite, const std::vector<double>& size,
-                      std::vector<double>& curvature) {
-  const Connectivity surface{s, opposite, model_of(s)};
-  // averages may exceed what they are made of by rounding
-  const double least = (1 - 1e-9) * least_tube_curvature(size);
-  curvature = face_curvature(surface, least);
-  const std::vector<double> feature = local_feature_size(surface, curvature, size);
-  // bounds only, which do not hold for larger sizes
-  if (!(*std::max_element(curvature.begin(), curvature.end()) > least)) curvature.clear();
-  return !std::equal(feature.begin(), feature.end(), size.begin(), std::greater_equal<>());
-}
-
-/// Makes a field that is not uniform.
+/// Makes a field that is not uniform; `bounds` and the number of `triangles` are those of a uniform size, or
+/// not known (0).
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
-                               SizeReport& report, Known known = {}) {
-  std::vector<SizeBound>& bounds = known.bounds;
-  double& triangles = known.triangles;
+                               SizeReport& report, std::vector<SizeBound> bounds = {}, double triangles = 0) {
+  const bool bounds_known = triangles > 0;
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinite;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
@@ -512,10 +498,10 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   };
   if (bounds.empty()) {
     follow_field();
-    if (!known.unbounded) bounds = bounds_below(s, f.opposite, f.size, o, report);
+    if (!bounds_known) bounds = bounds_below(s, f.opposite, f.size, o, report);
   }
   if (!bounds.empty()) {
-    if (!(triangles > 0)) triangles = count_for_size(s, f.size);
+    if (!bounds_known) triangles = count_for_size(s, f.size);
     limit = most_for(triangles);
     f.bounds = std::move(bounds);
     f.given = s;
@@ -523,7 +509,6 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     std::iota(f.root.begin(), f.root.end(), 0);
     follow_field();
   }
-  if (known.curvature.size() == s.tris.size()) f.curvature = std::move(known.curvature);  // not split since
   lower_where_narrow(f, report);
   if (!f.bounds.empty()) refuse_costly_field(f, limit, triangles, report);
   report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
@@ -611,12 +596,15 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     const std::vector<int> opposite = opposite_halfedges(surface);
     const double triangles = area / (0.25 * std::sqrt(3.0) * h * h);
     refuse_costly_tubes(surface, opposite, h, triangles);
-    Known known{.bounds = bounds_below(surface, opposite, size, options, report), .triangles = triangles};
-    known.unbounded = known.bounds.empty();
-    if (!known.unbounded || has_narrow_tubes(surface, opposite, size, known.curvature)) {
+    auto bounds = bounds_below(surface, opposite, size, options, report);
+    auto fits = [&] {
+      const auto feature = feature_size({surface, opposite, model_of(surface)}, {}, size);
+      return std::equal(feature.begin(), feature.end(), size.begin(), std::greater_equal<>());
+    };
+    if (!bounds.empty() || !fits()) {
       SizeOptions o = options;
       o.max = o.max > 0 ? std::min(o.max, most_growth * h) : most_growth * h;
-      size = make_field(surface, chart, o, may_split, report, std::move(known));
+      size = make_field(surface, chart, o, may_split, report, std::move(bounds), triangles);
       report.scale = 1;
     }
   } else {
