@@ -63,8 +63,8 @@ bool unravel(State& s, int h, int depth, int gained) {
   if (!found) {
     // flips that were undone have left the edges in place but not their numbers
     int back = -1;
-    m.star(four[2], [&](int e) {
-      if (m.to(e) == four[3]) back = e;
+    m.star(s.hold[four[2]] == frozen ? four[3] : four[2], [&](int e) {  // frozen, it may have other fans
+      if (m.to(e) == four[2] || m.to(e) == four[3]) back = e;
     });
     m.flip(back);
     return false;

@@ -334,7 +334,7 @@ class Pane {
   }
 }
 
-let camera = null, chosen = null, panes = [], waiting = 0, flight = 0, flying = 0;
+let camera = null, chosen = null, panes = [], waiting = 0, flying = 0;
 function redraw() {
   document.body.dataset.busy = 'yes';  // for tests: until the camera rests
   waiting ||= requestAnimationFrame(() => {
@@ -386,14 +386,14 @@ function flyTo(pane, at) {
     to.azimuth += 360 * Math.round((from.azimuth - to.azimuth) / 360);
   }
   ++flying;
-  const start = performance.now(), mine = ++flight, lasts = calm ? 1 : 500;
+  const start = performance.now(), mine = cam.flight = (cam.flight || 0) + 1, lasts = calm ? 1 : 500;
   const frame = () => {
     const x = Math.min((performance.now() - start) / lasts, 1), s = x * x * (3 - 2 * x);
     cam.center = from.center.map((v, k) => v + s * (to.center[k] - v));
     cam.half = from.half * (to.half / from.half) ** s;
     cam.azimuth = from.azimuth + s * (to.azimuth - from.azimuth);
     cam.elevation = from.elevation + s * (to.elevation - from.elevation);
-    const goes = x < 1 && (mine === flight || pane.own);
+    const goes = x < 1 && mine === cam.flight;  // else another flight of this camera has begun
     if (goes) requestAnimationFrame(frame);
     else --flying;
     redraw();
