@@ -55,6 +55,24 @@ class Remesh(unittest.TestCase):
         self.assertEqual(result.report["triangles"], len(result.faces))
         self.assertEqual(len(result.point_data["size"]), len(result.points))
 
+    def test_quads_are_divided_and_other_cells_refused(self):
+        class Quads:
+            points, cells_dict = POINTS, {"quad": FACES[:, [0, 0, 1, 2]][:0], "triangle": FACES}
+
+        self.expect_octahedron(meshpipe.remesh(Quads, size=0.3))
+        cube = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+        Quads.points = cube
+        Quads.cells_dict = {"quad": np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])}
+        self.assertEqual(meshpipe.remesh(Quads, triangles=200).report["genus"], 0)
+        Quads.cells_dict = {"tetra": FACES[:, [0, 1, 2, 0]]}
+        with self.assertRaisesRegex(meshpipe.InputError, "tetra"):
+            meshpipe.remesh(Quads)
+
+    def test_what_is_not_returned_is_refused(self):
+        for option in ("output", "help", "order"):
+            with self.assertRaisesRegex(meshpipe.UsageError, option):
+                meshpipe.remesh(POINTS, FACES, **{option: 2})
+
     def test_lists_and_options(self):
         result = meshpipe.remesh(POINTS.tolist(), FACES.tolist(), triangles=400, feature_angle="none", resolve=None)
         self.assertLess(abs(len(result.faces) - 400), 40)

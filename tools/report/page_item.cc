@@ -6,8 +6,10 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "formats/stream/line_tables.h"
+#include "lib/core/bvh.h"
 #include "lib/draw/draw.h"
 #include "tools/report/png.h"
 #include "tools/report/verdict.h"
@@ -162,6 +164,38 @@ std::string offenses(int bits) {
   return text;
 }
 
+/// Returns the triangle that a failure is about, or next to its place; -1: it names neither.
+int triangle_of(const Failure& failure, const Findings& findings, const Mesh& mesh) {
+  const Vec3 p = failure.requirement == "hausdorff" ? findings.distance.place : failure.place;
+  if (failure.triangle >= 0 || !std::isfinite(p.x)) return failure.triangle;
+  int nearest = -1;
+  double least = HUGE_VAL;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    if (const double d = norm(closest_point(mesh, t, p) - p); d < least) least = d, nearest = t;
+  return nearest;
+}
+
+/// Lists the triangles at fault: those that failures name, then the others by kappa.
+void list_offending(PageItem& item, const Mesh& mesh, const std::vector<double>& kappas,
+                    const Judgment& judgment) {
+  const Surface faulty = offending_faces(judgment.contract, judgment.findings, mesh);
+  std::map<int, std::string> fault;
+  std::vector<int>& order = item.offending_triangles;
+  for (const Failure& f : item.failures)
+    if (const int t = triangle_of(f, judgment.findings, mesh);
+        t >= 0 && fault.emplace(t, f.requirement).second)
+      order.push_back(t);
+  const auto named = (std::ptrdiff_t)order.size();
+  for (std::size_t i = 0; i < faulty.tris.size(); ++i) {
+    const int t = faulty.face.get<int>("triangle")[i];
+    if (fault.try_emplace(t).second) order.push_back(t);
+    fault[t] = offenses(faulty.face.get<std::uint8_t>("fault")[i]);
+  }
+  std::stable_sort(order.begin() + named, order.end(), [&](int s, int t) { return kappas[s] < kappas[t]; });
+  for (int t : std::span(order).first(std::min(most_rows, order.size())))
+    item.offending.push_back({t, kappas[t], centroid(mesh, t), fault[t]});
+}
+
 void list_triangles(PageItem& item, const Mesh& mesh, const std::vector<double>& kappas,
                     const Judgment* judgment) {
   std::vector<int> order(kappas.size());
@@ -171,14 +205,7 @@ void list_triangles(PageItem& item, const Mesh& mesh, const std::vector<double>&
                     [&](int a, int b) { return std::pair(kappas[a], a) < std::pair(kappas[b], b); });
   for (std::size_t i = 0; i < n; ++i)
     item.worst.push_back({order[i], kappas[order[i]], centroid(mesh, order[i]), ""});
-  if (!judgment) return;
-  const Surface faulty = offending_faces(judgment->contract, judgment->findings, mesh);
-  item.offending_triangles = faulty.face.get<int>("triangle");
-  const auto& fault = faulty.face.get<std::uint8_t>("fault");
-  for (std::size_t i = 0; i < std::min(most_rows, fault.size()); ++i) {
-    const int t = item.offending_triangles[i];
-    item.offending.push_back({t, kappas[t], centroid(mesh, t), offenses(fault[i])});
-  }
+  if (judgment) list_offending(item, mesh, kappas, *judgment);
 }
 
 std::string still_picture(const Surface& surface) {

@@ -90,6 +90,8 @@ def remesh(points, faces=None, *, size=None, patch=None, **options):
         options = {"data": "asked_size", **options}
     elif size is not None:
         options = {"size": size, **options}
+    if no := sorted({"output", "dry_run", "help", "version", "order"} & set(options)):
+        raise UsageError(f"{no[0]}: not from Python, which returns points and triangles")
     command = [_program(), "-", "-o", "-"]
     for name, value in options.items():
         if value is None or value is False:
@@ -122,7 +124,11 @@ def _arrays(mesh, faces):
     """Returns points and faces as arrays: of two arrays, or of a mesh of meshio or PyVista."""
     if faces is None:
         if hasattr(mesh, "cells_dict"):  # meshio
-            faces = mesh.cells_dict.get("triangle", np.empty((0, 3), int))
+            cells = {"triangle": np.empty((0, 3), int), "quad": np.empty((0, 4), int), **mesh.cells_dict}
+            if no := sorted(set(cells) - {"vertex", "line", "triangle", "quad"}):
+                raise InputError(f"expected triangles and quads of meshio, found {', '.join(no)}")
+            quads = np.asarray(cells["quad"])
+            faces = np.vstack([cells["triangle"], quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
         elif hasattr(mesh, "n_faces_strict") or hasattr(mesh, "triangulate"):  # PyVista: 3 a b c 3 a b c ...
             mesh = mesh.triangulate()
             faces = np.asarray(mesh.faces).reshape(-1, 4)[:, 1:]
