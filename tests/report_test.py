@@ -35,13 +35,15 @@ def make(folder, bin_dir):
         mremesh -q --triangles 8000 tree.ply -o good.ply --html good.html
         mreport good.ply --require topology,kappa=0.95 -o failed.html
         mclean -q tree.ply | mpartition -q | mmultiscale -q | mparam -q | mreport -o charts.html
+        mshape regions --nested 3 -q -o regions.ply
+        mremesh -q regions.ply -o nested.ply --html nested.html
         mshape tree --triangles 100000 -q -o large.ply
         mreport large.ply -o large.html
         mreport good.ply large.ply -o two.html
     """
     env = {**os.environ, "PATH": bin_dir + ":" + os.environ["PATH"]}
     subprocess.run(["bash", "-ec", commands], cwd=folder, env=env, check=True)
-    return {n: os.path.join(folder, n + ".html") for n in ("good", "failed", "charts", "large", "two")}
+    return {n: os.path.join(folder, n + ".html") for n in ("good", "failed", "charts", "nested", "large", "two")}
 
 
 def shown(browser, path):
@@ -67,6 +69,20 @@ def colors(browser, pane=0):
 
 def view(browser):
     return [float(x) for x in browser.run("document.querySelector('canvas').dataset.view").split()]
+
+
+def views(browser):
+    """Returns the view of both panes."""
+    return [[float(x) for x in c.split()] for c in browser.run("[...document.querySelectorAll('canvas')].map(c => c.dataset.view)")]
+
+
+def still(browser, find):
+    """Returns the place that a script finds, once it no longer changes: a busy machine may still scroll."""
+    place, last = browser.run(find), None
+    while place != last:
+        time.sleep(0.3)
+        place, last = browser.run(find), place
+    return place
 
 
 def settled(browser):
@@ -117,11 +133,7 @@ def test_view(browser, pages):
           gl.readPixels(x * c.width, c.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p);
           if (p[2] < 200) return [r.x + x * r.width + 2, r.y + r.height / 2];
         } })()"""
-    box, last = browser.run(find), None
-    while box != last:  # a busy machine may still scroll
-        time.sleep(0.3)
-        box, last = browser.run(find), box
-    browser.click(*box)
+    browser.click(*still(browser, find))
     browser.wait("document.getElementById('status').textContent.includes('kappa')")
 
 
@@ -138,6 +150,20 @@ def test_others(browser, pages):
     browser.wait("document.querySelectorAll('canvas')[1].dataset.drawn")
     ink, _ = colors(browser, 1)
     expect(f"charts are drawn: {ink}", ink > 0.03)
+    start = views(browser)
+    browser.run("document.querySelector('button[data-t]').click()")
+    settled(browser)
+    for before, after in zip(start, views(browser)):
+        expect(f"both views come near the triangle: {before} to {after}", after[3] < 0.2 * before[3])
+    shown(browser, pages["nested"])
+    for i in range(10):
+        t = browser.run(f"(b => (b.click(), b.dataset.t))(document.querySelectorAll('button[data-t]')[{i}])")
+        settled(browser)
+        browser.run("document.querySelector('canvas').scrollIntoView({block: 'center'})")
+        browser.click(*still(browser, """(() => { const r = document.querySelector('canvas').getBoundingClientRect();
+            return [r.x + r.width / 2, r.y + r.height / 2]; })()"""))
+        browser.wait("document.getElementById('status').textContent.includes('kappa')")
+        expect(f"triangle {t} is not hidden", f"triangle {t}:" in browser.run("document.getElementById('status').textContent"))
     took = shown(browser, pages["large"])
     size = os.path.getsize(pages["large"])
     print(f"100,000 triangles: {size / 1e6:.2f} MB, first picture after {took:.0f} ms")

@@ -236,7 +236,7 @@ std::string viewer_html(const Page& page) {
 <p id="status" role="status"></p>
 <p class="note keys" id="keys">Drag or use the arrow keys to rotate, with Shift to move; turn the wheel or press + and - to
 zoom; Home shows the whole; n and p go to the next and the previous bad triangle (one at fault; where there is none, one of
-the worst). Click a triangle for its figures.</p>
+the worst). What hides a triangle that was gone to is cut away. Click a triangle for its figures.</p>
 </div>
 <div id="stills"><p class="note" id="why">Scripts are needed to rotate the surface; this is a picture of it.</p>
 )";

@@ -146,10 +146,12 @@ void main() {
 const fragmentShader = `#version 300 es
 precision highp float;
 in vec3 shade; in vec3 bary; in vec3 eye; flat in int model; in float mark;
-uniform vec3 stretch; uniform bool wire; uniform bool flatView;
+uniform vec3 stretch; uniform float front; uniform bool wire; uniform bool flatView;
 out vec4 pixel;
 void main() {
-  vec3 p = eye * stretch, n = normalize(cross(dFdx(p), dFdy(p)));
+  vec3 p = eye * stretch;
+  if (-p.z > front) discard;
+  vec3 n = normalize(cross(dFdx(p), dFdy(p)));
   vec3 c = gl_FrontFacing ? shade : mix(shade, vec3(0.45), 0.75) * 0.7;
   c *= flatView ? 1.0 : 0.45 + 0.55 * abs(n.z);
   vec3 width = fwidth(bary), d = bary / width;  // pixels to each edge; component i: the edge across corner i
@@ -195,7 +197,7 @@ class Pane {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) || 'no shader');
     gl.useProgram(program);
-    this.at = Object.fromEntries(['view', 'stretch', 'wire', 'flatView'].map(n => [n, gl.getUniformLocation(program, n)]));
+    this.at = Object.fromEntries(['view', 'stretch', 'front', 'wire', 'flatView'].map(n => [n, gl.getUniformLocation(program, n)]));
     this.buffers = [gl.createBuffer(), gl.createBuffer()];
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(1, 1, 1, 1);
@@ -234,6 +236,11 @@ class Pane {
   axes() { return axes(this.camera); }
   // half the height of what is in view: more where the canvas is narrower than fit expects
   get half() { return this.camera.half * Math.max(1, least_aspect * this.canvas.clientHeight / this.canvas.clientWidth); }
+  // how far in front of its center the view begins: close to a triangle flown to, what would hide it is cut away
+  get front() {
+    const near = 1 - 2 * this.camera.half / whole(this.mesh).half;
+    return chosen?.flown && !this.own && near > 0 ? this.camera.half / (4 * near) : 1e30;
+  }
   draw() {
     if (!this.mesh) return;
     const gl = this.gl, c = this.canvas, mesh = this.mesh, cam = this.camera;
@@ -251,6 +258,7 @@ class Pane {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(this.at.view, false, m);
     gl.uniform3f(this.at.stretch, s * w / h, s, depth);
+    gl.uniform1f(this.at.front, this.front);
     gl.uniform1i(this.at.wire, $('wire').checked ? 1 : 0);
     gl.uniform1i(this.at.flatView, this.own ? 1 : 0);
     gl.drawArrays(gl.TRIANGLES, 0, 3 * mesh.triangles);
@@ -269,7 +277,7 @@ class Pane {
     const x = ((event.clientX - box.left) / box.width * 2 - 1) * this.half * box.width / box.height;
     const y = (1 - (event.clientY - box.top) / box.height * 2) * this.half;
     let best = -1, nearest = -Infinity;
-    const flat = new Float64Array(3 * mesh.vertices);
+    const flat = new Float64Array(3 * mesh.vertices), front = this.front;
     for (let v = 0; v < mesh.vertices; ++v) {
       const d = sub(place(mesh, v), cam.center);
       flat[3 * v] = dot(right, d) - x; flat[3 * v + 1] = dot(up, d) - y; flat[3 * v + 2] = dot(back, d);
@@ -279,7 +287,7 @@ class Pane {
       const a = flat[j] * flat[k + 1] - flat[j + 1] * flat[k], b = flat[k] * flat[i + 1] - flat[k + 1] * flat[i], c = flat[i] * flat[j + 1] - flat[i + 1] * flat[j];
       if (!(a >= 0 && b >= 0 && c >= 0 || a <= 0 && b <= 0 && c <= 0) || a + b + c === 0) continue;
       const z = (a * flat[i + 2] + b * flat[j + 2] + c * flat[k + 2]) / (a + b + c);
-      if (z > nearest) nearest = z, best = t;
+      if (z > nearest && z <= front) nearest = z, best = t;
     }
     return best;
   }
@@ -368,7 +376,7 @@ const same = mesh => chosen.faces === faces(mesh);
 
 function choose(mesh, t, fly) {
   const at = middle(mesh, t);
-  chosen = {...at, triangle: t, faces: faces(mesh), kind: mesh.kind};
+  chosen = {...at, triangle: t, faces: faces(mesh), kind: mesh.kind, flown: fly || chosen?.flown};
   const facts = mesh.columns.map(c => `${c.name} ${short(value(c, mesh.value[c.name][t]))}`);
   for (const l of mesh.labels) facts.push(`${l.name} ${l.names[mesh.label[l.name][t]]}`);
   const center = report.results[mesh.result].exact?.[t] || at.center;
