@@ -154,7 +154,7 @@ int drop_doubles(const Repair& r, const std::vector<Vec3>& points,
     else
       gone[u] = 1;
   }
-  drop_fins(r, points, sheet, gone);
+  if (sheets != CleanOptions::split) drop_fins(r, points, sheet, gone);
   if (!solids) {
     for (std::size_t t = 0; t < sheet.size(); ++t) gone[t] |= sheet[t] == second;
     sheet.assign(sheet.size(), single);
