@@ -127,11 +127,11 @@ Color label_color(int label) {
 }
 
 Color scale_color(double value) {
-  const double v = std::clamp(value, 0.0, 1.0);
-  auto byte = [](double x) { return (std::uint8_t)std::clamp(255 * x, 0.0, 255.0); };
-  return v < 0.5 ? Color{byte(0.85), byte(0.15 + 1.4 * v), byte(0.15)}
-                 : Color{byte(0.85 - 1.2 * (v - 0.5)), byte(0.85 - 0.3 * (v - 0.5)),
-                         byte(0.15 + 1.6 * (v - 0.5))};
+  constexpr Color stops[] = {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
+  const double y = 4 * std::clamp(value, 0.0, 1.0), i = std::min(std::floor(y), 3.0);
+  const Color &a = stops[(int)i], &b = stops[(int)i + 1];
+  auto byte = [&](int k) { return (std::uint8_t)std::lround(a[k] + (y - i) * (b[k] - a[k])); };
+  return {byte(0), byte(1), byte(2)};
 }
 
 }  // namespace meshpipe

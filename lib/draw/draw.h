@@ -42,7 +42,7 @@ Image side_by_side(const std::vector<Image>& images);
 
 /// A distinct, light color for a label.
 Color label_color(int label);
-/// Red (0) over yellow to blue (1): for kappa.
+/// Viridis, from dark blue (0) over green to yellow (1): for kappa.
 Color scale_color(double value);
 
 }  // namespace meshpipe
