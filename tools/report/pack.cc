@@ -8,6 +8,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
+#include "tools/report/page_meshes.h"
 
 namespace meshpipe {
 namespace {
@@ -45,33 +46,27 @@ void add_split(std::string& out, const std::vector<int>& values) {
     for (int x : values) out += (char)(x >> shift & 255);
 }
 
-/// Returns a coordinate of all vertices as differences from the one before, signs in the lowest bit.
-template <class Coordinate>
-std::vector<int> differences(const Order& order, const Coordinate& coordinate) {
+/// Returns numbers as differences from the one before, signs in the lowest bit.
+std::vector<int> differences(const std::vector<int>& values) {
   std::vector<int> codes;
   int last = 0;
-  for (int v : order.vertices) {
-    const int x = coordinate(v), d = (std::int16_t)(x - last);  // modulo 65536
+  for (int x : values) {
+    const int d = (std::int16_t)(x - last);  // modulo 65536
     codes.push_back((d << 1 ^ d >> 15) & 0xffff);
     last = x;
   }
   return codes;
 }
 
+/// A distance over the diagonal in sixteenths of its logarithm to base 2, plus 255; 255 above the diagonal.
+int spacing_code(double x) {
+  return x > 0 ? (int)std::lround(std::clamp(255 + 16 * std::log2(x), 0.0, 255.0)) : 0;
+}
+
 int quantized(const FigureColumn& c, double x) {
   auto f = [&](double y) { return c.logarithmic ? std::log(y) : y; };
   const double share = c.high > c.low ? (f(x) - f(c.low)) / (f(c.high) - f(c.low)) : 0;
   return share > 0 ? (int)std::lround(255 * std::min(share, 1.0)) : 0;
-}
-
-std::string deflated(const std::string& bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string out(size, 0);
-  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                bytes.size(), 9) != Z_OK)
-    throw CannotWrite("the mesh cannot be compressed");
-  out.resize(size);
-  return out;
 }
 
 }  // namespace
@@ -90,27 +85,44 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-PackedMesh pack(const Mesh& mesh, const std::vector<std::uint8_t>& model, const MeshColumns& columns) {
+std::string packed_bytes(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string out(size, 0);
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                bytes.size(), 9) != Z_OK)
+    throw CannotWrite("the mesh cannot be compressed");
+  out.resize(size);
+  return base64(out);
+}
+
+PackedMesh pack(const Mesh& mesh, const std::vector<std::uint8_t>& thick, const MeshColumns& columns,
+                const std::vector<Vec3>& dots) {
   const Order order(mesh);
+  std::vector<Vec3> points;
+  for (int v : order.vertices) points.push_back(mesh.points[v]);
+  points.insert(points.end(), dots.begin(), dots.end());
   Box box{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-  for (int v : order.vertices) box = join(box, {mesh.points[v], mesh.points[v]});
-  if (order.vertices.empty()) box = {};
+  for (Vec3 p : points) box = join(box, {p, p});
+  if (points.empty()) box = {};
   const Vec3 size = box.hi - box.lo, step = (1.0 / steps) * size;
   std::string bytes;
-  auto add_axis = [&](double Vec3::*axis) {
-    add_split(bytes, differences(order, [&](int v) {
-                const double s = step.*axis;
-                return s > 0 ? (int)std::lround((mesh.points[v].*axis - box.lo.*axis) / s) : 0;
-              }));
-  };
-  add_axis(&Vec3::x);
-  add_axis(&Vec3::y);
-  add_axis(&Vec3::z);
+  Mesh rounded{std::vector<Vec3>(mesh.points.size()), mesh.tris};
+  for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const double s = step.*axis;
+    std::vector<int> counts;
+    for (Vec3 p : points) counts.push_back(s > 0 ? (int)std::lround((p.*axis - box.lo.*axis) / s) : 0);
+    for (std::size_t i = 0; i < order.vertices.size(); ++i)
+      rounded.points[order.vertices[i]].*axis = box.lo.*axis + counts[i] * s;
+    add_split(bytes, differences(counts));
+  }
   bytes += order.corners;
-  for (std::size_t t = 0; t < mesh.tris.size(); ++t) bytes += (char)(model.empty() ? 0 : model[t] & 7);
+  for (std::size_t t = 0; t < mesh.tris.size(); ++t) bytes += (char)(thick.empty() ? 0 : thick[t] & 7);
+  for (double spacing : spacing_of(mesh, thick)) bytes += (char)spacing_code(spacing / norm(size));
   auto figures = nlohmann::ordered_json::array(), labels = figures;
   for (const FigureColumn& c : columns.figures) {
-    for (double x : c.values) bytes += (char)quantized(c, x);
+    for (int t = 0; t < (int)c.values.size(); ++t)
+      bytes +=
+          (char)(quantized(c, c.values[t]) - (c.of_triangle ? quantized(c, c.of_triangle(rounded, t)) : 0));
     figures.push_back({{"name", c.name}, {"low", c.low}, {"high", c.high}, {"log", c.logarithmic}});
   }
   for (const LabelColumn& c : columns.labels) {
@@ -123,13 +135,14 @@ PackedMesh pack(const Mesh& mesh, const std::vector<std::uint8_t>& model, const 
   }
   PackedMesh packed;
   packed.head = {{"vertices", order.vertices.size()},
+                 {"dots", dots.size()},
                  {"triangles", mesh.tris.size()},
                  {"low", {box.lo.x, box.lo.y, box.lo.z}},
                  {"step", {step.x, step.y, step.z}},
                  {"diagonal", norm(size)},
                  {"columns", figures},
                  {"labels", labels}};
-  packed.bytes = base64(deflated(bytes));
+  packed.bytes = packed_bytes(bytes);
   return packed;
 }
 

@@ -16,6 +16,9 @@ struct FigureColumn {
   std::vector<double> values;
   double low = 0, high = 1;
   bool logarithmic = false;
+  /// If not null, what gives the values: what viewer.js computes from the rounded positions is then corrected
+  /// by bytes that are almost all 0.
+  double (*of_triangle)(const Mesh&, int) = nullptr;
 };
 
 /// A name for each triangle: names[values[t]].
@@ -37,8 +40,13 @@ struct PackedMesh {
 };
 
 /// Packs a mesh. Triangles keep their numbers; positions are rounded to 1/65535 of the bounding box.
-/// `model` (bits of edges) may be empty. Requires: every column has a value for each triangle.
-PackedMesh pack(const Mesh& mesh, const std::vector<std::uint8_t>& model, const MeshColumns& columns);
+/// `thick` (bits of edges to draw thick) may be empty. `dots` are more points to draw, on the mesh.
+/// Requires: every column has a value for each triangle.
+PackedMesh pack(const Mesh& mesh, const std::vector<std::uint8_t>& thick, const MeshColumns& columns,
+                const std::vector<Vec3>& dots = {});
+
+/// Returns bytes deflated, in base64.
+std::string packed_bytes(const std::string& bytes);
 
 /// Returns bytes in base64.
 std::string base64(std::string_view bytes);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <sstream>
 
 #include "formats/text.h"
@@ -29,11 +30,13 @@ class HtmlTable {
     out_ += "</tr></thead><tbody>\n";
   }
   /// Adds a row of cells, which are HTML.
-  void row(const std::vector<std::string>& cells) {
-    out_ += "<tr><th scope=\"row\">" + cells[0] + "</th>";
+  void row(const std::vector<std::string>& cells) { add(row_html(cells)); }
+  void add(const std::string& row) { out_ += row; }
+  std::string row_html(const std::vector<std::string>& cells) const {
+    std::string html = "<tr><th scope=\"row\">" + cells[0] + "</th>";
     for (std::size_t i = 1; i < cells.size(); ++i)
-      out_ += (numbers_[i] ? "<td class=\"n\">" : "<td>") + cells[i] + "</td>";
-    out_ += "</tr>\n";
+      html += (numbers_[i] ? "<td class=\"n\">" : "<td>") + cells[i] + "</td>";
+    return html + "</tr>\n";
   }
   std::string finish() { return std::move(out_) + "</tbody></table>\n"; }
 
@@ -47,10 +50,10 @@ std::string scrolled(const std::string& label, const std::string& html) {
          html + "</div>\n";
 }
 
-/// A button that leads the viewer to a triangle.
+/// A button that leads the viewer to a triangle; viewer.js enables it once there is a view.
 std::string button(std::size_t item, int triangle) {
   const std::string t = std::to_string(triangle);
-  return "<button type=\"button\" data-result=\"" + std::to_string(item) + "\" data-t=\"" + t +
+  return "<button type=\"button\" disabled data-result=\"" + std::to_string(item) + "\" data-t=\"" + t +
          "\" aria-label=\"Show triangle " + t + "\">" + t + "</button>";
 }
 
@@ -163,15 +166,25 @@ std::string worst_html(const PageItem& item, std::size_t number) {
 
 std::string offending_html(const PageItem& item, std::size_t number) {
   if (item.offending.empty()) return "";
-  const std::size_t all = item.offending_triangles.size();
+  const std::size_t all = item.offending_triangles.size(), rows = item.offending.size();
   HtmlTable table("Triangles at fault: " + std::to_string(all), {"triangle", "kappa#", "center", "fault"},
                   "faults");
-  for (const ListedTriangle& t : item.offending)
-    table.row({button(number, t.triangle), text_of(t.kappa, 4), shown(t.center), t.why});
+  std::string rest;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const ListedTriangle& t = item.offending[i];
+    const std::string row =
+        table.row_html({button(number, t.triangle), text_of(t.kappa, 4), shown(t.center), t.why});
+    if (i < first_rows)
+      table.add(row);
+    else
+      rest += row;
+  }
   std::string html = table.finish();
-  if (all > item.offending.size())
-    html += "<button type=\"button\" class=\"more\" data-all=\"" + std::to_string(number) + "\">Show all " +
-            std::to_string(all) + "</button>\n";
+  if (!rest.empty())
+    html += "<button type=\"button\" class=\"more\" disabled data-all=\"" + std::to_string(number) +
+            "\">Show " + (rows < all ? "the first " : "all ") + std::to_string(rows) +
+            "</button>\n<script type=\"text/plain\" id=\"rows" + std::to_string(number) + "\">" +
+            packed_bytes(rest) + "</script>\n";
   return "<section>" + scrolled("Triangles at fault in " + item.name, html) + "</section>";
 }
 
@@ -236,15 +249,16 @@ std::string viewer_html(const Page& page) {
 <p id="status" role="status"></p>
 <p class="note keys" id="keys">Drag or use the arrow keys to rotate, with Shift to move; turn the wheel or press + and - to
 zoom; Home shows the whole; n and p go to the next and the previous bad triangle (one at fault; where there is none, one of
-the worst). What hides a triangle that was gone to is cut away. Click a triangle for its figures.</p>
+the worst). Model edges are thick, and fade where they would hide the surface. What hides a triangle that was gone to is cut away. Click a triangle for its figures.</p>
 </div>
-<div id="stills"><p class="note" id="why">Scripts are needed to rotate the surface; this is a picture of it.</p>
+<div id="stills"><p class="note" id="why">Scripts are needed to rotate the surface and for the buttons below; this is a picture of it.</p>
 )";
   for (const PageItem& item : page.items)
     if (!item.picture.empty())
       html += "<figure><img alt=\"" + escaped(item.name) + ", colored by kappa\" src=\"" +
               data_uri("image/png", item.picture) + "\"><figcaption>" + escaped(item.name) +
-              ", colored by kappa: red 0, blue 1</figcaption></figure>\n";
+              ", colored by kappa: dark 0, light 1" + (item.offending.empty() ? "" : "; red: at fault") +
+              "</figcaption></figure>\n";
   return html + "</div></section>\n";
 }
 
@@ -294,16 +308,16 @@ std::string data_html(const Page& page) {
     auto worst = nlohmann::ordered_json::array();
     for (const ListedTriangle& t : page.items[i].worst) worst.push_back(t.triangle);
     auto exact = nlohmann::ordered_json::object();
-    for (const auto* list : {&page.items[i].worst, &page.items[i].offending})
-      for (const ListedTriangle& t : *list)
+    const auto& faulty = page.items[i].offending;
+    for (const auto& list :
+         {std::span(page.items[i].worst), std::span(faulty).first(std::min(first_rows, faulty.size()))})
+      for (const ListedTriangle& t : list)
         exact[std::to_string(t.triangle)] = {t.center.x, t.center.y, t.center.z};
     results.push_back({{"worst", worst}, {"offending", page.items[i].offending_triangles}, {"exact", exact}});
-    const char* surface = "result";
     for (const PackedMesh& m : page.items[i].meshes) {
       nlohmann::ordered_json head = m.head;
       head["id"] = "mesh" + std::to_string(meshes.size());
       head["result"] = i;
-      if (head["kind"] == "charts") head["of"] = surface;
       blocks += "<script type=\"text/plain\" id=\"mesh" + std::to_string(meshes.size()) + "\">" + m.bytes +
                 "</script>\n";
       meshes.push_back(std::move(head));
@@ -372,6 +386,10 @@ std::string html_of(const Page& page) {
   if (!page.error.empty())
     html += "<p class=\"verdict missed\">The run ended early, with " + escaped(page.error) + "</p>\n";
   html += page.items.size() == 1 ? verdict_html(page.items[0]) : overview_html(page);
+  html +=
+      "<p class=\"note\">Kappa measures the shape of a triangle by its angles a, b, c as 4 sin a sin b sin c "
+      "/ (sin a + "
+      "sin b + sin c): 1 where it is equilateral, 0 where it has no area.</p>\n";
   html += viewer_html(page);
   for (std::size_t i = 0; i < page.items.size(); ++i)
     html += item_html(page.items[i], i, page.items.size() > 1);

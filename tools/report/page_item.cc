@@ -11,6 +11,7 @@
 #include "formats/stream/line_tables.h"
 #include "lib/core/bvh.h"
 #include "lib/draw/draw.h"
+#include "tools/report/page_meshes.h"
 #include "tools/report/png.h"
 #include "tools/report/verdict.h"
 
@@ -21,6 +22,9 @@ constexpr int worst_count = 10;
 constexpr int picture_width = 720, picture_height = 540;  ///< pixels
 /// Mesh lines of more triangles than this would fill the still picture.
 constexpr std::size_t most_drawn_lines = 20000;
+/// Pixels between model edges that are closer in the still picture would be few.
+constexpr double least_spacing = 8;
+constexpr Color fault_color{226, 41, 41};  ///< as in viewer.js
 
 double smallest_angle(const Mesh& mesh, int t) {
   const Tri& v = mesh.tris[t];
@@ -61,11 +65,10 @@ LabelColumn labels_of(const std::string& name, const std::vector<int>& values,
 MeshColumns columns_of(const Surface& surface, const std::function<std::string(int)>& patch_name) {
   const int n = (int)surface.tris.size();
   FigureColumn kappas{"kappa", {}}, angles{"smallest angle", {}, 0, 60}, sizes{"size", {}, HUGE_VAL, 0, true};
-  for (int t = 0; t < n; ++t) {
-    kappas.values.push_back(kappa_of(surface, t));
-    angles.values.push_back(smallest_angle(surface, t));
-    const double size = mean_edge(surface, t);
-    sizes.values.push_back(size);
+  kappas.of_triangle = kappa_of, angles.of_triangle = smallest_angle, sizes.of_triangle = mean_edge;
+  for (FigureColumn* c : {&kappas, &angles, &sizes})
+    for (int t = 0; t < n; ++t) c->values.push_back(c->of_triangle(surface, t));
+  for (double size : sizes.values) {
     if (size > 0) sizes.low = std::min(sizes.low, size);
     sizes.high = std::max(sizes.high, size);
   }
@@ -82,55 +85,39 @@ MeshColumns columns_of(const Surface& surface, const std::function<std::string(i
   return columns;
 }
 
-/// Lays the charts of a surface in rows, the highest first, each as large as its part. Triangles keep their
-/// numbers; those of no chart have no area.
-Mesh flat_charts(const Surface& surface, const std::vector<Chart>& charts) {
-  struct Sheet {
-    Vec2 low, size;
-    double scale = 1;
-  };
-  std::vector<Sheet> sheets;
-  double area = 0;
-  for (const Chart& c : charts) {
-    Vec2 low = c.uv.at(0), high = low;
-    double plane = 0;
-    for (Vec2 p : c.uv)
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)},
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    for (const Tri& t : c.mesh.tris) plane += 0.5 * cross(c.uv[t[1]] - c.uv[t[0]], c.uv[t[2]] - c.uv[t[0]]);
-    const double scale = plane > 0 ? std::sqrt(total_area(c.mesh) / plane) : 1;
-    sheets.push_back({low, scale * (high - low), scale});
-    area += sheets.back().size.x * sheets.back().size.y;
-  }
-  std::vector<int> order(charts.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return sheets[a].size.y > sheets[b].size.y; });
-  const double gap = 0.03 * std::sqrt(area), width = 1.5 * std::sqrt(area);
-  Mesh flat{{}, std::vector<Tri>(surface.tris.size(), Tri{0, 0, 0})};
-  double x = 0, y = 0, row = 0;
-  for (int k : order) {
-    const Sheet& s = sheets[k];
-    if (x > 0 && x + s.size.x > width) x = 0, y -= row + gap, row = 0;
-    row = std::max(row, s.size.y);
-    const int first = (int)flat.points.size();
-    for (Vec2 p : charts[k].uv)
-      flat.points.push_back({x + s.scale * (p.x - s.low.x), y - s.size.y + s.scale * (p.y - s.low.y), 0});
-    const SubMesh& m = charts[k].mesh;
-    for (std::size_t t = 0; t < m.tris.size(); ++t)
-      for (int i = 0; i < 3; ++i) flat.tris[m.face[t]][i] = first + m.tris[t][i];
-    x += s.size.x + gap;
-  }
-  return flat;
-}
-
-void add_mesh(PageItem& item, const char* kind, const Mesh& mesh, const std::vector<std::uint8_t>& model,
-              const MeshColumns& columns) {
+void add_mesh(PageItem& item, const char* kind, const Mesh& mesh, const std::vector<std::uint8_t>& thick,
+              const MeshColumns& columns, const std::vector<Vec3>& dots = {}) {
   if (mesh.tris.empty()) return;
-  PackedMesh packed = pack(mesh, model, columns);
+  PackedMesh packed = pack(mesh, thick, columns, dots);
   packed.head["name"] = item.name + (item.meshes.empty() ? "" : std::string(": ") + kind);
   packed.head["kind"] = kind;
   item.meshes.push_back(std::move(packed));
+}
+
+/// Adds the meshes that the view shows: the result first, or the intermediate.
+void add_meshes(PageItem& item, const Stream& stream, const MeshColumns& columns, const Judgment* judgment) {
+  const Surface& surface = stream.surface;
+  const bool lines = stream.find("line_use") && !stream.find("ref_vertex");
+  add_mesh(item, "result", surface, lines ? line_edges(surface) : model_of(surface), columns,
+           lines ? line_points(stream) : std::vector<Vec3>());
+  if (judgment) {
+    const Surface before = before_cuts(judgment->reference);
+    const std::size_t n = before.tris.size();
+    if (n <= most_reference)
+      add_mesh(item, "reference", before, model_of(before), columns_of(before, namer(stream)));
+    else
+      item.warnings.push_back("The view leaves out the surface that it was made from: it has " +
+                              std::to_string(n) + " triangles, more than " + std::to_string(most_reference) +
+                              ".");
+  }
+  if (!stream.find("chart_vertex")) return;
+  const std::vector<Chart> charts = read_charts(stream);
+  if (lines && stream.find("chart_face")) {
+    const PlaneMeshes plane = plane_meshes(stream, charts);
+    add_mesh(item, "plane meshes", {plane.flat, plane.space.tris}, model_of(plane.space),
+             columns_of(plane.space, namer(stream)));
+  }
+  add_mesh(item, "charts", flat_charts(surface, charts), {}, {});
 }
 
 std::vector<PatchRow> patch_rows(const Surface& surface, const std::function<std::string(int)>& name) {
@@ -208,14 +195,22 @@ void list_triangles(PageItem& item, const Mesh& mesh, const std::vector<double>&
   if (judgment) list_offending(item, mesh, kappas, *judgment);
 }
 
-std::string still_picture(const Surface& surface) {
+/// Draws what the viewer shows at first, in its colors.
+std::string still_picture(const Surface& surface, const std::vector<int>& faulty) {
   View view;
   view.edges = surface.tris.size() <= most_drawn_lines;
   Frame frame;
   add_to_frame(frame, surface, view);
   std::vector<Color> colors;
   for (int t = 0; t < (int)surface.tris.size(); ++t) colors.push_back(scale_color(kappa_of(surface, t)));
-  return write_png(draw_mesh(surface, colors, model_of(surface), view, frame, picture_width, picture_height));
+  for (int t : faulty) colors[t] = fault_color;
+  const double pixel =
+      std::max((frame.right - frame.left) / picture_width, (frame.high - frame.low) / picture_height);
+  std::vector<std::uint8_t> thick = model_of(surface);
+  const std::vector<double> spacing = spacing_of(surface, thick);
+  for (std::size_t t = 0; t < thick.size(); ++t)
+    if (spacing[t] < least_spacing * pixel) thick[t] = 0;
+  return write_png(draw_mesh(surface, colors, thick, view, frame, picture_width, picture_height));
 }
 
 }  // namespace
@@ -254,13 +249,8 @@ PageItem page_item(const Stream& stream, const std::string& name, const Judgment
     item.report.erase("topology_same");
   }
   list_triangles(item, surface, columns.figures[0].values, judgment);
-  if (!surface.tris.empty()) item.picture = still_picture(surface);
-  add_mesh(item, "result", surface, model_of(surface), columns);
-  if (judgment && judgment->reference.tris.size() <= most_reference)
-    add_mesh(item, "reference", judgment->reference, model_of(judgment->reference),
-             columns_of(judgment->reference, patch_name));
-  if (stream.find("chart_vertex"))
-    add_mesh(item, "charts", flat_charts(surface, read_charts(stream)), model_of(surface), columns);
+  if (!surface.tris.empty()) item.picture = still_picture(surface, item.offending_triangles);
+  add_meshes(item, stream, columns, judgment);
   return item;
 }
 

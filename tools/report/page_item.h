@@ -42,7 +42,7 @@ struct PageItem {
   std::vector<std::string> warnings;
   std::vector<PatchRow> patches;
   std::vector<ListedTriangle> worst;      ///< up to ten, the worst first
-  std::vector<ListedTriangle> offending;  ///< up to most_rows
+  std::vector<ListedTriangle> offending;  ///< up to most_rows, the worst first
   std::vector<int> offending_triangles;   ///< all
   std::vector<Provenance> history;
   std::string histograms, picture;  ///< SVG, PNG
@@ -50,8 +50,8 @@ struct PageItem {
   nlohmann::ordered_json report;    ///< as mcheck --json
 };
 
-/// Offending triangles that are rows of the page's table at first.
-constexpr std::size_t most_rows = 100;
+/// Offending triangles that can be rows of the page's table, and that are at first.
+constexpr std::size_t most_rows = 5000, first_rows = 100;
 /// Triangles of a reference that is still shown: it may be much larger than the result.
 constexpr std::size_t most_reference = 150000;
 

@@ -5,19 +5,24 @@
 (() => {
 const $ = id => document.getElementById(id);
 const report = JSON.parse($('data').textContent);
-const meshes = report.meshes;  // name, result (its number), kind (result, reference, charts), counts, box, columns, labels
+// name, result (its number), kind (result, reference, plane meshes, charts), counts, box, columns, labels
+const meshes = report.meshes, flat = mesh => mesh.kind === 'charts' || mesh.kind === 'plane meshes';
+// charts have the triangles of the mesh that they map
+const base = mesh => mesh.kind === 'charts' ? meshes.find(m => m.result === mesh.result && m.kind === 'result') : mesh;
 const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 const say = text => { $('status').textContent = text; };
 const short = x => Number(x.toPrecision(4)).toString();
 
 // ---- meshes: deflated, in base64 (tools/report/pack.cc writes them)
 
-async function unpack(mesh) {
-  const text = atob($(mesh.id).textContent), packed = new Uint8Array(text.length);
+function inflated(id) {
+  const text = atob($(id).textContent), packed = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
-  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
-  const bytes = new Uint8Array(await new Response(plain).arrayBuffer());
-  const n = mesh.vertices, m = mesh.triangles;
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate')));
+}
+async function unpack(mesh) {
+  const bytes = new Uint8Array(await (await inflated(mesh.id)).arrayBuffer());
+  const n = mesh.vertices + mesh.dots, m = mesh.triangles;
   let at = 0;
   const points = [0, 1, 2].map(() => {
     const axis = new Uint16Array(n);
@@ -35,17 +40,50 @@ async function unpack(mesh) {
     corners[i] = next - code;
     if (code === 0) ++next;
   }
+  mesh.points = points;
+  mesh.corners = corners;
   const take = () => bytes.subarray(at, at += m);
-  mesh.model = take();
+  mesh.thick = take();
+  mesh.spacing = take();
   mesh.value = {};
-  for (const c of mesh.columns) mesh.value[c.name] = take();
+  const measures = measured(mesh);
+  for (const c of mesh.columns) mesh.value[c.name] = corrected(c, measures, take());
   mesh.label = {};
   for (const l of mesh.labels) {
     const low = take(), high = take();
     mesh.label[l.name] = Uint16Array.from(low, (x, i) => x | high[i] << 8);
   }
-  mesh.points = points;
-  mesh.corners = corners;
+  if (base(mesh) === mesh) return;
+  if (!base(mesh).corners) await unpack(base(mesh));
+  for (const key of ['thick', 'spacing', 'columns', 'labels', 'value', 'label']) mesh[key] = base(mesh)[key];
+}
+// figures that follow from the positions, from the sides of a triangle and twice its area; bytes correct them
+const figures = {
+  kappa: (a, b, c, area) => 4 * area * area / (a * b * c * (a + b + c)),
+  'smallest angle': (a, b, c, area) => Math.asin(Math.min(1, area * Math.min(a, b, c) / (a * b * c))) * 180 / Math.PI,
+  size: (a, b, c) => (a + b + c) / 3,
+};
+function measured(mesh) {  // three sides and twice the area of each triangle
+  const m = mesh.triangles, all = new Float64Array(4 * m), axes = mesh.points.map((p, k) => Float64Array.from(p, x => mesh.low[k] + x * mesh.step[k]));
+  const d = new Float64Array(9);
+  for (let t = 0; t < m; ++t) {
+    for (let i = 0; i < 3; ++i) {
+      const v = mesh.corners[3 * t + i], w = mesh.corners[3 * t + (i + 1) % 3];
+      for (let k = 0; k < 3; ++k) d[3 * i + k] = axes[k][w] - axes[k][v];
+      all[4 * t + i] = Math.sqrt(d[3 * i] ** 2 + d[3 * i + 1] ** 2 + d[3 * i + 2] ** 2);
+    }
+    all[4 * t + 3] = Math.sqrt((d[1] * d[5] - d[2] * d[4]) ** 2 + (d[2] * d[3] - d[0] * d[5]) ** 2 + (d[0] * d[4] - d[1] * d[3]) ** 2);
+  }
+  return all;
+}
+function corrected(c, measures, bytes) {
+  const figure = figures[c.name], f = c.log ? Math.log : x => x, low = f(c.low), scale = f(c.high) - low;
+  if (!figure) return bytes;
+  return bytes.map((byte, t) => {
+    const i = 4 * t, x = figure(measures[i], measures[i + 1], measures[i + 2], measures[i + 3]);
+    const share = scale > 0 ? (f(x) - low) / scale : 0;
+    return byte + (share > 0 ? Math.round(255 * Math.min(share, 1)) : 0);
+  });
 }
 
 const place = (mesh, v) => [0, 1, 2].map(k => mesh.low[k] + mesh.points[k][v] * mesh.step[k]);
@@ -85,7 +123,7 @@ function range(name) {  // of all meshes in sight, so that equal colors are equa
   return {low: Math.min(...found.map(c => c.low)), high: Math.max(...found.map(c => c.high)), log: found[0]?.log};
 }
 function colors(mesh) {  // four bytes for each corner
-  const m = mesh.triangles, rgba = new Uint8Array(12 * m), c = column(mesh, colorBy), labels = mesh.labels.find(l => l.name === colorBy);
+  const m = mesh.triangles, rgba = new Uint8Array(12 * m + 4 * mesh.dots), c = column(mesh, colorBy), labels = mesh.labels.find(l => l.name === colorBy);
   let table = null, index = null;
   if (c) {
     const all = range(colorBy), f = all.log ? Math.log : x => x;
@@ -127,30 +165,40 @@ function legend() {
     if ((names[colorBy] || []).length > 24) box.append(`and ${names[colorBy].length - 24} more`);
   }
   if (panes.some(p => p.mesh?.kind === 'result' && report.results[p.mesh.result].offending.length)) add(`rgb(${fault})`, 'at fault');
+  if (panes.some(p => p.mesh?.dots)) add('rgb(255 170 0)', 'points of lines');
 }
 
 // ---- drawing
 
 const vertexShader = `#version 300 es
 in vec4 position; in vec4 color;
-uniform mat4 view;
-out vec3 shade; out vec3 bary; out vec3 eye; flat out int model; out float mark;
+uniform mat4 view; uniform float dots;
+out vec3 shade; out vec3 bary; out vec3 eye; flat out int thick; flat out float spacing; out float mark;
 void main() {
   int w = int(position.w + 0.5), i = w & 3;
   bary = vec3(i == 0, i == 1, i == 2);
-  model = w >> 2;
+  thick = w >> 2 & 7;
+  spacing = exp2((float(w >> 5) - 255.0) / 16.0);  // of thick edges, over the diagonal
   shade = color.rgb; mark = color.a;
   gl_Position = view * vec4(position.xyz, 1);
   eye = gl_Position.xyz;
+  gl_PointSize = dots;
+  if (dots > 0.0) gl_Position.z -= 0.002;  // in front of the surface that they lie on
 }`;
 const fragmentShader = `#version 300 es
 precision highp float;
-in vec3 shade; in vec3 bary; in vec3 eye; flat in int model; in float mark;
-uniform vec3 stretch; uniform float front; uniform bool wire; uniform bool flatView;
+in vec3 shade; in vec3 bary; in vec3 eye; flat in int thick; flat in float spacing; in float mark;
+uniform vec3 stretch; uniform float front, dots, pixels; uniform bool wire; uniform bool flatView;
 out vec4 pixel;
 void main() {
   vec3 p = eye * stretch;
   if (-p.z > front) discard;
+  if (dots > 0.0) {
+    float r = 2.0 * length(gl_PointCoord - 0.5);
+    if (r > 1.0) discard;
+    pixel = vec4(r > 0.7 ? vec3(0) : vec3(1, 0.67, 0), 1);
+    return;
+  }
   vec3 n = normalize(cross(dFdx(p), dFdy(p)));
   vec3 c = gl_FrontFacing ? shade : mix(shade, vec3(0.45), 0.75) * 0.7;
   c *= flatView ? 1.0 : 0.45 + 0.55 * abs(n.z);
@@ -158,13 +206,14 @@ void main() {
   float height = 1.0 / max(width.x, max(width.y, width.z));  // of the triangle, in pixels
   if (wire) {
     float line = 1.0 - smoothstep(0.2, 1.2, min(d.x, min(d.y, d.z)));
-    c = mix(c, vec3(0.05), 0.75 * line * clamp((height - 3.0) / 8.0, 0.0, 1.0));
+    c = mix(c, vec3(0.05), 0.75 * line * clamp((height - 2.0) / 6.0, 0.0, 1.0));
   }
-  float strong = 1e3;  // model edges; bit i: from corner i to the next
-  if ((model & 1) != 0) strong = min(strong, d.z);
-  if ((model & 2) != 0) strong = min(strong, d.x);
-  if ((model & 4) != 0) strong = min(strong, d.y);
-  c = mix(c, vec3(0), 1.0 - smoothstep(1.0, 2.0, strong));
+  float strong = 1e3;  // distance to thick edges; bit i: from corner i to the next
+  if ((thick & 1) != 0) strong = min(strong, d.z);
+  if ((thick & 2) != 0) strong = min(strong, d.x);
+  if ((thick & 4) != 0) strong = min(strong, d.y);
+  float share = clamp(spacing * pixels * (flatView ? 1.0 : abs(n.z)) / 16.0, 0.0, 1.0);  // where they are dense, thinner and fainter
+  c = mix(c, vec3(0), min(1.0, 2.0 * share) * (1.0 - smoothstep(0.0, 1.0, strong - 1.5 * share + 0.5)));
   if (mark > 0.5) c = mix(mix(c, vec3(0.82, 0, 0.56), 0.25), vec3(0.82, 0, 0.56), 1.0 - smoothstep(2.0, 3.5, min(d.x, min(d.y, d.z))));
   pixel = vec4(c, 1);
 }`;
@@ -197,7 +246,7 @@ class Pane {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) || 'no shader');
     gl.useProgram(program);
-    this.at = Object.fromEntries(['view', 'stretch', 'front', 'wire', 'flatView'].map(n => [n, gl.getUniformLocation(program, n)]));
+    this.at = Object.fromEntries(['view', 'stretch', 'front', 'wire', 'flatView', 'dots', 'pixels'].map(n => [n, gl.getUniformLocation(program, n)]));
     this.buffers = [gl.createBuffer(), gl.createBuffer()];
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(1, 1, 1, 1);
@@ -212,13 +261,18 @@ class Pane {
     if (!mesh) return;
     if (!mesh.corners) await unpack(mesh);
     this.mesh = mesh;
-    this.own = mesh.kind === 'charts' ? {...whole(mesh), azimuth: -90, elevation: 90} : null;
+    this.own = flat(mesh) ? {...whole(mesh), azimuth: -90, elevation: 90} : null;
     this.canvas.setAttribute('aria-label', `${mesh.name}: ${mesh.triangles} triangles`);
-    const m = mesh.triangles, data = new Uint16Array(12 * m), [x, y, z] = mesh.points;
-    for (let h = 0; h < 3 * m; ++h) {
-      const v = mesh.corners[h];
-      data.set([x[v], y[v], z[v], h % 3 | mesh.model[Math.floor(h / 3)] << 2], 4 * h);
+    const m = mesh.triangles, data = new Uint16Array(12 * m + 4 * mesh.dots), [x, y, z] = mesh.points;
+    for (let h = 0; h < 3 * m + mesh.dots; ++h) {
+      const v = h < 3 * m ? mesh.corners[h] : mesh.vertices + h - 3 * m, t = Math.floor(h / 3);
+      data[4 * h] = x[v];
+      data[4 * h + 1] = y[v];
+      data[4 * h + 2] = z[v];
+      data[4 * h + 3] = h % 3 | mesh.thick[t] << 2 | mesh.spacing[t] << 5;
     }
+    const gaps = Array.from({length: mesh.dots}, (_, i) => Math.hypot(...sub(place(mesh, mesh.vertices + i), place(mesh, mesh.vertices + Math.max(0, i - 1)))));
+    this.apart = gaps.sort((a, b) => a - b)[mesh.dots >> 1] || 0;  // points of lines, as a rule
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[0]);
     gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
@@ -261,7 +315,11 @@ class Pane {
     gl.uniform1f(this.at.front, this.front);
     gl.uniform1i(this.at.wire, $('wire').checked ? 1 : 0);
     gl.uniform1i(this.at.flatView, this.own ? 1 : 0);
+    gl.uniform1f(this.at.pixels, base(mesh).diagonal * h / (2 * s));
+    gl.uniform1f(this.at.dots, 0);
     gl.drawArrays(gl.TRIANGLES, 0, 3 * mesh.triangles);
+    gl.uniform1f(this.at.dots, Math.min(Math.max(0.2 * this.apart * h / s, 2 * ratio), 7 * ratio));
+    if (mesh.dots) gl.drawArrays(gl.POINTS, 3 * mesh.triangles, mesh.dots);
     this.mark.hidden = !(chosen && same(mesh));
     if (!this.mark.hidden) {
       const d = sub(chosen.kind === mesh.kind ? chosen.center : middle(mesh, chosen.triangle).center, cam.center);
@@ -356,7 +414,7 @@ function recolor() { for (const p of panes) p.recolor(); legend(); redraw(); }
 const least_aspect = 1.2;
 function fit(mesh) {
   const size = mesh.step.map(s => 32767.5 * s);
-  if (mesh.kind === 'charts') return Math.max(size[1], size[0] / least_aspect);
+  if (flat(mesh)) return Math.max(size[1], size[0] / least_aspect);
   const rows = axes({azimuth: 30, elevation: 20}), extent = r => rows[r].reduce((sum, x, k) => sum + Math.abs(x) * size[k], 0);
   return Math.max(extent(1), extent(0) / least_aspect);
 }
@@ -371,7 +429,7 @@ function reset() {
   recolor();
 }
 // a triangle of charts is that of the surface they map, and the other way round
-const faces = mesh => `${mesh.result} ${mesh.kind === 'charts' ? mesh.of : mesh.kind}`;
+const faces = mesh => meshes.indexOf(base(mesh));
 const same = mesh => chosen.faces === faces(mesh);
 
 function choose(mesh, t, fly) {
@@ -379,8 +437,8 @@ function choose(mesh, t, fly) {
   chosen = {...at, triangle: t, faces: faces(mesh), kind: mesh.kind, flown: fly || chosen?.flown};
   const facts = mesh.columns.map(c => `${c.name} ${short(value(c, mesh.value[c.name][t]))}`);
   for (const l of mesh.labels) facts.push(`${l.name} ${l.names[mesh.label[l.name][t]]}`);
-  const center = report.results[mesh.result].exact?.[t] || at.center;
-  say(`${mesh.name}, triangle ${t}: ${facts.join(', ')}` + (mesh.kind === 'charts' ? '' : `, at (${center.map(short).join(' ')})`));
+  const center = mesh.kind === 'result' && report.results[mesh.result].exact[t] || at.center;
+  say(`${mesh.name}, triangle ${t}: ${facts.join(', ')}` + (flat(mesh) ? '' : `, at (${center.map(short).join(' ')})`));
   recolor();
   if (fly) for (const p of panes) if (p.mesh && same(p.mesh)) flyTo(p, p.mesh === mesh ? at : middle(p.mesh, t));
 }
@@ -450,7 +508,7 @@ async function begin() {
   camera = whole(meshes[0]);
   const kinds = new Set(meshes.flatMap(m => [...m.columns, ...m.labels].map(c => c.name)));
   for (const k of [...kinds, 'nothing']) $('color').append(new Option(k, k));
-  const charts = meshes.some(m => m.kind === 'charts');
+  const charts = meshes.some(flat);
   if (charts && kinds.has('part')) $('color').value = 'part';
   colorBy = $('color').value;
   recolor();
@@ -465,32 +523,24 @@ async function begin() {
   $('prev').addEventListener('click', () => step(-1));
   addEventListener('resize', redraw);
   addEventListener('beforeprint', () => { for (const p of panes) if (p.mesh) { p.draw(); p.still.src = p.canvas.toDataURL(); } });
-  document.addEventListener('click', e => {
-    const b = e.target.closest('button[data-t]');
-    if (b) go(+b.dataset.result, +b.dataset.t);
-    const all = e.target.closest('button[data-all]');
-    if (all) rest(all);
-  });
+  for (const b of document.querySelectorAll('button[data-t]')) b.disabled = false;
 }
-// the rows of a table of triangles that the page leaves out
+// the rows of a table of triangles that the page holds packed
 async function rest(button) {
-  const result = +button.dataset.all, r = report.results[result], mesh = meshes.find(m => m.result === result && m.kind === 'result');
-  if (!mesh.corners) await unpack(mesh);
-  const body = button.closest('section').querySelector('table.faults tbody'), kappa = column(mesh, 'kappa');
-  for (const t of r.offending.slice(body.rows.length)) {
-    const row = body.insertRow(), go = document.createElement('button');
-    Object.assign(go, {textContent: t, type: 'button'});
-    Object.assign(go.dataset, {result, t});
-    row.insertCell().append(go);
-    row.insertCell().textContent = short(value(kappa, mesh.value.kappa[t]));
-    row.insertCell().textContent = middle(mesh, t).center.map(short).join(' ');
-    row.insertCell();
-  }
+  button.closest('section').querySelector('table.faults tbody').insertAdjacentHTML('beforeend', await (await inflated('rows' + button.dataset.all)).text());
+  for (const b of document.querySelectorAll('button[data-t]')) b.disabled = $('viewer').hidden;
   button.remove();
 }
+document.addEventListener('click', e => {
+  const b = e.target.closest('button[data-t]');
+  if (b) go(+b.dataset.result, +b.dataset.t);
+  const all = e.target.closest('button[data-all]');
+  if (all) rest(all);
+});
+for (const b of document.querySelectorAll('button[data-all]')) b.disabled = false;
 begin().catch(e => {
   $('viewer').hidden = true;
   $('stills').hidden = false;
-  $('why').textContent = `The surface cannot be shown in three dimensions here (${e.message})` + (meshes.length ? '; this is a picture of it.' : '.');
+  $('why').textContent = `The surface cannot be shown in three dimensions here (${e.message})` + (meshes.length ? '; this is a picture of it, and the buttons that lead to triangles are off.' : '.');
 });
 })();

@@ -22,7 +22,7 @@ std::string from_base64(const std::string& text) {
 
 /// Reads what pack has written, as viewer.js does: the corners of all triangles, and the bytes after them.
 struct Unpacked {
-  std::vector<Vec3> corners;
+  std::vector<Vec3> points, corners;
   std::string rest;
 
   explicit Unpacked(const PackedMesh& packed) {
@@ -33,8 +33,9 @@ struct Unpacked {
                          reinterpret_cast<const Bytef*>(deflated.data()), deflated.size()),
               Z_OK);
     bytes.resize(size);
-    const std::size_t n = packed.head["vertices"], m = packed.head["triangles"];
-    std::vector<Vec3> points(n);
+    const std::size_t n = (std::size_t)packed.head["vertices"] + (std::size_t)packed.head["dots"],
+                      m = packed.head["triangles"];
+    points.resize(n);
     std::size_t at = 0;
     int axis_number = 0;
     for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -84,13 +85,35 @@ TEST(pack, gives_back_triangles_in_order_to_the_step) {
   }
 }
 
-TEST(pack, writes_model_edges_figures_and_labels) {
+TEST(pack, writes_thick_edges_figures_and_labels) {
   Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {2, 1, 3}}};
   const MeshColumns columns{{{"kappa", {0.5, 2}}, {"size", {1, 100}, 1, 10000, true}},
                             {{"patch", {0, 300}, std::vector<std::string>(301, "inlet")}}};
   const Unpacked u(pack(mesh, {5, 2}, columns));
-  const std::string expected{5, 2, (char)128, (char)255, 0, (char)128, 0, 44, 0, 1};
+  // one region of area 1 with thick edges of length 3: 2/3 apart, where the diagonal is sqrt 2
+  const char spacing = (char)std::lround(255 + 16 * std::log2(2 / 3. / std::sqrt(2.)));
+  const std::string expected{5, 2, spacing, spacing, (char)128, (char)255, 0, (char)128, 0, 44, 0, 1};
   EXPECT_EQ(u.rest, expected);
+}
+
+TEST(pack, corrects_figures_of_rounded_positions) {
+  // the second triangle is so small that rounding changes its figure, the first is not
+  const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3e-5, 0, 0}, {0, 1e-5, 0}}, {{0, 1, 2}, {0, 3, 4}}};
+  auto figure = [](const Mesh& m, int t) { return norm(m.points[m.tris[t][1]]) / 6e-5; };
+  const FigureColumn column{"x", {figure(mesh, 0), figure(mesh, 1)}, 0, 1, false, figure};
+  const Unpacked u(pack(mesh, {}, {{column}, {}}));
+  const int rounded = (int)std::lround(255 * std::round(3e-5 * 65535) / 65535 / 6e-5);
+  EXPECT_EQ(u.rest.substr(4), (std::string{0, (char)(128 - rounded)}));
+  EXPECT_NE(rounded, 128);
+}
+
+TEST(pack, adds_dots_to_the_points) {
+  const PackedMesh packed = pack({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}, {}, {{2, 0.5, 0}});
+  const Unpacked u(packed);
+  EXPECT_EQ(packed.head["vertices"], 3);
+  ASSERT_EQ(u.points.size(), 4u);
+  EXPECT_NEAR(u.points[3].x, 2, 1e-4);
+  EXPECT_NEAR(u.points[3].y, 0.5, 1e-4);
 }
 
 TEST(pack, takes_what_has_no_extent) {

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "lib/draw/draw.h"
+
 namespace meshpipe {
 namespace {
 
@@ -77,6 +81,41 @@ TEST(page, says_what_failed) {
   const std::string html = html_of(page);
   EXPECT_NE(html.find("The contract is missed: 1 failure."), html.npos);
   EXPECT_NE(html.find("Show triangle 0"), html.npos);
+}
+
+TEST(page, packs_the_rows_that_are_not_shown_at_first) {
+  Judgment judgment{parse_contract("kappa=0.9"), {}, {}};
+  Mesh mesh;
+  for (int t = 0; t <= (int)first_rows; ++t) {
+    const double x = 2 * t;
+    mesh.points.insert(mesh.points.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}});
+    mesh.tris.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  Stream stream;
+  stream.surface = surface_of(mesh);
+  judgment.reference = stream.surface;
+  judgment.findings = examine(stream.surface, judgment.reference, nullptr, 10);
+  Page page;
+  page.items.push_back(page_item(stream, "x.ply", &judgment));
+  const std::string html = html_of(page);
+  EXPECT_EQ(page.items[0].offending.size(), first_rows + 1);
+  EXPECT_EQ(count(html, "<td>kappa</td>"), (int)first_rows);
+  EXPECT_NE(html.find("Show all 101"), html.npos);
+  EXPECT_NE(html.find("id=\"rows0\""), html.npos);
+}
+
+TEST(page, has_one_scale_of_colors) {
+  std::ifstream file(SOURCE_DIR "/tools/report/viewer.js");
+  const std::string script{std::istreambuf_iterator<char>(file), {}};
+  std::string stops = "const stops = [";
+  for (int i = 0; i < 5; ++i) {
+    const Color c = scale_color(i / 4.0);
+    stops += (i ? ", [" : "[") + std::to_string(c[0]) + ", " + std::to_string(c[1]) + ", " +
+             std::to_string(c[2]) + ']';
+  }
+  EXPECT_NE(script.find(stops + "];"), script.npos) << stops;
+  EXPECT_EQ(scale_color(-1), scale_color(0));
+  EXPECT_EQ(scale_color(0.125), (Color{64, 42, 112}));
 }
 
 TEST(page, reads_times) {
