@@ -24,6 +24,12 @@ constexpr double near_cosine = 0.8;            ///< of normals that turn by less
 constexpr double step = 60 * degree;  ///< a border that bends by more stays a crease when patches merge
 constexpr double smooth_turn = 20 * degree;  ///< mean change of the turning vector from vertex to vertex
 constexpr double design_share = 0.5;         ///< of the strong edges, by length, in smooth chains
+constexpr double plane_share = 0.8;          ///< of the area, in plane faces of several triangles
+constexpr double many_share = 0.1;           ///< the same of eight or more: parts 0.17, figures up to 0.03
+constexpr double noise = 2.5;  ///< edges between weak and strong over the strong: parts up to 2, scans 3.2
+/// Of the creases, by length. Steps of segmented images have 0.96 or more, machined parts up to 0.8: a boss
+/// next to a groove is a step too.
+constexpr double step_share = 0.85;
 constexpr double gap = 0.05;     ///< edges between weak and strong, as a share of the strong ones' length
 constexpr double spacing = 1.5;  ///< target lengths between creases, on average
 /// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
@@ -259,7 +265,7 @@ bool fades_out(const Network& net, const Chain& chain) {
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
 /// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
 /// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
-/// if it is made of planes; or if creases were kept in it before, as the model edges `known` say.
+/// if it is made of planes, or has large ones and less noise; or if the model edges `known` say that it did.
 void keep_designed(Network& net, double strong, double weak, const std::vector<std::uint8_t>& known) {
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
@@ -283,7 +289,13 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
     for (int h : chain)
       if (net.strong[h]) smooth[c] += net.length(h);
   }
-  std::vector<char> designed = made_of_planes({net.s, net.opposite}, {net.angle, net.strong, component, n});
+  const std::vector<PlaneShares> planes =
+      plane_shares({net.s, net.opposite}, {net.angle, net.strong, component, n});
+  std::vector<char> designed(n, 0);
+  for (int c = 0; c < n; ++c)
+    designed[c] =
+        planes[c].steps < step_share &&
+        (planes[c].several >= plane_share || (planes[c].many >= many_share && between[c] < noise * sharp[c]));
   for (int h = 0; !known.empty() && h < m; ++h)
     if (known[h / 3] >> h % 3 & 1 && !net.patch[h] && !net.given[h]) designed[component[h / 3]] = 1;
   for (int h = 0; h < m; ++h) {

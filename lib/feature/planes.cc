@@ -11,10 +11,7 @@ namespace meshpipe {
 namespace {
 
 constexpr double flat_angle = std::numbers::pi / 180;  ///< across diagonals, with rounded coordinates
-constexpr double plane_share = 0.8;                    ///< of the area, in plane faces of several triangles
-/// Of the creases, by length. Steps of segmented images have 0.96 or more, machined parts up to 0.8: a boss
-/// next to a groove is a step too.
-constexpr double step_share = 0.85;
+constexpr int many = 8;             ///< triangles of a plane face that chance does not make
 constexpr double directions = 1.6;  ///< normals are rounded after this factor: to about a hundred directions
 
 /// The face of each triangle: triangles connected across edges that are almost flat.
@@ -60,29 +57,27 @@ std::vector<char> steps(const Connectivity& c, const std::vector<int>& face,
 
 }  // namespace
 
-std::vector<char> made_of_planes(const Connectivity& c, const Bends& bends) {
+std::vector<PlaneShares> plane_shares(const Connectivity& c, const Bends& bends) {
   const std::vector<int> face = plane_faces(c, bends.angle);
   const std::vector<char> is_step = steps(c, face, bends.strong);
   std::vector<int> triangles(c.n_tris(), 0);
   for (int f : face) ++triangles[f];
-  struct Sums {
-    double area = 0, plane = 0, crease = 0, step = 0;
-  };
-  std::vector<Sums> sums(bends.components);
+  std::vector<PlaneShares> shares(bends.components);
+  std::vector<double> area(bends.components, 0), crease(bends.components, 0);
   for (int t = 0; t < c.n_tris(); ++t) {
-    Sums& sum = sums[bends.component[t]];
-    const double area = 0.5 * norm(c.area_vector(t));
-    sum.area += area;
-    if (triangles[face[t]] > 1) sum.plane += area;
+    const int i = bends.component[t];
+    const double own = 0.5 * norm(c.area_vector(t));
+    area[i] += own;
+    if (triangles[face[t]] > 1) shares[i].several += own;
+    if (triangles[face[t]] >= many) shares[i].many += own;
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      if (bends.strong[h]) sum.crease += c.length(h);
-      if (is_step[h]) sum.step += c.length(h);
+      if (bends.strong[h]) crease[i] += c.length(h);
+      if (is_step[h]) shares[i].steps += c.length(h);
     }
   }
-  std::vector<char> planes(bends.components);
   for (int i = 0; i < bends.components; ++i)
-    planes[i] = sums[i].plane >= plane_share * sums[i].area && sums[i].step < step_share * sums[i].crease;
-  return planes;
+    shares[i].several /= area[i], shares[i].many /= area[i], shares[i].steps /= crease[i];
+  return shares;
 }
 
 }  // namespace meshpipe

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Components of plane faces; for lib/feature/ only.
+// Plane faces of components; for lib/feature/ only.
 #pragma once
 #include <vector>
 
@@ -15,9 +15,13 @@ struct Bends {
   int components;
 };
 
-/// Flags the components that consist of plane faces of several triangles, as extruded and machined parts do,
-/// unless most creases, by length, are steps: next to a face that goes up to one and down to another face,
-/// both with almost the same normal, as the steps of segmented images do.
-std::vector<char> made_of_planes(const Connectivity& surface, const Bends& bends);
+/// Of the area, in plane faces of several triangles, and of eight or more; and of the creases' length.
+struct PlaneShares {
+  double several = 0, many = 0, steps = 0;
+};
+
+/// Returns the shares in each component (NaN without area or creases). A step is next to a face that goes up
+/// to one and down to another face, both with almost the same normal, as on surfaces of segmented images.
+std::vector<PlaneShares> plane_shares(const Connectivity& surface, const Bends& bends);
 
 }  // namespace meshpipe

@@ -160,6 +160,18 @@ TEST(Feature, WhatIsMadeOfPlanesIsDesignUnlessTheseAreSteps) {
   EXPECT_GT(mark_features(s, automatic).crease_edges, 2 * n);
 }
 
+//  spikes on a plate that goes over into dunes: all creases are short, and edges bend by every angle
+TEST(Feature, WhatHasLargePlaneFacesIsDesign) {
+  auto surface = [](int plate) {
+    return terrain(40, 40, [&](int i, int j) {
+      return i >= plate ? 0.6 * std::sin(0.9 * i) * std::sin(0.7 * j) : i % 4 == 2 && j % 4 == 2 ? 2.0 : 0.0;
+    });
+  };
+  Surface s = surface(24), dunes = surface(4);
+  EXPECT_GT(mark_features(s, automatic).crease_edges, 500);
+  EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
+}
+
 TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyIfItIsLong) {
   // a ridge whose slopes flatten along j: sharp at j = 0, 30 degrees in the middle, none at the end
   auto fading = [](int i, int j) { return -std::abs(i - 10.0) * std::max(0.0, 1 - j / 20.0); };
