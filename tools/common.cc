@@ -100,11 +100,12 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
   if (!io.names_way_out || io.stream.surface.tris.empty() || (status == 6 && !remeshed)) return "";
   const FailureFacts facts = facts_of(failure);
   Diagnosis found;
-  if (status > 4 && facts.least_size == 0 && facts.strip_width == 0) {
+  if (status > 4) {
     Surface surface = remeshed ? read_reference(io.stream) : io.stream.surface;
     if (has_sheets(io.stream)) join_borders(surface);  // copies of a vertex are no intersections
     found = diagnose(surface, facts.place, facts.reach);
-    found.sheets = has_sheets(io.stream);
+    if (has_sheets(io.stream))
+      for (const SheetPatch& s : read_sheets(io.stream)) found.sheets |= s.front > 0 && s.back > 0;
   }
   for (const std::string& remark : io.stream.remarks) found.spikes += Spikes::parse(remark);
   std::vector<Provenance> history = io.stream.history;

@@ -15,7 +15,7 @@ struct Diagnosis {
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others
   int spikes = 0;                 ///< for the caller: vertices that stick out, as mclean has found them,
-  bool sheets = false;            ///< and whether sheets meet, with regions that a wrap would lose
+  bool sheets = false;            ///< and whether sheets lie between regions, which a wrap would join
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };

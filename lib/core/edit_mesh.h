@@ -50,8 +50,7 @@ struct EditMesh {
   /// Is there an edge between a and b?
   bool joined(int a, int b) const;
 
-  /// Turns the edge of h within its two triangles: from a-b to c-d. Requires: not hard, c and d not
-  /// joined.
+  /// Turns the edge of h within its two triangles: from a-b to c-d. Requires: not hard, c and d not joined.
   void flip(int h);
   /// Puts a new vertex (the next number) on the edge of h, splitting its one or two triangles; the halves of
   /// a hard edge are hard. Triangle n, the next number, is split off triangle h/3, n+1 off triangle opp[h]/3.

@@ -14,8 +14,7 @@ namespace meshpipe {
 /// Lines whose directions differ by less (25 degrees) bound a strip; by more they meet in a corner.
 constexpr double strip_angle = 25 * std::numbers::pi / 180;
 
-/// Lines of a surface: chains of hard edges between nodes, where more or fewer than two meet or a line
-/// bends.
+/// Lines of a surface: chains of hard edges between nodes, where more or fewer than two meet or a line bends.
 struct FeatureLines {
   std::vector<int> of;         ///< line of each half-edge, -1: not hard
   std::vector<int> given;      ///< number of the given line on each half-edge, -1: none

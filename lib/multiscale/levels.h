@@ -9,9 +9,8 @@
 
 namespace meshpipe {
 
-/// One level's map: the triangles it resolves, in a frame of size 1 (the root: the unit disk).
-/// A child's frame is (uv of the parent - center) / scale; frames are never composed, since that would
-/// underflow.
+/// One level's map: the triangles it resolves, in a frame of size 1 (the root: the unit disk). A child's
+/// frame is (uv of the parent - center) / scale; frames are never composed, since that would underflow.
 struct Level {
   int parent = -1;
   Vec2 center;  ///< a point of this set, in the parent's disk

@@ -10,9 +10,8 @@
 namespace meshpipe {
 
 /// Smoothed aggregation (Vanek, Mandel and Brezina 1996) of a symmetric positive definite matrix that is
-/// nearly a Laplacian: small row sums, few and small positive entries off the diagonal. Time and memory
-/// are nearly linear in its entries; a factorization's grow with the power 1.5 of the unknowns of a plane
-/// mesh.
+/// nearly a Laplacian: small row sums, few and small positive entries off the diagonal. Time and memory are
+/// nearly linear in its entries; a factorization's grow with the power 1.5 of the unknowns of a plane mesh.
 class Multigrid {
  public:
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;

@@ -23,12 +23,11 @@ struct SolveTime {
 /// What is known of a matrix: a Laplacian, with some values held or masses added, can be solved by multigrid.
 enum class MatrixKind { any, laplacian };
 
-/// A factored symmetric (real) or Hermitian (complex) positive definite matrix of n rows.
-/// The constructor throws GoalMissed if the matrix is numerically singular or holds NaN.
-/// Order: approximate minimum degree. `time`, if given, is added to, and has to outlive the factorization.
-/// A real matrix of kind `laplacian` whose order shows that multigrid (lib/numeric/multigrid.h) is faster, as
-/// it is for large round charts and not for long or branched ones, is factored only if that does not
-/// converge.
+/// A factored symmetric (real) or Hermitian (complex) positive definite matrix of n rows. The constructor
+/// throws GoalMissed if the matrix is numerically singular or holds NaN. Order: approximate minimum degree.
+/// `time`, if given, is added to, and has to outlive the factorization. A real matrix of kind `laplacian`
+/// whose order shows that multigrid (lib/numeric/multigrid.h) is faster, as it is for large round charts and
+/// not for long or branched ones, is factored only if that does not converge.
 template <class Scalar>
 class Factorization {
  public:

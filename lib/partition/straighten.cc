@@ -97,8 +97,7 @@ bool is_closed(const Mesh& m, const Curve& c) {
   return target(m.tris, c.half_edges.back()) == origin(m.tris, c.half_edges.front());
 }
 
-/// The largest angle by which a curve turns on the surface between edges that `skipped` does not
-/// name.
+/// The largest angle by which a curve turns on the surface between edges that `skipped` does not name.
 template <class Skipped>
 double sharpest_turn(const CutSurface& cut, const Curve& c, Skipped skipped) {
   const Surface& s = cut.surface;

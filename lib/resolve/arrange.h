@@ -16,9 +16,8 @@ struct Pieces {
   std::vector<int> piece_of;  ///< per triangle of the mesh: one of its pieces
 };
 
-/// Divides the triangles of a mesh where the pairs intersect. Pieces that coincide become one.
-/// Requires: `pairs` are all that intersect, no two vertices have the same coordinates, each triangle has
-/// area.
+/// Divides the triangles of a mesh where the pairs intersect. Pieces that coincide become one. Requires:
+/// `pairs` are all that intersect, no two vertices have the same coordinates, each triangle has area.
 Pieces arrange(const std::vector<Tri>& tris, const std::vector<int>& weight,
                const std::vector<std::pair<int, int>>& pairs, ExactPoints& points);
 

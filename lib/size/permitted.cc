@@ -112,8 +112,7 @@ struct Bend {
 class Measure {
  public:
   Measure(const Connectivity& surface, const std::vector<double>& asked);
-  /// Returns the size permitted at t along half-edge h, and the gap there; infinite where
-  /// nothing bounds it.
+  /// Returns the size permitted at t along half-edge h, and the gap there; infinite where nothing bounds it.
   SizeBound at(int h, double t, Search& search) const {
     const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
     return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
@@ -212,8 +211,7 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
 }
 
 /// Returns the unit vector from a line into the region of h, across it. Needles far narrower than the strip
-/// may be folded along it: then the next
-/// triangle that is wide enough gives the direction.
+/// may be folded along it: then the next triangle that is wide enough gives the direction.
 Vec3 Measure::inward(int h, double width) const {
   int g = h;
   for (int i = 0; i < most_needles && norm(surface_.area_vector(g / 3)) < needle * width * surface_.length(g);

@@ -26,9 +26,8 @@ constexpr double least_descent = 0.25;
 
 using Place3 = std::array<int, 3>;
 
-/// Cubes of 2^level blocks near the soup are divided, level by level, down to blocks.
-/// Where there would be more than `most`, it ends early. Sets `count` to the number of blocks, or an
-/// estimate.
+/// Cubes of 2^level blocks near the soup are divided, level by level, down to blocks. Where there would be
+/// more than `most`, it ends early. Sets `count` to the number of blocks, or an estimate.
 std::vector<Place3> blocks_near(const Voxels& v, const Bvh& tree, double reach, double most, double& count) {
   int level = 0;
   while ((1 << level) < std::max({v.blocks[0], v.blocks[1], v.blocks[2]})) ++level;

@@ -58,10 +58,16 @@ struct Row {
 };
 const Row table[] = {
     {[](const Case& c) {
-       return c.missed("intersections") && c.facts.value > beyond_repair && !c.ran("mwrap");
+       const double crossings = c.missed("intersections") ? c.facts.value : 0;
+       return std::max(crossings, (double)c.found.intersections) > beyond_repair && !c.ran("mwrap") &&
+              c.status >= goal_missed;
      },
-     [](const Case&) {
-       return WayOut{"mwrap", "these are more crossings than a repair of the input removes"};
+     [](const Case& c) {
+       return WayOut{"mwrap", c.missed("intersections") && c.facts.value > beyond_repair
+                                  ? "these are more crossings than a repair of the input removes"
+                                  : std::to_string(c.found.intersections) +
+                                        " pairs of triangles of the input " + "intersect, first at " +
+                                        shown(c.found.intersection)};
      }},
     {[](const Case& c) {
        return c.found.spikes > 0 && c.status >= goal_missed && !c.used("mclean", "--drop-spikes");
@@ -79,11 +85,6 @@ const Row table[] = {
      [](const Case& c) {
        return WayOut{"--tolerance " + at_least(c.facts.strip_width), "narrower strips are removed"};
      }},
-    {[](const Case& c) { return c.facts.strip_width > 0 && !c.used("mclean", "--weld"); },
-     [](const Case& c) {
-       return WayOut{"mclean --weld " + at_least(c.facts.strip_width),
-                     "the sides of narrower strips become one"};
-     }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
      [](const Case&) {
        return WayOut{"without --min", "smaller triangles come closer"};
@@ -100,8 +101,7 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.intersections > 0 && !c.ran("mwrap"); },
      [](const Case& c) {
-       const bool wrap = c.found.intersections > beyond_repair || c.used("mclean", "--resolve") ||
-                         (c.found.open && !c.found.sheets);
+       const bool wrap = c.used("mclean", "--resolve") || (c.found.open && !c.found.sheets);
        return WayOut{wrap             ? "mwrap"
                      : c.found.sheets ? "mclean --resolve all"
                                       : "mclean --resolve outer",

@@ -45,6 +45,9 @@ TEST(WayOut, ManyCrossingsAreForAWrap) {
   EXPECT_EQ(named(missed, crossings, found), "mclean --drop-spikes 5");
   crossings.value = 1200;
   EXPECT_EQ(named(missed, crossings, found), "mwrap");
+  crossings.value = 12;
+  found.intersections = 1200;  // of the input
+  EXPECT_EQ(named(missed, crossings, found), "mwrap");
 }
 
 TEST(WayOut, NamesNothingThatWasTried) {
@@ -83,8 +86,8 @@ TEST(WayOut, KnowsWhatCanBeMet) {
 TEST(WayOut, RemovesStripsThatCostTooMuch) {
   FailureFacts facts;
   facts.strip_width = 0.02;
-  EXPECT_EQ(named(unreached, facts, {}), "mclean --weld 0.02");
+  EXPECT_EQ(named(unreached, facts, {}), "mwrap");
   EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--tolerance=0"}}), "--tolerance 0.02");
   EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--size=1 --tolerance=0.01"}}), "--tolerance 0.02");
-  EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--tolerance=0.03"}}), "mclean --weld 0.02");
+  EXPECT_EQ(named(unreached, facts, {}, {{"mfeature", "", "--tolerance=0.03"}}), "mwrap");
 }
