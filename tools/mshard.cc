@@ -22,9 +22,12 @@ void cut(Io& io, int count, const std::string& directory) {
     largest = std::max(largest, shard.surface.tris.size());
     io.write_to(shard_name(directory, i), shard);
   }
-  io.say(std::to_string(shares.size()) + " shards of " + std::to_string(whole.surface.tris.size()) +
-         " triangles in " + std::to_string(whole.need("part", "mpartition").rows) +
-         " parts, the largest of " + std::to_string(largest));
+  auto counted = [](std::size_t n, const char* what) {
+    return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+  };
+  io.say(counted(shares.size(), "shard") + " of " + counted(whole.surface.tris.size(), "triangle") + " in " +
+         counted(whole.need("part", "mpartition").rows, "part") + ", the largest of " +
+         std::to_string(largest));
   io.report["shards"] = shares.size();
   io.report["largest"] = largest;
   write_as_it_is(io, whole);

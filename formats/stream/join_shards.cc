@@ -55,12 +55,16 @@ void expect_cut_from(const Stream& whole, const Stream& shard, const ShardNumber
 
 /// Checks a shard, and takes the tables that its program has made.
 Taken take_shard(const Stream& whole, const std::string& name, Stream shard, const Provenance& by) {
-  const std::size_t n_parts = whole.need("part", "mpartition").rows;
+  const int n_parts = static_cast<int>(whole.need("part", "mpartition").rows);
   const std::vector<int>& parts = shard.need("shard", "mshard").get<int>("part");
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (parts[i] < (i ? parts[i - 1] + 1 : 0) || parts[i] >= static_cast<int>(n_parts))
-      throw BadInput("shard " + std::to_string(i) + " is part " + std::to_string(parts[i]) +
-                     ", but parts ascend and there are " + std::to_string(n_parts));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (const int least = i ? parts[i - 1] + 1 : 0; parts[i] < least)
+      throw BadInput("row " + std::to_string(i) + " of table 'shard': expected a part of at least " +
+                     std::to_string(least) + ", found " + std::to_string(parts[i]));
+    if (parts[i] >= n_parts)
+      throw BadInput("expected a shard of this stream, whose parts are 0 to " + std::to_string(n_parts - 1) +
+                     ", found part " + std::to_string(parts[i]));
+  }
   if (const std::size_t rows = shard.need("part", "mpartition").rows; rows != parts.size())
     throw BadInput("there are " + std::to_string(rows) + " parts, but " + std::to_string(parts.size()) +
                    " were cut out of the whole");
