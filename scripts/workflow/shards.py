@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Remeshes a surface of a cohort; a large one in steps, with maps, plane meshes, tiles of mrelax and measurements of mcheck made in
 shards as jobs of their own.
@@ -130,6 +129,9 @@ def main(step, *arguments):
     try:
         if not os.path.exists(failed) and step != "end":
             steps.run(step)
+    except SystemExit as end:
+        run.note(record, end.code)
+        raise
     except Failed:
         open(failed, "w", encoding="utf-8").close()
     if step != "end":
