@@ -54,7 +54,7 @@ def shown(browser, path):
     """Opens a page and waits for the first picture; returns the milliseconds it took."""
     browser.open(path)
     took = float(browser.wait("document.querySelector('canvas').dataset.drawn"))
-    browser.wait("!document.querySelectorAll('canvas')[1].parentElement.hidden || true")
+    browser.wait("!document.querySelector('button[data-t]:disabled')")
     loaded = [u for u in browser.requests() if not u.startswith(("data:", "file://" + path))]
     expect(f"{path}: nothing is loaded, but {loaded}", not loaded)
     expect(f"{path}: the console is silent, but says {browser.complaints()}", not browser.complaints())

@@ -512,6 +512,8 @@ async function begin() {
   if (charts && kinds.has('part')) $('color').value = 'part';
   colorBy = $('color').value;
   recolor();
+  // first the picture, then the second mesh; in a tab that is hidden there is no frame to wait for
+  await new Promise(done => { requestAnimationFrame(() => setTimeout(done)); setTimeout(done, 300); });
   panes[1].select.value = beside;
   await panes[1].show(meshes[beside]);
   panes[1].root.hidden = false;
