@@ -313,7 +313,9 @@ std::string data_html(const Page& page) {
          {std::span(page.items[i].worst), std::span(faulty).first(std::min(first_rows, faulty.size()))})
       for (const ListedTriangle& t : list)
         exact[std::to_string(t.triangle)] = {t.center.x, t.center.y, t.center.z};
-    results.push_back({{"worst", worst}, {"offending", page.items[i].offending_triangles}, {"exact", exact}});
+    results.push_back({{"worst", worst}, {"exact", exact}});
+    blocks += "<script type=\"text/plain\" id=\"faulty" + std::to_string(i) + "\">" +
+              packed_bytes(nlohmann::json(page.items[i].offending_triangles).dump()) + "</script>\n";
     for (const PackedMesh& m : page.items[i].meshes) {
       nlohmann::ordered_json head = m.head;
       head["id"] = "mesh" + std::to_string(meshes.size());

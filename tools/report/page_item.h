@@ -51,7 +51,7 @@ struct PageItem {
 };
 
 /// Offending triangles that can be rows of the page's table, and that are at first.
-constexpr std::size_t most_rows = 5000, first_rows = 100;
+constexpr std::size_t most_rows = 2000, first_rows = 100;
 /// Triangles of a reference that is still shown: it may be much larger than the result.
 constexpr std::size_t most_reference = 150000;
 

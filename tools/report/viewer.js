@@ -489,6 +489,7 @@ function step(by) {
 
 async function begin() {
   if (!meshes.length) throw new Error('there are no triangles');
+  for (const [i, r] of report.results.entries()) r.offending = await (await inflated('faulty' + i)).json();
   panes = [...document.querySelectorAll('.pane')].map(root => new Pane(root));
   $('viewer').hidden = false;
   $('stills').hidden = true;
