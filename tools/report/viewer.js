@@ -21,7 +21,7 @@ function inflated(id) {
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate')));
 }
 async function unpack(mesh) {
-  const bytes = new Uint8Array(await (await inflated(mesh.id)).arrayBuffer());
+  const bytes = new Uint8Array(await inflated(mesh.id).arrayBuffer());
   const n = mesh.vertices + mesh.dots, m = mesh.triangles;
   let at = 0;
   const points = [0, 1, 2].map(() => {
@@ -489,7 +489,7 @@ function step(by) {
 
 async function begin() {
   if (!meshes.length) throw new Error('there are no triangles');
-  for (const [i, r] of report.results.entries()) r.offending = await (await inflated('faulty' + i)).json();
+  const faulty = Promise.all(report.results.map(async (r, i) => { r.offending = await inflated('faulty' + i).json(); }));
   panes = [...document.querySelectorAll('.pane')].map(root => new Pane(root));
   $('viewer').hidden = false;
   $('stills').hidden = true;
@@ -506,6 +506,7 @@ async function begin() {
   });
   const beside = meshes.findIndex((m, i) => i > 0 && m.result === meshes[0].result);
   await panes[0].show(meshes[0]);
+  await faulty;
   camera = whole(meshes[0]);
   const kinds = new Set(meshes.flatMap(m => [...m.columns, ...m.labels].map(c => c.name)));
   for (const k of [...kinds, 'nothing']) $('color').append(new Option(k, k));
@@ -530,7 +531,7 @@ async function begin() {
 }
 // the rows of a table of triangles that the page holds packed
 async function rest(button) {
-  button.closest('section').querySelector('table.faults tbody').insertAdjacentHTML('beforeend', await (await inflated('rows' + button.dataset.all)).text());
+  button.closest('section').querySelector('table.faults tbody').insertAdjacentHTML('beforeend', await inflated('rows' + button.dataset.all).text());
   for (const b of document.querySelectorAll('button[data-t]')) b.disabled = $('viewer').hidden;
   button.remove();
 }
