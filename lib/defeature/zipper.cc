@@ -98,7 +98,7 @@ Zipper::Side Zipper::side_of(int h) const {
       s.b = e;
       break;
     }
-    if (e == mesh.opp[h]) return s;
+    if (e == mesh.opp[h]) return {};
   }
   if (s.a == mesh.opp[h] || s.b == mesh.opp[h]) return {};  // all around
   s.along_a = points[mesh.from(s.a)] - points[a];

@@ -122,6 +122,25 @@ TEST(Defeature, FineSurfacesStay) {
   EXPECT_TRUE(removed(s, wide_enough).removed.empty());
 }
 
+//  #: lines; corners are nearer than the tolerance, and o is on no line
+//   --#-----#--
+//     |  o  |
+//   --#-----#--
+TEST(Defeature, VerticesOffLinesAreAmongCorners) {
+  std::vector<Vec2> profile;
+  for (int i = 0; i <= 10; ++i) profile.push_back({0.1 * i, 0});
+  Surface s = extruded(profile, 10);
+  for (Vec3& p : s.points) p.y *= 0.1;
+  std::vector<std::uint8_t> model(s.tris.size(), 0);
+  for (int h = 0; h < 3 * (int)s.tris.size(); ++h) {
+    const int a = origin(s.tris, h), b = target(s.tris, h);
+    const bool along = a % 11 == b % 11 && (a % 11 == 4 || a % 11 == 6);
+    if (along || (a / 11 == b / 11 && (a / 11 == 4 || a / 11 == 6))) model[h / 3] |= 1 << h % 3;
+  }
+  s.face.set("model", model);
+  removed(s, 0.7);
+}
+
 TEST(Defeature, VerticesOfTwoFansAreRefused) {
   Surface s = extruded({{0, 0}, {1, 0}, {1, -width}, {2, -width}}, 2);
   const int n = (int)s.points.size();
