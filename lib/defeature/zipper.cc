@@ -81,43 +81,37 @@ bool MergedSurface::on_line(int v) const {
   return found;
 }
 
-/// On the left of h.
+/// On the left of h: the edge that runs to its start, the first counterclockwise, and that from its end.
 Zipper::Side Zipper::side_of(int h) const {
   Side s;
   if (h < 0) return s;
-  const int a = mesh.from(h), b = mesh.to(h);
-  for (int e = prev(h);; e = prev(mesh.opp[e])) {  // runs to a, counterclockwise from h
-    if (mesh.hard[e]) {
-      s.a = e;
-      break;
-    }
-    if (e == mesh.opp[h]) return s;
-  }
-  for (int e = next(h);; e = next(mesh.opp[e])) {  // runs from b, clockwise from h
-    if (mesh.hard[e]) {
-      s.b = e;
-      break;
-    }
-    if (e == mesh.opp[h]) return {};
-  }
+  for (s.a = prev(h); !mesh.hard[s.a]; s.a = prev(mesh.opp[s.a]))
+    if (s.a == mesh.opp[h]) return {};
+  for (s.b = next(h); !mesh.hard[s.b]; s.b = next(mesh.opp[s.b]))
+    if (s.b == mesh.opp[h]) return {};
   if (s.a == mesh.opp[h] || s.b == mesh.opp[h]) return {};  // all around
-  s.along_a = points[mesh.from(s.a)] - points[a];
-  s.along_b = points[mesh.to(s.b)] - points[b];
+  s.along_a = points[mesh.from(s.a)] - points[mesh.from(h)];
+  s.along_b = points[mesh.to(s.b)] - points[mesh.to(h)];
   return s;
 }
 
-/// The normal beyond h, of the first triangle that is higher than the tolerance: lower ones may face
-/// anywhere.
+/// The normal beyond h, of the first triangle that is higher than the tolerance. Each lower one may face
+/// anywhere: of them, the mean of all up to the tolerance if they face one way, else up to the next line.
 Vec3 Zipper::normal_beyond(int h) const {
-  constexpr int most_steps = 16;
+  constexpr int most_steps = 64;
+  Vec3 sum, first;
+  double across = 0, areas = 0;
   for (int steps = 0; steps < most_steps && mesh.opp[h] >= 0; ++steps) {
     const int o = mesh.opp[h], t = o / 3;
     if (height(t) > options_.tolerance) return normal(t);
+    if (steps > 0 && mesh.hard[h] && norm(first) == 0) first = sum;
+    sum = sum + normal(t), areas += norm(normal(t));
+    if ((across += height(t)) > options_.tolerance) break;
     const bool longer =
         norm(points[mesh.apex(o)] - points[mesh.to(o)]) > norm(points[mesh.apex(o)] - points[mesh.from(o)]);
     h = longer ? next(o) : prev(o);
   }
-  return {};
+  return across > options_.tolerance && norm(sum) > 0.9 * areas ? sum : first;
 }
 
 bool Zipper::folded(const Side& s) const { return turn(normal_beyond(s.a), normal_beyond(s.b)) > fold_angle; }

@@ -410,32 +410,38 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
     const int t = h / 3, o = surface.opposite[h] / 3;
     return has_none[t] || has_none[o] ? 1 : 1 + far_turn * (1 - dot(normal[t], normal[o]));
   };
-  std::vector<int> out(n, -1), order, seeds;  // the half-edge through which the nearest side is reached
-  std::vector<double> way(n, std::numeric_limits<double>::infinity()), width(n, 0);
-  for (int h = 0; h < 3 * n; ++h) {
-    const int t = h / 3, o = surface.opposite[h];
-    if (!is_thin[t] || o < 0 || is_thin[o / 3] || !(farther(h) * half_way(h) < way[t])) continue;
-    if (out[t] < 0) seeds.push_back(t);
-    way[t] = farther(h) * half_way(h);
-    out[t] = h;
-  }
-  shortest_paths(seeds, way, [&](int t, auto reach) {
-    order.push_back(t);
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (const int o = surface.opposite[h];
-          o >= 0 && is_thin[o / 3] && reach(o / 3, way[t] + farther(h) * (half_way(h) + half_way(o))))
-        out[o / 3] = o;
-  });
-  auto from = [&](int t) { return surface.opposite[out[t]] / 3; };
-  for (int t : order) {
-    const int o = surface.opposite[out[t]];
-    width[t] = half_way(out[t]) + (is_thin[o / 3] ? half_way(o) + width[o / 3] : 0);
-  }
-  std::vector<double> whole = width;  // of the widest branch through t
-  for (auto t = order.rbegin(); t != order.rend(); ++t)
-    whole[from(*t)] = std::max(whole[from(*t)], whole[*t]);
-  for (int t : order)
-    if (has_none[t] || whole[t] <= widest_band * thin) normal[t] = normal[from(t)];
+  // those without a normal of their own first, as they are next to thin ones that have one
+  auto take_nearest = [&](const std::vector<char>& takes) {
+    std::vector<int> out(n, -1), order, seeds;  // the half-edge through which the nearest side is reached
+    std::vector<double> way(n, std::numeric_limits<double>::infinity()), width(n, 0);
+    for (int h = 0; h < 3 * n; ++h) {
+      const int t = h / 3, o = surface.opposite[h];
+      if (!takes[t] || o < 0 || takes[o / 3] || !(farther(h) * half_way(h) < way[t])) continue;
+      if (out[t] < 0) seeds.push_back(t);
+      way[t] = farther(h) * half_way(h);
+      out[t] = h;
+    }
+    shortest_paths(seeds, way, [&](int t, auto reach) {
+      order.push_back(t);
+      for (int h = 3 * t; h < 3 * t + 3; ++h)
+        if (const int o = surface.opposite[h];
+            o >= 0 && takes[o / 3] && reach(o / 3, way[t] + farther(h) * (half_way(h) + half_way(o))))
+          out[o / 3] = o;
+    });
+    auto from = [&](int t) { return surface.opposite[out[t]] / 3; };
+    for (int t : order) {
+      const int o = surface.opposite[out[t]];
+      width[t] = half_way(out[t]) + (takes[o / 3] ? half_way(o) + width[o / 3] : 0);
+    }
+    std::vector<double> whole = width;  // of the widest branch through t
+    for (auto t = order.rbegin(); t != order.rend(); ++t)
+      whole[from(*t)] = std::max(whole[from(*t)], whole[*t]);
+    for (int t : order)
+      if (has_none[t] || whole[t] <= widest_band * thin) normal[t] = normal[from(t)];
+  };
+  take_nearest(has_none);
+  std::fill(has_none.begin(), has_none.end(), 0);
+  take_nearest(is_thin);
   return normal;
 }
 

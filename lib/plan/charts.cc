@@ -101,8 +101,8 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const bool chosen = report.used == options.map && options.map != MapKind::conformal;
   const bool stretched =
       !missed && !chosen && round < limit::stretched_rounds &&
-      report.anisotropy_mean > limit::mean_anisotropy &&
-      (mesh.tris.size() >= limit::least_triangles || report.anisotropy_mean > limit::area_scale);
+      (report.anisotropy_p99 > limit::anisotropy ||
+       (report.anisotropy_mean > limit::mean_anisotropy && mesh.tris.size() >= limit::least_triangles));
   const bool limbs =
       !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
   int n = limbs || stretched ? cut_along_limbs(surface, p, n_parts) : n_parts;

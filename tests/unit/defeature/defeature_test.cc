@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <set>
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
@@ -120,6 +122,52 @@ TEST(Defeature, FineSurfacesStay) {
   s.face.erase("patch");
   mark_features(s, {FeatureOptions::angles, 40, 20, 0});
   EXPECT_TRUE(removed(s, wide_enough).removed.empty());
+}
+
+//  the section of a wing: its triangles get thinner than coordinates are exact, and lines nearer than the
+//  tolerance, towards the edge at x = 1
+//   ____-----____
+//   |||||||||||||||:>
+TEST(Defeature, ASharpTrailingEdgeStaysOneLine) {
+  constexpr int n = 400;
+  Surface s;
+  auto add = [&](double x, double z) {
+    for (double y : {-0.5, 0.5}) s.points.push_back({x, y, z});
+  };
+  add(1, 0);
+  for (int i = 1; i <= n; ++i)
+    for (int side : {1, -1}) {
+      const double d = std::pow((double)i / n, 2);
+      add(std::round(1e6 * (1 - d)) / 1e6, side * 0.14 * d);  // in six digits, as files have it
+    }
+  // of the pair i: above 4 i - 2, 4 i - 1; below 4 i, 4 i + 1; of the edge 0, 1
+  auto quad = [&](int a, int b, int c, int d) { s.tris.insert(s.tris.end(), {Tri{a, b, c}, Tri{a, c, d}}); };
+  for (int i = 1; i <= n; ++i) {
+    const int up = 4 * i - 2, low = 4 * i, up0 = i > 1 ? up - 4 : 0, low0 = i > 1 ? low - 4 : 0;
+    quad(up0, up0 + 1, up + 1, up);
+    quad(low0 + 1, low0, low, low + 1);
+    for (int y : {0, 1})
+      for (Tri t : {Tri{up0, up, low0}, {low0, up, low}})
+        if (i > 1 || t[0] != low0 || t[1] == up)
+          if (t[0] != t[2] && t[0] != t[1]) s.tris.push_back(y ? Tri{t[1] + 1, t[0] + 1, t[2] + 1} : t);
+  }
+  quad(4 * n, 4 * n - 2, 4 * n - 1, 4 * n + 1);  // the blunt front
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  ASSERT_EQ(topology_of(s).loops, 0);
+  auto lines_across = [&] {
+    std::set<std::pair<int, int>> found;
+    const std::vector<std::uint8_t>& model = s.face.get<std::uint8_t>("model");
+    for (int h = 0; h < 3 * (int)s.tris.size(); ++h) {
+      const int a = origin(s.tris, h), b = target(s.tris, h);
+      if (model[h / 3] >> h % 3 & 1 && s.points[a].y * s.points[b].y < 0) found.insert(std::minmax(a, b));
+    }
+    return found.size();
+  };
+  mark_features(s, {FeatureOptions::automatic, 40, 20, 0.02});
+  EXPECT_EQ(lines_across(), 3);  // two of the front
+  remove_small_features(s, {0.0012});
+  mark_features(s, {FeatureOptions::automatic, 40, 20, 0.02});
+  EXPECT_EQ(lines_across(), 3);
 }
 
 //  #: lines; corners are nearer than the tolerance, and o is on no line
