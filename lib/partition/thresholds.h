@@ -38,8 +38,7 @@ constexpr double unresolved_area_scale = 1e16;
 /// nothing between their ends to follow a ring in the plane, lie flat once they are open. Effect: 92 maps on
 /// 5 surfaces.
 constexpr double mean_anisotropy = 4;
-/// The 99th percentile of sigma1/sigma2 over the triangles, above which a part is cut.
-constexpr double anisotropy = 100;
+constexpr double anisotropy = 100;  ///< the 99th percentile of sigma1/sigma2, above which a part is cut
 /// Median of sigma1/sigma2 above which a limb is cut along its length. A limb with N edges around it changes
 /// its scale by exp(2 pi / N) over each of them, which shears triangles to about 1 + 3.6 / N. Effect: 56 maps
 /// on 20 surfaces.
@@ -51,8 +50,7 @@ constexpr double limb_gain = 0.6;
 constexpr double limb_aspect = 2;
 /// Triangles below which no limb is cut along its length: it costs more than it gains.
 constexpr std::size_t limb_triangles = 500;
-/// Triangles below which no part is cut for the mean of sigma1/sigma2.
-constexpr std::size_t least_triangles = 50;
+constexpr std::size_t least_triangles = 50;  ///< below it no part is cut for the mean of sigma1/sigma2
 /// Parts that one cut along limbs may end in: a ragged part keeps its aspect ratio through many cuts. Effect:
 /// 80 of 121 cuts are given up, on 4 surfaces.
 constexpr int limb_parts = 4;
