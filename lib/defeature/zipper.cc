@@ -15,7 +15,6 @@ constexpr double degree = std::numbers::pi / 180;
 /// bottom of a slot, and closing it would bring two sheets together.
 constexpr double fold_angle = 160 * degree;
 constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
-constexpr double wrinkle = 0.4;            ///< tolerances: higher triangles show as creases on their own
 constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
 constexpr double off_plane = 1e-7;         ///< of the tolerance: rounding of vertices that stay in a plane
 constexpr double flattest = 1e-6;  ///< least height of a triangle over its length, above rounding errors
