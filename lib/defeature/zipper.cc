@@ -158,7 +158,6 @@ bool Zipper::may_merge(int h, int gone) const {
   if (drift[gone] + norm(points[gone] - points[kept]) > options_.tolerance) return false;
   const Vec3 to = points[kept];
   bool ok = true;
-  double before = 0, after = 0;  // the sharpest fold
   auto moved = [&](int t) {
     Vec3 p[3];
     for (int i = 0; i < 3; ++i) p[i] = mesh.tris[t][i] == gone ? to : points[mesh.tris[t][i]];
@@ -174,8 +173,6 @@ bool Zipper::may_merge(int h, int gone) const {
   mesh.star(gone, [&](int e) {
     const int t = e / 3;
     const Vec3 old_normal = normal(t), new_normal = moved(t);
-    for (int k : {e, next(e), prev(e)})
-      if (const int o = mesh.opp[k]; o >= 0) before = std::max(before, turn(old_normal, normal(o / 3)));
     if (!options_.plane.empty() && options_.plane[origin[t]])
       ok = ok &&
            std::abs(dot(to - points[gone], old_normal)) <= off_plane * options_.tolerance * norm(old_normal);
@@ -183,10 +180,14 @@ bool Zipper::may_merge(int h, int gone) const {
     const double l = longest_edge(to, points[mesh.to(e)], points[mesh.apex(e)]);
     ok = ok && norm(new_normal) > flattest * l * l;
     ok = ok && (height(t) <= options_.tolerance || turn(old_normal, new_normal) < most_turn);
-    for (int k : {e, next(e), prev(e)})
+    double before = 0, after = 0;  // the sharpest fold at t
+    for (int k : {e, next(e), prev(e)}) {
+      if (const int o = mesh.opp[k]; o >= 0) before = std::max(before, turn(old_normal, normal(o / 3)));
       if (const int o = beyond(k); o >= 0) after = std::max(after, turn(new_normal, moved(o / 3)));
+    }
+    ok = ok && after <= std::max(fold_angle, before + degree);
   });
-  return ok && after <= std::max(fold_angle, before + degree);
+  return ok;
 }
 
 void Zipper::collapse(int h, int gone) {
