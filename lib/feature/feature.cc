@@ -30,8 +30,8 @@ constexpr double noise = 2.5;  ///< edges between weak and strong over the stron
 /// Of the creases, by length. Steps of segmented images have 0.96 or more, machined parts up to 0.8: a boss
 /// next to a groove is a step too.
 constexpr double step_share = 0.85;
-constexpr double gap = 0.05;     ///< edges between weak and strong, as a share of the strong ones' length
-constexpr double spacing = 1.5;  ///< target lengths between creases, on average
+constexpr double gap = 0.05;  ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double spacing = 1.5, dense = 0.85;  ///< target lengths between creases, on average; struts: 0.75
 /// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
 /// unasked. (At 0.02, two lines along a needle forced needles: a third of the rounds that CAD had to repeat.)
 constexpr double sliver = 0.06;
@@ -265,7 +265,7 @@ bool fades_out(const Network& net, const Chain& chain) {
 /// Drops the creases of components that do not look designed. A component looks designed if half of its
 /// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
 /// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
-/// if it is made of planes, or has large ones and less noise; or if the model edges `known` say that it did.
+/// if it is made of planes, or has large ones, less noise and more space; or if it did, as `known` says.
 void keep_designed(Network& net, double strong, double weak, const std::vector<std::uint8_t>& known) {
   std::vector<int> component;
   const int n = components(net.opposite, component), m = (int)net.opposite.size();
@@ -295,7 +295,8 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
   for (int c = 0; c < n; ++c)
     designed[c] =
         planes[c].steps < step_share &&
-        (planes[c].several >= plane_share || (planes[c].many >= many_share && between[c] < noise * sharp[c]));
+        (planes[c].several >= plane_share || (planes[c].many >= many_share && between[c] < noise * sharp[c] &&
+                                              area[c] > dense * net.size * sharp[c]));
   for (int h = 0; !known.empty() && h < m; ++h)
     if (known[h / 3] >> h % 3 & 1 && !net.patch[h] && !net.given[h]) designed[component[h / 3]] = 1;
   for (int h = 0; h < m; ++h) {
