@@ -27,10 +27,8 @@ constexpr double design_share = 0.5;         ///< of the strong edges, by length
 constexpr double plane_share = 0.8;          ///< of the area, in plane faces of several triangles
 constexpr double many_share = 0.1;           ///< the same of eight or more: parts 0.17, figures up to 0.03
 constexpr double noise = 2.5;  ///< edges between weak and strong over the strong: parts up to 2, scans 3.2
-/// Of the creases, by length. Steps of segmented images have 0.96 or more, machined parts up to 0.8: a boss
-/// next to a groove is a step too.
-constexpr double step_share = 0.85;
-constexpr double gap = 0.05;  ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double step_share = 0.85;  ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
+constexpr double gap = 0.05;         ///< edges between weak and strong, as a share of the strong ones' length
 constexpr double spacing = 1.5, dense = 0.85;  ///< target lengths between creases, on average; struts: 0.75
 /// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
 /// unasked. (At 0.02, two lines along a needle forced needles: a third of the rounds that CAD had to repeat.)
