@@ -46,8 +46,20 @@ struct Stream {
 /// leaves in its place.
 bool is_stream(std::string_view bytes);
 
+/// The bytes of a file, from the first to the last, of which only some need to be in memory.
+class Source {
+ public:
+  virtual ~Source() = default;
+  /// Returns what comes next: n bytes or more, or all that are left; until the next call.
+  virtual std::string_view next(std::size_t n) = 0;
+  virtual void drop(std::size_t n) = 0;
+  /// Returns how many bytes are left at most.
+  virtual std::size_t most_left() const = 0;
+};
+
 /// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
 /// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".
+Stream read_stream(Source& source, const std::string& where);
 Stream read_stream(std::string_view bytes, const std::string& where);
 
 /// Returns the stream in bytes: ascii with the shortest numbers that read back the same, or binary.

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <utility>
 
 #include "lib/core/error.h"
 #include "tools/progress_line.h"
@@ -51,6 +52,8 @@ int create_partial_file(std::string& name) {
   return fd;
 }
 
+constexpr std::size_t block = 1 << 20;  // bytes, of a pipe and of what is read at a time
+
 std::string last_error() { return std::strerror(errno); }
 
 /// Returns whether a path is written to directly: devices, pipes, and the names of open descriptors
@@ -77,9 +80,9 @@ std::string end_of_links(const std::string& path) {
 
 }  // namespace
 
-void FileBytes::reserve(std::size_t more) {
-  if (size_ + more <= capacity_) return;
-  capacity_ = std::max(size_ + more, 2 * capacity_);
+void InputFile::reserve(std::size_t more) {
+  if (end_ + more <= capacity_) return;
+  capacity_ = std::max(end_ + more, 2 * capacity_);
   char* larger = static_cast<char*>(std::realloc(data_.get(), capacity_));
   if (!larger) throw std::bad_alloc();
   (void)data_.release();
@@ -91,38 +94,46 @@ void FileBytes::reserve(std::size_t more) {
               MADV_HUGEPAGE);
 }
 
-FileBytes read_file(const std::string& path) {
-  const bool standard = path == "-";
-  const std::string where = standard ? "stdin" : path;
-  const int fd = standard ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY);
-  if (fd < 0) throw BadInput(where + ": " + last_error());
-  FileBytes bytes;
-  std::size_t size = 0;
+InputFile::InputFile(const std::string& path)
+    : where_(path == "-" ? "stdin" : path), fd_(path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY)) {
+  if (fd_ < 0) throw BadInput(where_ + ": " + last_error());
   struct stat info {};
-  // one byte more than the file has, so that its end is seen without growing
-  if (::fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) bytes.reserve(info.st_size + 1);
-  constexpr std::size_t pipe_block = 1 << 20;
+  if (::fstat(fd_, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > 0)
+    known_ = true, unread_ = info.st_size;
 #ifdef F_SETPIPE_SZ
   // a pipe that holds more: its two programs wake each other sixteen times less often
-  ::fcntl(fd, F_SETPIPE_SZ, static_cast<int>(pipe_block));
+  ::fcntl(fd_, F_SETPIPE_SZ, static_cast<int>(block));
 #endif
-  for (;;) {
-    if (bytes.space() == 0) bytes.reserve(pipe_block);
-    const ssize_t n = ::read(fd, bytes.end(), bytes.space());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const std::string why = last_error();
-      if (!standard) ::close(fd);
-      throw BadInput(where + ": " + why);
+}
+
+InputFile::~InputFile() {
+  if (fd_ > STDIN_FILENO) ::close(fd_);
+}
+
+void InputFile::read_some() {
+  ssize_t n;
+  do n = ::read(fd_, data_.get() + end_, capacity_ - end_);
+  while (n < 0 && errno == EINTR);
+  if (n < 0) throw BadInput(where_ + ": " + last_error());
+  if (n == 0 && !any_) throw BadInput(where_ + ": the input is empty");
+  if (!any_) note_input_begins();
+  any_ = true;
+  ended_ = n == 0;
+  end_ += n;
+  unread_ = ended_ ? 0 : unread_ - std::min<std::size_t>(unread_, n);
+}
+
+std::string_view InputFile::next(std::size_t n) {
+  while (end_ - begin_ < n && !ended_) {
+    if (end_ == capacity_ && begin_ > 0) {
+      std::memmove(data_.get(), data_.get() + begin_, end_ - begin_);
+      end_ -= std::exchange(begin_, 0);
     }
-    if (n == 0) break;
-    if (size == 0) note_input_begins();
-    bytes.add(n);
-    size += n;
+    // one byte more than the file has, so that its end is seen without growing
+    if (end_ == capacity_) reserve(known_ && n > unread_ ? unread_ + 1 : block);
+    read_some();
   }
-  if (!standard) ::close(fd);
-  if (size == 0) throw BadInput(where + ": the input is empty");
-  return bytes;
+  return {data_.get() + begin_, end_ - begin_};
 }
 
 void write_all(int fd, std::string_view bytes, const std::string& where) {

@@ -12,24 +12,33 @@
 
 namespace meshpipe {
 
-/// The bytes of a file, in a block that grows in place and is not filled with zeros first.
-class FileBytes {
+/// A file that is read, or standard input for "-". What is in memory is a block that grows in place and is
+/// not filled with zeros first.
+class InputFile : public Source {
  public:
-  /// Makes space for `more` bytes after those read. Throws std::bad_alloc.
-  void reserve(std::size_t more);
-  char* end() const { return data_.get() + size_; }
-  std::size_t space() const { return capacity_ - size_; }
-  void add(std::size_t n) { size_ += n; }
-  operator std::string_view() const { return {data_.get(), size_}; }
+  /// Throws: BadInput if the file cannot be opened. Of the others, `next` does if it is empty or unreadable.
+  explicit InputFile(const std::string& path);
+  ~InputFile() override;
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  std::string_view next(std::size_t n) override;
+  void drop(std::size_t n) override { begin_ += n; }
+  std::size_t most_left() const override { return end_ - begin_ + unread_; }
+  std::string_view rest() { return next(std::string_view::npos); }
 
  private:
-  std::unique_ptr<char, decltype(&std::free)> data_{nullptr, std::free};
-  std::size_t size_ = 0, capacity_ = 0;
-};
+  void reserve(std::size_t more);
+  /// Reads some bytes; at the end of the file, none.
+  void read_some();
 
-/// Reads a file, or standard input for "-".
-/// Throws: BadInput if the file cannot be read or is empty.
-FileBytes read_file(const std::string& path);
+  std::string where_;
+  int fd_;
+  std::unique_ptr<char, decltype(&std::free)> data_{nullptr, std::free};
+  std::size_t begin_ = 0, end_ = 0, capacity_ = 0;
+  std::size_t unread_ = std::size_t(-1) / 2;  ///< bytes, at most
+  bool known_ = false;                        ///< is `unread_` what a file has?
+  bool any_ = false, ended_ = false;
+};
 
 /// Writes all bytes to an open file; `where` names it in messages. Throws CannotWrite.
 void write_all(int fd, std::string_view bytes, const std::string& where);

@@ -36,10 +36,13 @@ Stream& Io::read() {
   return stream;
 }
 
-std::string Io::read_bytes(const std::string& path) { return std::string(std::string_view(read_file(path))); }
+std::string Io::read_bytes(const std::string& path) { return std::string(InputFile(path).rest()); }
 
 Stream Io::read(const std::string& path) const {
-  Stream stream = read_any(read_file(path), path == "-" ? "stdin" : path);
+  InputFile file(path);
+  const std::string where = path == "-" ? "stdin" : path;
+  constexpr std::size_t start = 200;  // bytes that show a stream
+  Stream stream = is_stream(file.next(start)) ? read_stream(file, where) : read_any(file.rest(), where);
   // what the reader of a foreign file left out; the remarks of a stream were reported by earlier programs
   if (stream.history.empty())
     for (const std::string& remark : stream.remarks) say(remark);

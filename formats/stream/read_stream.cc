@@ -19,8 +19,8 @@ namespace {
 /// Reads the header: the elements, and what the comments say of the stream.
 class Header {
  public:
-  Header(std::string_view bytes, const std::string& where, Stream& stream)
-      : bytes_(bytes), where_(where), stream_(stream) {}
+  Header(Source& source, const std::string& where, Stream& stream)
+      : source_(source), where_(where), stream_(stream) {}
 
   void read();
   /// Where the rows begin: byte, and line counted from 1.
@@ -37,15 +37,20 @@ class Header {
   void property(const std::vector<std::string_view>& w);
   void finish(Element& e);
 
-  std::string_view bytes_;
+  Source& source_;
   const std::string& where_;
   Stream& stream_;
+  std::string_view bytes_;  // as far as it was read
   std::size_t at_ = 0, line_ = 1;
 };
 
 std::string_view Header::next_line() {
-  std::size_t end = bytes_.find('\n', at_);
-  if (end == std::string_view::npos) fail("the file ends within line " + std::to_string(line_));
+  std::size_t end;
+  while ((end = bytes_.find('\n', at_)) == std::string_view::npos) {
+    const std::size_t known = bytes_.size();
+    bytes_ = source_.next(known + 1);
+    if (bytes_.size() == known) fail("the file ends within line " + std::to_string(line_));
+  }
   std::string_view l = bytes_.substr(at_, end - at_);
   at_ = end + 1;
   return l;
@@ -160,43 +165,33 @@ void Header::finish(Element& e) {
   for (const Property& p : e.properties) e.stride += type_sizes[(int)p.type];
   // an ascii row has at least a digit and a blank per value
   std::size_t least = stream_.ascii ? 2 * (e.properties.size() + (e.has_list ? 4 : 0)) : e.stride;
-  if (e.rows * least > bytes_.size())
+  if (e.rows * least > source_.most_left())
     fail("element '" + e.name + "' has " + std::to_string(e.rows) + " rows, but only " +
-         std::to_string(bytes_.size() - at_) + " bytes follow the header");
+         std::to_string(source_.most_left() - at_) + " bytes follow the header");
 }
 
 std::size_t place(const Stream& stream, const Element& e, long long row) {
   return stream.ascii ? e.first + row : e.first + row * e.stride;
 }
 
-/// Calls take(r) for all rows, in parallel. Returns the first one for which it is false, or -1.
-template <class Take>
-long long first_refused(long long rows, const Take& take) {
-  constexpr long long few = 50000;  // less than a millisecond
-  long long refused = rows;
-#pragma omp parallel for schedule(static) reduction(min : refused) if (rows > few)
-  for (long long r = 0; r < rows; ++r)
-    if (!take(r)) refused = std::min(refused, r);
-  return refused < rows ? refused : -1;
-}
-
 /// Reads the rows of the elements.
 class Rows {
  public:
   /// `at` and `line`: where the rows begin.
-  Rows(std::string_view bytes, const std::string& where, Stream& stream, std::size_t at, std::size_t line)
-      : bytes_(bytes), where_(where), stream_(stream), at_(at), line_(line) {}
+  Rows(Source& source, const std::string& where, Stream& stream, std::size_t at, std::size_t line)
+      : source_(source), where_(where), stream_(stream), at_(at), line_(line) {}
 
   void read(std::vector<Element>& elements) {
+    constexpr auto all = std::string_view::npos;
+    if (stream_.ascii) bytes_ = source_.next(all), at_ = 0;
     for (Element& e : elements) {
       if (stream_.ascii)
         read_ascii(e);
       else
         read_binary(e);
     }
-    if (at_ != bytes_.size())
-      fail(std::to_string(bytes_.size() - at_) + " bytes follow the last row of '" + elements.back().name +
-           "'");
+    if (const std::size_t left = stream_.ascii ? bytes_.size() - at_ : source_.next(all).size(); left > 0)
+      fail(std::to_string(left) + " bytes follow the last row of '" + elements.back().name + "'");
   }
 
  private:
@@ -205,21 +200,28 @@ class Rows {
   }
 
   /// Gives every property of an element its column, except those that the mesh itself holds.
-  void allocate(const Element& e, Table& table) {
+  void declare(const Element& e, Table& table) {
+    constexpr long long most = 1 << 26;  // a damaged header does not ask for more
+    const std::size_t rows = std::min(e.rows, most);
     table.name = e.name;
     table.rows = e.rows;
     for (const Property& p : e.properties) {
-      Column c{p.name, {}};
-      if (p.type == Type::uchar) c.data = std::vector<std::uint8_t>(e.rows);
-      if (p.type == Type::integer) c.data = std::vector<int>(e.rows);
-      if (p.type == Type::real) c.data = std::vector<double>(e.rows);
-      table.columns.push_back(std::move(c));
+      Column& c = table.columns.emplace_back(Column{p.name, {}});
+      if (p.type == Type::uchar) c.data = std::vector<std::uint8_t>();
+      if (p.type == Type::integer) c.data = std::vector<int>();
+      if (p.type == Type::real) c.data = std::vector<double>();
     }
     if (e.name == "vertex") {
       table.columns.erase(table.columns.begin(), table.columns.begin() + 3);
-      stream_.surface.points.resize(e.rows);
+      stream_.surface.points.reserve(rows);
     }
-    if (e.name == "face") stream_.surface.tris.resize(e.rows);
+    if (e.name == "face") stream_.surface.tris.reserve(rows);
+    for (Column& c : table.columns) std::visit([&](auto& v) { v.reserve(rows); }, c.data);
+  }
+  void resize(const Element& e, Table& table, std::size_t rows) {
+    if (e.name == "vertex") stream_.surface.points.resize(rows);
+    if (e.name == "face") stream_.surface.tris.resize(rows);
+    for (Column& c : table.columns) std::visit([&](auto& v) { v.resize(rows); }, c.data);
   }
 
   Table& table_for(const Element& e) {
@@ -229,51 +231,58 @@ class Rows {
   }
 
   void read_binary(Element& e) {
+    constexpr std::size_t block = 1 << 18;  // bytes that stay in the cache
     e.first = at_;
-    if (e.rows * e.stride > bytes_.size() - at_)
-      fail("the file ends within '" + e.name + "': expected " + std::to_string(e.rows) + " rows of " +
-           std::to_string(e.stride) + " bytes, but only " + std::to_string(bytes_.size() - at_) +
-           " bytes are left");
     Table& table = table_for(e);
-    allocate(e, table);
-    const char* base = bytes_.data() + at_;
+    declare(e, table);
+    for (long long first = 0, end; first < e.rows; first = end) {
+      const long long wanted = std::min<long long>(e.rows - first, block / e.stride + 1);
+      const std::string_view bytes = source_.next(wanted * e.stride);
+      end = first + std::min<long long>(e.rows - first, bytes.size() / e.stride);
+      if (end == first)
+        fail("the file ends within '" + e.name + "': expected " + std::to_string(e.rows) + " rows of " +
+             std::to_string(e.stride) + " bytes, but only " +
+             std::to_string(first * e.stride + bytes.size()) + " bytes are left");
+      end = std::min(end, first + wanted);
+      resize(e, table, end);
+      take_rows(e, table, bytes.data(), first, end);
+      source_.drop((end - first) * e.stride);
+    }
+    at_ += e.rows * e.stride;
+  }
+
+  /// Takes rows of which the first is at `base`.
+  void take_rows(const Element& e, Table& table, const char* base, long long first, long long end) {
     std::size_t offset = 0;
     if (e.name == "vertex") {
-      const long long r = first_refused(e.rows, [&](long long i) {
+      for (long long i = first; i < end; ++i) {
         Vec3& p = stream_.surface.points[i];
-        std::memcpy(&p, base + i * e.stride, 24);
-        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      });
-      if (r >= 0) not_finite(e, r);
+        std::memcpy(&p, base + (i - first) * e.stride, 24);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) not_finite(e, i);
+      }
       offset = 24;
     } else if (e.has_list) {
-      const long long r = first_refused(e.rows, [&](long long i) {
-        const char* row = base + i * e.stride;
+      for (long long i = first; i < end; ++i) {
+        const char* row = base + (i - first) * e.stride;
         std::memcpy(stream_.surface.tris[i].data(), row + 1, 12);
-        return *row == 3;
-      });
-      if (r >= 0) {
-        at_ += r * e.stride;
-        fail("face " + std::to_string(r) + " has " + std::to_string((unsigned char)bytes_[at_]) +
-             " corners, not 3");
+        if (*row != 3)
+          fail_at(where_, place(stream_, e, i),
+                  "face " + std::to_string(i) + " has " + std::to_string((unsigned char)*row) +
+                      " corners, not 3");
       }
       offset = 13;
     }
-    for (Column& c : table.columns) {
+    for (Column& c : table.columns)
       std::visit(
-          [&](auto& v) {
-            using T = typename std::decay_t<decltype(v)>::value_type;
-            const long long r = first_refused(e.rows, [&](long long i) {
-              std::memcpy(&v[i], base + i * e.stride + offset, sizeof(T));
-              if constexpr (std::is_same_v<T, double>) return std::isfinite(v[i]);
-              return true;
-            });
-            if (r >= 0) not_finite(e, r);
+          [&]<class T>(std::vector<T>& v) {
+            for (long long i = first; i < end; ++i) {
+              std::memcpy(&v[i], base + (i - first) * e.stride + offset, sizeof(T));
+              if constexpr (std::is_same_v<T, double>)
+                if (!std::isfinite(v[i])) not_finite(e, i);
+            }
             offset += sizeof(T);
           },
           c.data);
-    }
-    at_ += e.rows * e.stride;
   }
 
   [[noreturn]] void not_finite(const Element& e, long long row) const {
@@ -316,7 +325,8 @@ class Rows {
   void read_ascii(Element& e) {
     e.first = line_;
     Table& table = table_for(e);
-    allocate(e, table);
+    declare(e, table);
+    resize(e, table, e.rows);
     for (long long r = 0; r < e.rows; ++r, ++line_) {
       if (e.name == "vertex") {
         Vec3& p = stream_.surface.points[r];
@@ -340,9 +350,10 @@ class Rows {
     }
   }
 
-  std::string_view bytes_;
+  Source& source_;
   const std::string& where_;
   Stream& stream_;
+  std::string_view bytes_;  // of an ascii stream: all after the header
   std::size_t at_, line_;
 };
 
@@ -468,8 +479,8 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
 
 }  // namespace
 
-Stream read_stream(std::string_view bytes, const std::string& where) {
-  if (bytes.starts_with("mply-failed ")) {
+Stream read_stream(Source& source, const std::string& where) {
+  if (const std::string_view bytes = source.next(200); bytes.starts_with("mply-failed ")) {
     auto w = words(bytes.substr(0, std::min(bytes.find('\n'), bytes.size())));
     int status = 1;
     if (w.size() == 3 && parse(w[2], status) && status > 0 && status < 256 &&
@@ -478,11 +489,23 @@ Stream read_stream(std::string_view bytes, const std::string& where) {
     throw BadInput(where + ":1: a damaged 'mply-failed' line");
   }
   Stream stream;
-  Header header(bytes, where, stream);
+  Header header(source, where, stream);
   header.read();
-  Rows(bytes, where, stream, header.bytes(), header.lines()).read(header.elements);
+  source.drop(header.bytes());
+  Rows(source, where, stream, header.bytes(), header.lines()).read(header.elements);
   check_indices(stream, header.elements, where);
   return stream;
+}
+
+Stream read_stream(std::string_view bytes, const std::string& where) {
+  struct Memory : Source {
+    std::string_view left;
+    std::string_view next(std::size_t) override { return left; }
+    void drop(std::size_t n) override { left.remove_prefix(n); }
+    std::size_t most_left() const override { return left.size(); }
+  } memory;
+  memory.left = bytes;
+  return read_stream(memory, where);
 }
 
 }  // namespace meshpipe

@@ -102,6 +102,33 @@ TEST(Mply, BinaryRowsAreChecked) {
   EXPECT_PRED1(names_a_place, failure(good + '\n', read_stream));
 }
 
+TEST(Mply, IsReadPieceByPiece) {
+  /// Has no more in memory than it was asked for.
+  struct Pieces : Source {
+    explicit Pieces(std::string_view all) : left(all) {}
+    std::string_view next(std::size_t n) override { return left.substr(0, n); }
+    void drop(std::size_t n) override { left.remove_prefix(n); }
+    std::size_t most_left() const override { return std::size_t(-1) / 2; }
+    std::string_view left;
+  };
+  Mesh mesh;
+  std::vector<int> patch;
+  for (int i = 0; i < 30000; ++i) {  // more than a block
+    mesh.points.push_back({1. * i, 2. * i, 3. * i});
+    mesh.tris.push_back({i, (i + 1) % 30000, (i + 2) % 30000});
+    patch.push_back(i);
+  }
+  Stream stream;
+  stream.surface = surface_of(std::move(mesh));
+  stream.surface.face.set("patch", std::move(patch));
+  for (bool ascii : {false, true}) {
+    const std::string bytes = write_stream(stream, ascii);
+    Pieces all(bytes), some(std::string_view(bytes).substr(0, bytes.size() - 5000));
+    EXPECT_EQ(write_stream(read_stream(all, "in"), ascii), bytes);
+    EXPECT_THROW(read_stream(some, "in"), BadInput);
+  }
+}
+
 TEST(Mply, TheLineOfAFailedProgramIsPassedOn) {
   try {
     read_any("mply-failed mclean 4\n", "stdin");
