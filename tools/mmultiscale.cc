@@ -2,6 +2,7 @@
 // mmultiscale: cut every part of large aspect ratio in two, through the levels of its Laplace maps.
 #include <filesystem>
 
+#include "formats/stream/part_table.h"
 #include "formats/stream/stages.h"
 #include "lib/core/cut.h"
 #include "lib/core/number.h"

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "formats/stream/line_tables.h"
+#include "formats/stream/part_table.h"
 #include "formats/stream/shards.h"
 #include "formats/stream/stages.h"
-#include "lib/core/topology.h"
 #include "lib/plan/plan.h"
 #include "tools/common.h"
 #include "tools/report/chart_report.h"
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
     const Table* known = stream.find("part");
     Table parts = known && surface.tris.size() == faces_before && n_parts == n_before
                       ? *known
-                      : part_table(surface, n_parts);
+                      : part_table(surface, n_parts, known);
     add_chart_columns(parts, reports);
     drop_downstream(stream, Stage::charts);
     stream.set(std::move(parts));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mpartition: cut until every part has genus 0 and a boundary.
+#include "formats/stream/part_table.h"
 #include "formats/stream/stages.h"
 #include "lib/core/topology.h"
 #include "lib/partition/partition.h"

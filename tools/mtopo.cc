@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "formats/stream/part_table.h"
 #include "lib/clean/clean.h"
 #include "lib/core/topology.h"
 #include "tools/common.h"

@@ -60,14 +60,15 @@ std::vector<std::vector<int>> opposite_of_parts(const std::vector<SubMesh>& part
   for (const SubMesh& p : parts)
     for (std::size_t i = 0; i < p.face.size(); ++i) number[p.face[i]] = (int)i;
   std::vector<std::vector<int>> within(parts.size());
-  for (std::size_t p = 0; p < parts.size(); ++p) {
+  auto take = [&](int p) {
     within[p].reserve(3 * parts[p].face.size());
     for (int t : parts[p].face)
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const int o = whole.opposite[h];
         within[p].push_back(o < 0 || label[o / 3] != label[t] ? -1 : 3 * number[o / 3] + o % 3);
       }
-  }
+  };
+  parallel_for((int)parts.size(), take);
   return within;
 }
 
@@ -283,27 +284,6 @@ std::vector<Topology> topology_of_components(const Connectivity& c, const std::v
   const std::vector<SubMesh> meshes = split_by_label(c.mesh, component, n);
   const std::vector<std::vector<int>> within = opposite_of_parts(meshes, c, component);
   return for_parts(n, [&](int p) { return measure({meshes[p], within[p]}, 1, meshes[p].vertex); });
-}
-
-Table part_table(const std::vector<Topology>& parts) {
-  Table table{"part", parts.size(), {}};
-  auto add = [&]<class T, class M>(const char* name, M member) {
-    std::vector<T> column;
-    for (const Topology& t : parts) column.push_back(t.*member);
-    table.set<T>(name, std::move(column));
-  };
-  add.template operator()<int>("genus", &Topology::genus);
-  add.template operator()<int>("loops", &Topology::loops);
-  add.template operator()<int>("faces", &Topology::faces);
-  add.template operator()<double>("area", &Topology::area);
-  add.template operator()<double>("eta_cyl", &Topology::eta_cyl);
-  add.template operator()<double>("eta_box", &Topology::eta_box);
-  add.template operator()<double>("eta_geo", &Topology::eta_geo);
-  return table;
-}
-
-Table part_table(const Surface& surface, int n) {
-  return part_table(topology_of_parts(surface, surface.face.get<int>("part"), n));
 }
 
 bool admissible(const Topology& t, double max_aspect) {

@@ -62,11 +62,6 @@ std::vector<Topology> topology_of_parts(const Connectivity& c, const std::vector
 /// The same for the components, as `components` has numbered them; `opposite` is the mesh's.
 std::vector<Topology> topology_of_components(const Connectivity& c, const std::vector<int>& component, int n);
 
-/// The stream's table `part`, one row per part: int genus loops faces; double area eta_cyl eta_box eta_geo.
-Table part_table(const std::vector<Topology>& parts);
-/// The table of the parts that face column `part` names, 0..n-1.
-Table part_table(const Surface& surface, int n);
-
 /// The paper's conditions (5): genus 0, at least one loop, eta_geo below the limit, one component.
 bool admissible(const Topology& t, double max_aspect = 4);
 /// Which of them fail, in words separated by commas: "2 pieces", "genus 1", "closed", "too long"; or "ok".

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "formats/stream/part_table.h"
 #include "lib/core/error.h"
 
 using namespace meshpipe;
