@@ -72,6 +72,6 @@ struct ConnectedPart : SubMesh {
 };
 
 /// Copies the triangles with label `l` (per triangle) into a part; edges to others become border.
-ConnectedPart select_part(const Connectivity& whole, const std::vector<int>& label, int l);
+ConnectedPart select_part(const Connectivity& whole, std::vector<int> label, int l);
 
 }  // namespace meshpipe

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/mesh.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +10,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/parallel.h"
 
 namespace meshpipe {
 
@@ -69,35 +72,44 @@ Surface surface_of(Mesh mesh) {
   return s;
 }
 
+SubMesh sub_mesh(const Mesh& mesh, std::vector<int> faces, std::vector<int>& number) {
+  SubMesh part;
+  part.face = std::move(faces);
+  part.tris.reserve(part.face.size());
+  for (int t : part.face) {
+    Tri& corners = part.tris.emplace_back(mesh.tris[t]);
+    for (int& v : corners) {
+      if (number[v] < 0) {
+        number[v] = (int)part.vertex.size();
+        part.vertex.push_back(v);
+      }
+      v = number[v];
+    }
+  }
+  part.points.reserve(part.vertex.size());
+  for (int v : part.vertex) {
+    part.points.push_back(mesh.points[v]);
+    number[v] = -1;
+  }
+  return part;
+}
+
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n) {
-  std::vector<SubMesh> parts(n);
   std::vector<int> count(n, 0);
   for (int l : label)
     if (0 <= l && l < n) ++count[l];
-  for (int l = 0; l < n; ++l) parts[l].face.reserve(count[l]);
+  std::vector<std::vector<int>> faces(n), number(omp_get_max_threads());
+  for (int l = 0; l < n; ++l) faces[l].reserve(count[l]);
   for (int t = 0; t < (int)mesh.tris.size(); ++t)
-    if (0 <= label[t] && label[t] < n) parts[label[t]].face.push_back(t);
-  std::vector<int> local(mesh.points.size(), -1);
-  for (SubMesh& p : parts) {
-    p.tris.reserve(p.face.size());
-    for (int t : p.face) {
-      Tri r;
-      for (int i = 0; i < 3; ++i) {
-        int v = mesh.tris[t][i];
-        if (local[v] < 0) {
-          local[v] = (int)p.vertex.size();
-          p.vertex.push_back(v);
-        }
-        r[i] = local[v];
-      }
-      p.tris.push_back(r);
-    }
-    p.points.reserve(p.vertex.size());
-    for (int v : p.vertex) {
-      p.points.push_back(mesh.points[v]);
-      local[v] = -1;
-    }
-  }
+    if (0 <= label[t] && label[t] < n) faces[label[t]].push_back(t);
+  std::vector<SubMesh> parts(n);
+  constexpr std::size_t worth_threads = 30000;  // triangles
+  auto take = [&](int l) {
+    std::vector<int>& mine = number[omp_get_thread_num()];
+    mine.resize(mesh.points.size(), -1);
+    parts[l] = sub_mesh(mesh, std::move(faces[l]), mine);
+  };
+  parallel_for(n, take, mesh.tris.size() > worth_threads);
   return parts;
 }
 

@@ -70,6 +70,9 @@ struct SubMesh : Mesh {
   std::vector<int> face;
 };
 
+/// Returns the part of these triangles. `number` is -1 for each point of the mesh, before and after.
+SubMesh sub_mesh(const Mesh& mesh, std::vector<int> faces, std::vector<int>& number);
+
 /// Splits a mesh by a label per triangle (0 <= label < n; other labels are left out) in linear time.
 /// Corners keep their order; vertices are numbered by first use; a vertex on two parts is in both.
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n);

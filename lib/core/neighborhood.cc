@@ -56,7 +56,7 @@ Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<in
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       const int o = opposite[h], u = o < 0 ? -1 : place[o / 3];
       near.opposite.push_back(u < 0 ? -1 : 3 * u + o % 3);
-      if (o >= 0 && u < 0) near.rim.push_back({origin(whole.tris, h), target(whole.tris, h), o});
+      if (o >= 0 && u < 0) near.rim.push_back({origin(whole.tris, h), target(whole.tris, h), h});
     }
   std::sort(near.rim.begin(), near.rim.end());
   return near;
@@ -79,14 +79,16 @@ void put_back(const Neighborhood& part, const CutSurface& connected) {
   for (int t = 0; t < (int)s.tris.size(); ++t)
     for (int i = 0; i < 3; ++i) whole.tris[face(t)][i] = vertex(s.tris[t][i]);
   if (opposite.empty()) return;
+  std::vector<Neighborhood::Rim> rim = part.rim;
+  for (Neighborhood::Rim& r : rim) r.half_edge = opposite[r.half_edge];
   opposite.resize(3 * whole.tris.size());
   for (int h = 0; h < (int)part.opposite.size(); ++h) {
     const int o = part.opposite[h], here = half_edge(h);
     opposite[here] = o < 0 ? -1 : half_edge(o);
     if (o >= 0) continue;
     const Neighborhood::Rim edge{origin(whole.tris, here), target(whole.tris, here), -1};
-    const auto beyond = std::lower_bound(part.rim.begin(), part.rim.end(), edge);
-    if (beyond == part.rim.end() || beyond->from != edge.from || beyond->to != edge.to) continue;
+    const auto beyond = std::lower_bound(rim.begin(), rim.end(), edge);
+    if (beyond == rim.end() || beyond->from != edge.from || beyond->to != edge.to) continue;
     opposite[here] = beyond->half_edge;
     opposite[beyond->half_edge] = here;
   }

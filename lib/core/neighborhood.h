@@ -14,7 +14,7 @@ struct Neighborhood {
   std::vector<int> face, vertex;  ///< in the whole; of those that were taken
 
   struct Rim {
-    int from, to, half_edge;  ///< vertices of the whole, and the half-edge of it beyond
+    int from, to, half_edge;  ///< of the whole
     auto operator<=>(const Rim&) const = default;
   };
   std::vector<Rim> rim{};  ///< sorted

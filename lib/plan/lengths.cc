@@ -2,11 +2,13 @@
 // Cuts every part that is too long, until none is.
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <string>
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
 #include "lib/core/neighborhood.h"
+#include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/partition/partition.h"
 #include "lib/plan/plan.h"
@@ -20,15 +22,10 @@ struct Work {
   const MultiscaleOptions& options;
   std::vector<MultiscaleCut>* cuts;
   std::vector<int> opposite;
-  std::vector<Topology> is;   ///< of each part
-  std::vector<char> was_cut;  ///< of each part
+  std::vector<Topology> is;           ///< of each part
+  std::vector<char> was_cut;          ///< of each part
+  std::vector<std::set<int>> near{};  ///< of each part: those that share a vertex with it
   int parts() const { return (int)is.size(); }
-};
-
-/// A part that is to be cut.
-struct Task {
-  int part, depth;
-  double share;  ///< of the work, as predicted
 };
 
 /// A neighborhood with its part cut in two.
@@ -81,57 +78,94 @@ Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vec
   return best;
 }
 
-/// The triangles of one part with its connectivity; marks them in `active`.
-ConnectedPart take_part(const Neighborhood& near, int p, std::vector<char>& active) {
-  const std::vector<int>& label = near.surface.face.get<int>("part");
-  active.resize(label.size());
-  for (std::size_t t = 0; t < label.size(); ++t) active[t] = label[t] == p;
-  return select_part({near.surface, near.opposite}, label, p);
+/// A part that is to be cut.
+struct Task {
+  int part, depth;
+  double share;  ///< of the work, as predicted
+  bool found = false;
+  Neighborhood near{};  ///< if found: with its part cut
+  Halves made{};        ///< without loops if the part cannot be cut
+  MultiscaleCut cut{};
+};
+constexpr double once = 2. / 3;  // of what a cut is predicted to take; the rest is for cutting its halves
+
+/// Finds the cut of a part in its neighborhood.
+void find_cut(Work& work, Task& task) {
+  Neighborhood& near = task.near;
+  near = take_neighborhood({work.surface, work.opposite}, work.surface.face.get<int>("part"), task.part);
+  const ConnectedPart part =
+      select_part({near.surface, near.opposite}, near.surface.face.get<int>("part"), task.part);
+  std::vector<char> active(near.face.size(), 0);
+  for (int t : part.face) active[t] = 1;
+  std::vector<double> field;
+  CutMaps maps = best_cut(part, once * task.share, field);
+  const Assessment expected = assess(part, field);
+  task.cut.eta = work.is[task.part].eta_geo;
+  task.cut.levels = (int)maps.levels.size();
+  task.cut.length = expected.length / diagonal(part);
+  if (work.options.keep_maps) task.cut.maps = std::move(maps);
+  if (expected.valid) task.made = split(near, part, field, active, expected.loops);
+  near.surface = std::move(task.made.surface);
+  near.opposite = std::move(task.made.opposite);
+  task.found = true;
+}
+
+/// Finds the cuts of the next tasks, the last first, that no other one can change: of parts that share no
+/// vertex with one to be cut before.
+void find_cuts(Work& work, std::vector<Task>& tasks) {
+  constexpr int most = 32;  // as their neighborhoods take memory
+  std::vector<char> before(work.parts(), 0);
+  std::vector<int> next;
+  for (int i = (int)tasks.size() - 1; i >= 0 && i >= (int)tasks.size() - most; --i) {
+    const std::set<int>& near = work.near[tasks[i].part];
+    if (!tasks[i].found && std::none_of(near.begin(), near.end(), [&](int p) { return before[p]; }))
+      next.push_back(i);
+    before[tasks[i].part] = 1;
+  }
+  parallel_for((int)next.size(), [&](int i) { find_cut(work, tasks[next[i]]); });
 }
 
 /// Cuts one part in two; adds the tasks of halves that are still too long. Nothing if it cannot be cut.
-void cut_part(Work& work, const Task& task, std::vector<Task>& tasks) {
-  constexpr double once = 2. / 3;  // of what a cut is predicted to take; the rest is for cutting its halves
-  const MultiscaleOptions& options = work.options;
-  std::vector<char> active;
-  Neighborhood near =
-      take_neighborhood({work.surface, work.opposite}, work.surface.face.get<int>("part"), task.part);
-  const ConnectedPart part = take_part(near, task.part, active);
-  MultiscaleCut cut;
-  cut.part = task.part;
-  cut.halves[0] = task.part;
-  cut.halves[1] = work.parts();
-  cut.eta = work.is[task.part].eta_geo;
-  std::vector<double> field;
-  CutMaps maps = best_cut(part, once * task.share, field);
-  cut.levels = (int)maps.levels.size();
-  const Assessment expected = assess(part, field);
-  cut.length = expected.length / diagonal(part);
-  if (options.keep_maps) cut.maps = std::move(maps);
-  Halves made;
-  if (expected.valid) made = split(near, part, field, active, expected.loops);
+void cut_part(Work& work, Task& task, std::vector<Task>& tasks) {
+  const Halves& made = task.made;
   if (made.loops == 0) return;
-  if (work.cuts) work.cuts->push_back(cut);
   const int other = work.parts();
-  near.surface = std::move(made.surface);
-  near.opposite = std::move(made.opposite);
-  std::vector<int>& label = near.surface.face.get<int>("part");
+  task.cut.part = task.cut.halves[0] = task.part;
+  task.cut.halves[1] = other;
+  if (work.cuts) work.cuts->push_back(std::move(task.cut));
+  std::vector<int>& label = task.near.surface.face.get<int>("part");
   for (std::size_t t = 0; t < label.size(); ++t)
     if (made.side[t] == 1) label[t] = other;
-  put_back(near, {work.surface, work.opposite});
+  put_back(task.near, {work.surface, work.opposite});
   work.is.resize(other + 1);
   work.was_cut.resize(other + 1, 0);
+  work.near.push_back(work.near[task.part]);
+  work.near[other].insert(task.part);
+  for (int p : work.near[other]) work.near[p].insert(other);
   add_progress(0.3 * once * task.share);
   for (int s : {0, 1}) {
     const int half = s ? other : task.part;
     const double share = (1 - once) / 2 * task.share;
     work.was_cut[half] = 1;
     work.is[half] = made.is[s];
-    if (work.is[half].eta_geo > options.max_aspect)
+    if (work.is[half].eta_geo > work.options.max_aspect && task.depth + 1 < limit::cut_depth)
       tasks.push_back({half, task.depth + 1, share});
     else
       add_progress(share);
   }
+}
+
+/// Returns for each part those that share a vertex with it.
+std::vector<std::set<int>> near_parts(const Work& work) {
+  const std::vector<int>& label = work.surface.face.get<int>("part");
+  std::vector<std::set<int>> near(work.parts());
+  for (int h = 0; h < (int)label.size() * 3; ++h)
+    if (const int o = work.opposite[h], mine = label[h / 3]; o >= 0 && mine >= 0 && label[o / 3] != mine)
+      for (int end : {h, next(h)})
+        for_each_spoke(work.opposite, end, [&](int g) {
+          if (const int p = label[g / 3]; p >= 0 && p != mine) near[mine].insert(p);
+        });
+  return near;
 }
 
 /// Joins neighbors one of which was cut here while the union is admissible: a ring's two long arcs, each cut
@@ -142,11 +176,13 @@ void join_parts(Work& work) {
   if (*std::min_element(label.begin(), label.end()) < 0) return;  // only some of the parts are given
   const int n_before = work.parts();
   const double max_aspect = work.options.max_aspect;
-  const int faces = (int)s.tris.size(),
-            most_faces = faces > limit::large_component ? limit::faces_of_large : faces;
+  const int n_tris = (int)s.tris.size(),
+            most_faces = n_tris > limit::large_component ? limit::faces_of_large : n_tris;
   const Connectivity mesh{s, work.opposite, model_of(s)};
   Joiner joiner(mesh, label, find_regions(mesh, label, n_before));
-  std::vector<int> becomes(n_before);
+  std::vector<std::vector<int>> faces(n_before);  // of each part
+  for (int t = 0; t < n_tris; ++t) faces[label[t]].push_back(t);
+  std::vector<int> becomes(n_before), numbers(s.points.size(), -1);
   std::iota(becomes.begin(), becomes.end(), 0);
   auto length = [&](int h) { return norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]); };
   const bool any = join_neighbors(joiner, mesh, label, length, [&](int a, int b) {
@@ -157,9 +193,10 @@ void join_parts(Work& work) {
       return false;
     const Region r = joiner.joined(a, b);
     if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect || r.faces > most_faces) return false;
-    std::vector<int> both(label.size());
-    for (std::size_t t = 0; t < both.size(); ++t) both[t] = label[t] == a || label[t] == b ? 0 : -1;
-    if (!admissible(topology_of_parts({s, work.opposite}, both, 1)[0], max_aspect)) return false;
+    std::vector<int> both;
+    std::merge(faces[a].begin(), faces[a].end(), faces[b].begin(), faces[b].end(), std::back_inserter(both));
+    if (!admissible(topology_of(sub_mesh(s, both, numbers)), max_aspect)) return false;
+    faces[a] = std::move(both);
     std::replace(becomes.begin(), becomes.end(), b, a);
     return true;
   });
@@ -173,22 +210,6 @@ void join_parts(Work& work) {
     for (MultiscaleCut& c : *work.cuts)
       for (int* p : {&c.part, &c.halves[0], &c.halves[1]}) *p = number[becomes[*p]];
   work.is.assign(n, {});
-}
-
-/// The parts' topology, found again for those whose triangles are not as many as they were: a cut splits
-/// those of its neighbors.
-std::vector<Topology> refreshed(const Work& work) {
-  std::vector<Topology> is = work.is;
-  std::vector<int> label = work.surface.face.get<int>("part"), faces(is.size(), 0);
-  for (int l : label)
-    if (l >= 0) ++faces[l];
-  for (int& l : label)
-    if (l >= 0 && faces[l] == is[l].faces) l = -1;
-  if (std::all_of(label.begin(), label.end(), [](int l) { return l < 0; })) return is;
-  std::vector<Topology> changed = topology_of_parts({work.surface, work.opposite}, label, (int)is.size());
-  for (std::size_t p = 0; p < is.size(); ++p)
-    if (changed[p].faces > 0) is[p] = std::move(changed[p]);
-  return is;
 }
 
 }  // namespace
@@ -214,20 +235,22 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     }
   }
   if (!tasks.empty()) name_origins(surface);
+  work.near = near_parts(work);
   constexpr double before = 0.05, all = 0.9;  // of the work
   add_progress(before);
   for (Task& t : tasks) t.share *= all / faces;
   while (!tasks.empty()) {
-    const Task task = tasks.back();
+    if (!tasks.back().found) find_cuts(work, tasks);
+    Task task = std::move(tasks.back());
     tasks.pop_back();
-    if (task.depth >= limit::cut_depth) continue;  // cuts do not make it shorter
     if (options.most_parts > 0 && work.parts() >= options.most_parts)
       throw GoalMissed("more than " + std::to_string(options.most_parts) +
                        " parts are needed for aspect ratios below " + std::to_string(options.max_aspect));
     cut_part(work, task, tasks);
   }
   if (work.parts() > std::max(given_parts, 2)) join_parts(work);
-  if (topology) *topology = refreshed(work);
+  const bool any = std::find(work.was_cut.begin(), work.was_cut.end(), 1) != work.was_cut.end();
+  if (topology) *topology = any ? topology_of_parts({surface, work.opposite}, given, work.parts()) : work.is;
   if (neighbors) *neighbors = std::move(work.opposite);
   return work.parts();
 }
