@@ -11,6 +11,18 @@ using namespace meshpipe;
 
 namespace {
 
+/// Which of the conditions on parts fail, in words separated by commas: "2 pieces", "genus 1", "closed", "too
+/// long"; or "ok".
+std::string verdict(const Topology& t) {
+  std::string why;
+  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
+  if (t.components != 1) add(std::to_string(t.components) + " pieces");
+  if (t.genus != 0) add("genus " + std::to_string(t.genus));
+  if (t.loops == 0) add("closed");
+  if (why.empty() && !admissible(t)) add("too long");
+  return why.empty() ? "ok" : why;
+}
+
 std::string plural(std::size_t n, const std::string& what) {
   return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
 }

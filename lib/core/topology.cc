@@ -290,16 +290,6 @@ bool admissible(const Topology& t, double max_aspect) {
   return t.components == 1 && t.genus == 0 && t.loops >= 1 && t.eta_geo < max_aspect;
 }
 
-std::string verdict(const Topology& t) {
-  std::string why;
-  auto add = [&](const std::string& what) { why += (why.empty() ? "" : ", ") + what; };
-  if (t.components != 1) add(std::to_string(t.components) + " pieces");
-  if (t.genus != 0) add("genus " + std::to_string(t.genus));
-  if (t.loops == 0) add("closed");
-  if (why.empty() && !admissible(t)) add("too long");
-  return why.empty() ? "ok" : why;
-}
-
 int count_parts(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
   const int n_tris = (int)surface.tris.size();

@@ -64,8 +64,6 @@ std::vector<Topology> topology_of_components(const Connectivity& c, const std::v
 
 /// The paper's conditions (5): genus 0, at least one loop, eta_geo below the limit, one component.
 bool admissible(const Topology& t, double max_aspect = 4);
-/// Which of them fail, in words separated by commas: "2 pieces", "genus 1", "closed", "too long"; or "ok".
-std::string verdict(const Topology& t);
 
 /// The number of parts that face column `part` names. Throws NotAdmissible naming the triangle or the part if
 /// they are not 0..n-1, each with a triangle.
