@@ -10,6 +10,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/parallel.h"
 
 namespace meshpipe {
@@ -95,19 +96,17 @@ SubMesh sub_mesh(const Mesh& mesh, std::vector<int> faces, std::vector<int>& num
 }
 
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n) {
-  std::vector<int> count(n, 0);
-  for (int l : label)
-    if (0 <= l && l < n) ++count[l];
-  std::vector<std::vector<int>> faces(n), number(omp_get_max_threads());
-  for (int l = 0; l < n; ++l) faces[l].reserve(count[l]);
-  for (int t = 0; t < (int)mesh.tris.size(); ++t)
-    if (0 <= label[t] && label[t] < n) faces[label[t]].push_back(t);
+  const Lists faces = lists_of(n, [&](auto use) {
+    for (int t = 0; t < (int)mesh.tris.size(); ++t)
+      if (0 <= label[t] && label[t] < n) use(label[t], t);
+  });
+  std::vector<std::vector<int>> number(omp_get_max_threads());
   std::vector<SubMesh> parts(n);
   constexpr std::size_t worth_threads = 30000;  // triangles
   auto take = [&](int l) {
     std::vector<int>& mine = number[omp_get_thread_num()];
     mine.resize(mesh.points.size(), -1);
-    parts[l] = sub_mesh(mesh, std::move(faces[l]), mine);
+    parts[l] = sub_mesh(mesh, {faces[l].begin(), faces[l].end()}, mine);
   };
   parallel_for(n, take, mesh.tris.size() > worth_threads);
   return parts;

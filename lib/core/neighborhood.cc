@@ -23,7 +23,8 @@ void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
 
 }  // namespace
 
-Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part) {
+Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part,
+                               int corners) {
   const Surface& whole = connected.surface;
   const std::vector<int>& opposite = connected.opposite;
   Neighborhood near;
@@ -33,7 +34,8 @@ Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<in
     if (label[t] == part)
       for (int v : whole.tris[t]) within[v] = 1;
   for (int t = 0; t < n; ++t)
-    if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= 2) near.face.push_back(t);
+    if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= corners)
+      near.face.push_back(t);
   std::vector<int> number(whole.points.size(), -1);
   for (int t : near.face)
     for (int v : whole.tris[t]) number[v] = 0;

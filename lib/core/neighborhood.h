@@ -20,8 +20,10 @@ struct Neighborhood {
   std::vector<Rim> rim{};  ///< sorted
 };
 
-/// Takes the neighborhood of the triangles with this label (per triangle). Opposite half-edges may be empty.
-Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part);
+/// Takes the neighborhood of the triangles with this label (per triangle): all with as many corners that
+/// these have. Opposite half-edges may be empty.
+Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part,
+                               int corners = 2);
 
 /// Puts a neighborhood back into the surface that it was taken from, as cuts (lib/core/cut.h) have left it:
 /// what they appended is appended in the same order, and opposite half-edges follow. The result is that of

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 
@@ -68,10 +69,15 @@ Aggregates grow_aggregates(const Connectivity& mesh, const std::vector<double>& 
       c = number[c];
     }
   }
-  for (int h = 0; h < 3 * n; ++h)
-    if (int o = opposite[h]; o >= 0 && result.of[h / 3] < result.of[o / 3]) result.crossing.push_back(h);
-  auto key = [&](int h) { return std::tuple(result.of[h / 3], result.of[opposite[h] / 3], h); };
-  std::sort(result.crossing.begin(), result.crossing.end(), [&](int h, int g) { return key(h) < key(g); });
+  // by their second aggregate, then by their first
+  const Lists by_second = lists_of(result.n, [&](auto use) {
+    for (int h = 0; h < 3 * n; ++h)
+      if (int o = opposite[h]; o >= 0 && result.of[h / 3] < result.of[o / 3]) use(result.of[o / 3], h);
+  });
+  auto by_first = [&](auto use) {
+    for (int h : by_second.row) use(result.of[h / 3], h);
+  };
+  result.crossing = lists_of(result.n, by_first).row;
   return result;
 }
 

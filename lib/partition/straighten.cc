@@ -8,6 +8,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/cut.h"
+#include "lib/core/neighborhood.h"
 #include "lib/core/progress.h"
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
@@ -30,12 +31,7 @@ struct Limits {
   int n_parts;
   double snap;
   int max_faces;
-};
-
-/// A copy of the surface that is cut, which keeps its memory from one trial to the next.
-struct Trial {
-  Surface surface;
-  std::vector<int> opposite;
+  std::vector<char> whole{};  ///< the parts that are there as a whole; empty: all
 };
 
 /// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight, and
@@ -340,8 +336,8 @@ std::vector<Fault> find_faults(const std::vector<Curve>& curves, const std::vect
 /// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
 /// returns an empty list; otherwise returns the curves at fault.
 std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve>& curves,
-                                  const std::vector<Role>& role, const Attempt& attempt, const Limits& limits,
-                                  Trial& trial) {
+                                  const std::vector<Role>& role, const Attempt& attempt,
+                                  const Limits& limits) {
   Surface& surface = cut.surface;
   Bands bands = make_bands(cut, curves, role);
   if (bands.mesh.tris.empty()) return {};
@@ -353,10 +349,8 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   }
   const Measure before = measure(cut, bands.curve, curves.size());
 
-  Surface& s = trial.surface;
-  std::vector<int>& after = trial.opposite;
-  s = surface;
-  after = cut.opposite;
+  Surface s = surface;
+  std::vector<int> after = cut.opposite;
   constexpr auto band_column = "straighten band";
   s.face.set(band_column, std::move(bands.curve));
   std::vector<int> side;
@@ -367,10 +361,11 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
   keep_largest_pieces({s, after}, band, curves, part, limits.n_parts);
-  const std::vector<char> broken = broken_parts({s, after}, part, limits.n_parts, limits.max_faces);
+  std::vector<char> broken = broken_parts({s, after}, part, limits.n_parts, limits.max_faces);
+  for (std::size_t p = 0; p < limits.whole.size(); ++p) broken[p] &= limits.whole[p];
   const Measure now = measure({s, after}, band, curves.size());
   const std::vector<Fault> faults = find_faults(curves, role, broken, before, now);
-  if (faults.empty()) std::swap(surface, s), cut.opposite.swap(after);
+  if (faults.empty()) surface = std::move(s), cut.opposite = std::move(after);
   return faults;
 }
 
@@ -408,20 +403,37 @@ Handle handle_of(const Mesh& m, const Curve& c) {
 }
 
 /// Straightens these curves at once, without those that turn out to be at fault; returns those of the latter
-/// that may do better by other means.
-std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector<Handle>& handles,
-                                        const Attempt& attempt, const Limits& limits, Trial& trial) {
+/// that may do better by other means. Where they are of few parts it looks only at these.
+std::vector<Handle> straighten_together(const CutSurface& cut, std::vector<Handle> handles,
+                                        const Attempt& attempt, const Limits& limits) {
   const Surface& s = cut.surface;
   if (handles.empty()) return {};
   const std::vector<Curve> curves = find_curves(cut);
   std::vector<Role> role(curves.size(), Role::other);
   std::vector<Pair> pairs;
+  std::vector<char> named(limits.n_parts, 0);
   for (std::size_t c = 0; c < curves.size(); ++c)
     for (int h : curves[c].half_edges)
       if (std::binary_search(handles.begin(), handles.end(), Handle{origin(s.tris, h), target(s.tris, h)})) {
         role[c] = Role::moves;
         pairs.push_back({curves[c].a, curves[c].b});
+        named[curves[c].a] = named[curves[c].b] = 1;
       }
+  constexpr std::size_t few = 4;  // times as many parts
+  if (limits.whole.empty() && limits.max_faces == 0 &&
+      few * std::count(named.begin(), named.end(), 1) < named.size()) {
+    std::vector<int> other(s.tris.size());
+    for (std::size_t t = 0; t < other.size(); ++t) other[t] = !named[s.face.get<int>("part")[t]];
+    Neighborhood near = take_neighborhood(cut, other, 0, 1);
+    const std::vector<int>& known = near.vertex;
+    auto number = [&](int v) { return int(std::lower_bound(known.begin(), known.end(), v) - known.begin()); };
+    for (Handle& h : handles) h = {number(h.first), number(h.second)};
+    handles = straighten_together({near.surface, near.opposite}, handles, attempt,
+                                  {limits.n_parts, limits.snap, 0, std::move(named)});
+    for (Handle& h : handles) h = {known[h.first], known[h.second]};
+    put_back(near, cut);
+    return handles;
+  }
   std::sort(pairs.begin(), pairs.end());
   for (std::size_t c = 0; c < curves.size(); ++c)
     if (role[c] == Role::other &&
@@ -429,7 +441,7 @@ std::vector<Handle> straighten_together(const CutSurface& cut, const std::vector
       role[c] = Role::stays;
   std::vector<Handle> failed;
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
-    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits, trial);
+    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits);
     if (faults.empty()) break;
     for (auto [c, again] : faults) {
       role[c] = Role::stays;
@@ -478,7 +490,7 @@ void trim_ears(const CutSurface& cut, const Limits& limits) {
 
 /// Straightens what is still bent, one curve at a time: on fans of large triangles the bands of neighbors may
 /// have left no triangles to move in.
-void straighten_corners(const CutSurface& cut, const Limits& limits, Trial& trial) {
+void straighten_corners(const CutSurface& cut, const Limits& limits) {
   const Surface& surface = cut.surface;
   constexpr double bent = 0.5;
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
@@ -491,15 +503,14 @@ void straighten_corners(const CutSurface& cut, const Limits& limits, Trial& tria
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
   for (const auto& [turn, one] : corners)
-    if (!straighten_together(cut, {one}, attempts[2], limits, trial).empty())
-      straighten_together(cut, {one}, last_attempt, limits, trial);
+    if (!straighten_together(cut, {one}, attempts[2], limits).empty())
+      straighten_together(cut, {one}, last_attempt, limits);
 }
 
 }  // namespace
 
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces) {
   const Limits limits{n_parts, snap, max_faces};
-  Trial trial;
   const std::map<Pair, int> colors = color_pairs(cut.surface, find_curves(cut));
   constexpr double straight = 0.05;  // as a closed shortest line is
   const Surface& surface = cut.surface;
@@ -516,11 +527,11 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
         open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
     // all together, those at fault again and more gently, in the end one by one
-    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits, trial);
-    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits, trial);
+    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits);
+    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits);
     add_progress(0.2 / n_colors);
   }
-  straighten_corners(cut, limits, trial);
+  straighten_corners(cut, limits);
 }
 
 }  // namespace meshpipe

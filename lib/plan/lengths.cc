@@ -36,8 +36,6 @@ struct Halves {
   int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
 };
 
-std::string name(int part) { return "part " + std::to_string(part); }
-
 bool is_disk_with_holes(const Topology& t) { return t.components == 1 && t.genus == 0 && t.loops >= 1; }
 
 /// Measures the two sides of a cut.
@@ -57,10 +55,7 @@ void measure_halves(Halves& halves) {
 /// it stays as it is.
 Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vector<double>& field,
              const std::vector<char>& active, int expected_loops) {
-  struct Pull {
-    double snap;
-    int sweeps;
-  };
+  using Pull = std::pair<double, int>;
   const LevelLine level = zero_level(part, field);
   const std::vector<Hold> hold(field.size(), Hold::moves);
   Halves best;
@@ -81,9 +76,8 @@ Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vec
 /// A part that is to be cut.
 struct Task {
   int part, depth;
-  double share;  ///< of the work, as predicted
-  bool found = false;
-  Neighborhood near{};  ///< if found: with its part cut
+  double share;         ///< of the work, as predicted
+  Neighborhood near{};  ///< once the cut is found: with the part cut
   Halves made{};        ///< without loops if the part cannot be cut
   MultiscaleCut cut{};
 };
@@ -107,18 +101,17 @@ void find_cut(Work& work, Task& task) {
   if (expected.valid) task.made = split(near, part, field, active, expected.loops);
   near.surface = std::move(task.made.surface);
   near.opposite = std::move(task.made.opposite);
-  task.found = true;
 }
 
-/// Finds the cuts of the next tasks, the last first, that no other one can change: of parts that share no
-/// vertex with one to be cut before.
+/// Finds the cuts of the next tasks, the last first, of parts that share no vertex with one before them.
 void find_cuts(Work& work, std::vector<Task>& tasks) {
   constexpr int most = 32;  // as their neighborhoods take memory
   std::vector<char> before(work.parts(), 0);
   std::vector<int> next;
   for (int i = (int)tasks.size() - 1; i >= 0 && i >= (int)tasks.size() - most; --i) {
     const std::set<int>& near = work.near[tasks[i].part];
-    if (!tasks[i].found && std::none_of(near.begin(), near.end(), [&](int p) { return before[p]; }))
+    if (tasks[i].near.face.empty() &&
+        std::none_of(near.begin(), near.end(), [&](int p) { return before[p]; }))
       next.push_back(i);
     before[tasks[i].part] = 1;
   }
@@ -175,7 +168,6 @@ void join_parts(Work& work) {
   std::vector<int>& label = s.face.get<int>("part");
   if (*std::min_element(label.begin(), label.end()) < 0) return;  // only some of the parts are given
   const int n_before = work.parts();
-  const double max_aspect = work.options.max_aspect;
   const int n_tris = (int)s.tris.size(),
             most_faces = n_tris > limit::large_component ? limit::faces_of_large : n_tris;
   const Connectivity mesh{s, work.opposite, model_of(s)};
@@ -184,7 +176,7 @@ void join_parts(Work& work) {
   for (int t = 0; t < n_tris; ++t) faces[label[t]].push_back(t);
   std::vector<int> becomes(n_before), numbers(s.points.size(), -1);
   std::iota(becomes.begin(), becomes.end(), 0);
-  auto length = [&](int h) { return norm(s.points[target(s.tris, h)] - s.points[origin(s.tris, h)]); };
+  auto length = [&](int h) { return mesh.length(h); };
   const bool any = join_neighbors(joiner, mesh, label, length, [&](int a, int b) {
     if (!work.was_cut[a] && !work.was_cut[b]) return false;
     if (std::any_of(joiner.regions().border[a].begin(), joiner.regions().border[a].end(), [&](int h) {
@@ -192,10 +184,11 @@ void join_parts(Work& work) {
         }))
       return false;
     const Region r = joiner.joined(a, b);
-    if (!r.maps_to_the_plane() || r.aspect() > 2 * max_aspect || r.faces > most_faces) return false;
+    if (!r.maps_to_the_plane() || r.aspect() > 2 * work.options.max_aspect || r.faces > most_faces)
+      return false;
     std::vector<int> both;
     std::merge(faces[a].begin(), faces[a].end(), faces[b].begin(), faces[b].end(), std::back_inserter(both));
-    if (!admissible(topology_of(sub_mesh(s, both, numbers)), max_aspect)) return false;
+    if (!admissible(topology_of(sub_mesh(s, both, numbers)), work.options.max_aspect)) return false;
     faces[a] = std::move(both);
     std::replace(becomes.begin(), becomes.end(), b, a);
     return true;
@@ -226,8 +219,9 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   for (int p = given_parts - 1; p >= 0; --p) {
     const Topology& t = work.is[p];
     if (!is_disk_with_holes(t))
-      throw NotAdmissible(name(p) + " has " + std::to_string(t.components) + " components, genus " +
-                          std::to_string(t.genus) + " and " + std::to_string(t.loops) +
+      throw NotAdmissible("part " + std::to_string(p) + " has " + std::to_string(t.components) +
+                          " components, genus " + std::to_string(t.genus) + " and " +
+                          std::to_string(t.loops) +
                           " boundary loops where 1, 0 and at least 1 are needed; run mpartition first");
     if (t.eta_geo > options.max_aspect) {
       tasks.push_back({p, 0, (double)t.faces});
@@ -236,11 +230,10 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   }
   if (!tasks.empty()) name_origins(surface);
   work.near = near_parts(work);
-  constexpr double before = 0.05, all = 0.9;  // of the work
-  add_progress(before);
-  for (Task& t : tasks) t.share *= all / faces;
+  add_progress(0.05);
+  for (Task& t : tasks) t.share *= 0.9 / faces;
   while (!tasks.empty()) {
-    if (!tasks.back().found) find_cuts(work, tasks);
+    if (tasks.back().near.face.empty()) find_cuts(work, tasks);
     Task task = std::move(tasks.back());
     tasks.pop_back();
     if (options.most_parts > 0 && work.parts() >= options.most_parts)
@@ -249,7 +242,7 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     cut_part(work, task, tasks);
   }
   if (work.parts() > std::max(given_parts, 2)) join_parts(work);
-  const bool any = std::find(work.was_cut.begin(), work.was_cut.end(), 1) != work.was_cut.end();
+  const bool any = std::count(work.was_cut.begin(), work.was_cut.end(), 1) > 0;
   if (topology) *topology = any ? topology_of_parts({surface, work.opposite}, given, work.parts()) : work.is;
   if (neighbors) *neighbors = std::move(work.opposite);
   return work.parts();
