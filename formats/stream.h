@@ -58,8 +58,9 @@ class Source {
 };
 
 /// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
+/// Nothing may follow; where there may be `several`, as in a shard, another stream.
 /// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".
-Stream read_stream(Source& source, const std::string& where);
+Stream read_stream(Source& source, const std::string& where, bool several = false);
 Stream read_stream(std::string_view bytes, const std::string& where);
 
 /// Returns the stream in bytes: ascii with the shortest numbers that read back the same, or binary.

@@ -15,6 +15,7 @@
 #include <new>
 #include <utility>
 
+#include "formats/formats.h"
 #include "lib/core/error.h"
 #include "tools/progress_line.h"
 
@@ -136,6 +137,15 @@ std::string_view InputFile::next(std::size_t n) {
   return {data_.get() + begin_, end_ - begin_};
 }
 
+Stream read_next(InputFile& file, const std::string& where, bool several) {
+  constexpr std::size_t start = 200;  // bytes that show a stream
+  if (is_stream(file.next(start))) return read_stream(file, where, several);
+  const std::string_view bytes = file.rest();
+  Stream stream = read_any(bytes, where);
+  file.drop(bytes.size());
+  return stream;
+}
+
 void write_all(int fd, std::string_view bytes, const std::string& where) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd, bytes.data(), bytes.size());
@@ -147,36 +157,47 @@ void write_all(int fd, std::string_view bytes, const std::string& where) {
   }
 }
 
-void write_atomically(const std::string& name, const std::function<void(const Sink&)>& produce) {
+AtomicFile::AtomicFile(const std::string& name) {
   if (name == "-" || name == "/dev/stdout") {
-    produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
+    path_ = "stdout", fd_ = STDOUT_FILENO, is_stdout_ = true;
     return;
   }
-  const std::string path = end_of_links(name);
+  path_ = end_of_links(name);
   struct stat info {};
-  const bool exists = ::stat(path.c_str(), &info) == 0;
-  std::string partial = exists && is_written_in_place(path, info) ? "" : path + ".XXXXXX";
-  int fd = partial.empty() ? ::open(path.c_str(), O_WRONLY) : create_partial_file(partial);
-  if (fd < 0) throw CannotWrite(path + ": " + last_error());
-  try {
-    produce([&](std::string_view bytes) { write_all(fd, bytes, path); });
-    if (!partial.empty()) {
-      const mode_t mask = ::umask(0);
-      ::umask(mask);
-      ::fchmod(fd, exists ? info.st_mode & 0777 : 0666 & ~mask);
-    }
-    const int closed = ::close(fd);
-    fd = -1;
-    if (closed != 0) throw CannotWrite(path + ": " + last_error());
-    if (!partial.empty() && ::rename(partial.c_str(), path.c_str()) != 0)
-      throw CannotWrite(path + ": " + last_error());
-    partial_file_exists = false;
-  } catch (...) {
-    if (fd >= 0) ::close(fd);
-    if (!partial.empty()) ::unlink(partial.c_str());
-    partial_file_exists = false;
-    throw;
+  const bool exists = ::stat(path_.c_str(), &info) == 0;
+  if (exists) mode_ = static_cast<int>(info.st_mode & 0777);
+  if (!exists || !is_written_in_place(path_, info)) partial_ = path_ + ".XXXXXX";
+  fd_ = partial_.empty() ? ::open(path_.c_str(), O_WRONLY) : create_partial_file(partial_);
+  if (fd_ < 0) throw CannotWrite(path_ + ": " + last_error());
+}
+
+AtomicFile::~AtomicFile() {
+  if (fd_ >= 0 && !is_stdout_) ::close(fd_);
+  if (partial_.empty()) return;
+  ::unlink(partial_.c_str());
+  partial_file_exists = false;
+}
+
+void AtomicFile::write(std::string_view bytes) { write_all(fd_, bytes, path_); }
+
+void AtomicFile::finish() {
+  if (is_stdout_) return;
+  if (!partial_.empty()) {
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::fchmod(fd_, mode_ >= 0 ? static_cast<mode_t>(mode_) : 0666 & ~mask);
   }
+  if (::close(std::exchange(fd_, -1)) != 0) throw CannotWrite(path_ + ": " + last_error());
+  if (partial_.empty()) return;
+  if (::rename(partial_.c_str(), path_.c_str()) != 0) throw CannotWrite(path_ + ": " + last_error());
+  partial_.clear();
+  partial_file_exists = false;
+}
+
+void write_atomically(const std::string& path, const std::function<void(const Sink&)>& produce) {
+  AtomicFile file(path);
+  produce([&](std::string_view bytes) { file.write(bytes); });
+  file.finish();
 }
 
 void append_line(const std::string& path, std::string_view heading, std::string_view line) {

@@ -40,11 +40,31 @@ class InputFile : public Source {
   bool any_ = false, ended_ = false;
 };
 
+/// Reads all of a file in any format, or one of the `several` streams of a shard. Throws: as read_any.
+Stream read_next(InputFile& file, const std::string& where, bool several = false);
+
 /// Writes all bytes to an open file; `where` names it in messages. Throws CannotWrite.
 void write_all(int fd, std::string_view bytes, const std::string& where);
 
-/// Writes a file piece by piece: `produce` hands the pieces to its sink. The file gets its name only when it
-/// is complete; "-", devices and pipes are written to directly. Throws CannotWrite.
+/// A file that gets its name only when it is complete, and is gone if finish was not called; "-", devices and
+/// pipes are written to directly. One at a time. All throw CannotWrite.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::string& path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+  void write(std::string_view bytes);
+  void finish();
+
+ private:
+  std::string path_, partial_;  // partial_: its name so far; empty if it is written to directly
+  int fd_ = -1;
+  int mode_ = -1;  // of the file that it replaces
+  bool is_stdout_ = false;
+};
+
+/// Writes a file piece by piece: `produce` hands the pieces to its sink.
 void write_atomically(const std::string& path, const std::function<void(const Sink&)>& produce);
 
 /// Adds a line to a file at once, after the heading if the file is new or empty. Throws CannotWrite.

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/io.h"
 
+#include <omp.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
+#include <map>
+#include <mutex>
 
 #include "formats/foreign/stl.h"
 #include "lib/core/error.h"
+#include "lib/core/parallel.h"
 #include "tools/files.h"
 #include "tools/progress_line.h"
 
@@ -26,12 +31,50 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
     sink(write_as(stream, path, text));
 }
 
+std::string name_of(const std::string& path) { return path == "-" ? "stdin" : path; }
+
+/// Returns a stream that was read, after its checks.
+Stream accepted(const Io& io, Stream stream) {
+  // what the reader of a foreign file left out; the remarks of a stream were reported by earlier programs
+  if (stream.history.empty())
+    for (const std::string& remark : stream.remarks) io.say(remark);
+  if (!io.any_size) expect_measurable(stream.surface);
+  return stream;
+}
+
+bool needs_text(const Io& io, const std::string& path, const Stream& stream) {
+  if (extension_of(path) != ".stl") return false;
+  const std::string why = beyond_single_precision(stream.surface);
+  if (why.empty()) return false;
+  if (io.binary)
+    throw CannotWrite(path + ": single precision of binary .stl does not hold the surface: " + why);
+  io.say(path + " is written as text, single precision of binary .stl does not hold the surface: " + why);
+  return true;
+}
+
+void write_output(const Io& io, bool text, const std::function<void(const Sink&)>& produce) {
+  if (io.output == "-" && !text && ::isatty(STDOUT_FILENO))
+    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
+  write_atomically(io.output, [&](const Sink& sink) {
+    produce([&](std::string_view bytes) {
+      io.wrote_to_stdout = io.output == "-";
+      sink(bytes);
+    });
+  });
+  if (io.output != "-") io.finished_file = io.output;
+}
+
 }  // namespace
 
 Stream& Io::read() {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
-  stream = read(input);
+  if (takes_shards) {
+    input_ = std::make_unique<InputFile>(input);
+    stream = accepted(*this, read_next(*input_, name_of(input), true));
+  } else {
+    stream = read(input);
+  }
   set_phase(Phase::working);
   return stream;
 }
@@ -40,30 +83,14 @@ std::string Io::read_bytes(const std::string& path) { return std::string(InputFi
 
 Stream Io::read(const std::string& path) const {
   InputFile file(path);
-  const std::string where = path == "-" ? "stdin" : path;
-  constexpr std::size_t start = 200;  // bytes that show a stream
-  Stream stream = is_stream(file.next(start)) ? read_stream(file, where) : read_any(file.rest(), where);
-  // what the reader of a foreign file left out; the remarks of a stream were reported by earlier programs
-  if (stream.history.empty())
-    for (const std::string& remark : stream.remarks) say(remark);
-  if (!any_size) expect_measurable(stream.surface);
-  return stream;
-}
-
-bool Io::needs_text(const std::string& path, const Stream& stream) const {
-  if (extension_of(path) != ".stl") return false;
-  const std::string why = beyond_single_precision(stream.surface);
-  if (why.empty()) return false;
-  if (binary) throw CannotWrite(path + ": single precision of binary .stl does not hold the surface: " + why);
-  say(path + " is written as text, single precision of binary .stl does not hold the surface: " + why);
-  return true;
+  return accepted(*this, read_next(file, name_of(path)));
 }
 
 bool Io::text_for(const Stream& stream) const {
   const std::string extension = extension_of(output);
   // only text STL holds patches and their names
   const bool named = extension == ".stl" && !binary && !stream.names.empty();
-  const bool text = ascii || named || (stream.ascii && !binary) || needs_text(output, stream);
+  const bool text = ascii || named || (stream.ascii && !binary) || needs_text(*this, output, stream);
   if (is_stream_name(output) && program != "mconvert") return text;
   if (const std::string lost = lost_in(stream, output, text); !lost.empty())
     say("left out, " + std::string(extension == ".stl" && !text ? "binary " : "") + extension +
@@ -74,21 +101,62 @@ bool Io::text_for(const Stream& stream) const {
 void Io::write(Stream& stream) {
   stream.history.push_back({program, MESHPIPE_VERSION, arguments});
   const bool text = text_for(stream);
-  if (output == "-" && !text && ::isatty(STDOUT_FILENO))
-    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  auto produce = [&](const Sink& sink) { encode(output, stream, text, sink); };
   set_phase(Phase::writing);
-  if (output != "-") {
-    write_atomically(output, produce);
-    finished_file = output;
-    return;
-  }
-  wrote_to_stdout = true;
-  produce([](std::string_view bytes) { write_all(STDOUT_FILENO, bytes, "stdout"); });
+  write_output(*this, text, [&](const Sink& sink) { encode(output, stream, text, sink); });
+}
+
+int Io::write_each(const std::function<Stream(Stream)>& make) {
+  if (!is_stream_name(output))
+    throw BadUsage("-o " + output + ": what becomes of a shard is a stream (.ply)");
+  const bool text = ascii || (stream.ascii && !binary);
+  const auto history = stream.history;
+  std::mutex reading, writing;
+  int n = 0, written = 0;
+  std::map<int, Stream> made;  // and not written yet, since one before them is missing
+  std::map<int, std::exception_ptr> failed;
+  // what was read before the first that fails is made in any case, so that failures do not depend on the
+  // threads
+  auto take = [&] {
+    const std::lock_guard lock(reading);
+    if (n == 0) return std::pair(n++, std::move(stream));
+    const std::lock_guard other(writing);
+    if (!failed.empty() || input_->next(1).empty()) return std::pair(-1, Stream());
+    try {
+      const std::string where = name_of(input) + " stream " + std::to_string(n + 1);
+      Stream next = read_next(*input_, where, true);
+      return std::pair(n++, std::move(next));
+    } catch (...) {
+      failed[n] = std::current_exception();
+      return std::pair(-1, Stream());
+    }
+  };
+  auto put = [&](int i, Stream one, const Sink& sink) {
+    one.history = history;
+    one.history.push_back({program, MESHPIPE_VERSION, arguments});
+    const std::lock_guard lock(writing);
+    made[i] = std::move(one);
+    for (; made.contains(written); made.erase(written++)) encode(output, made[written], text, sink);
+  };
+  write_output(*this, text, [&](const Sink& sink) {
+    parallel_for(omp_get_max_threads(), [&](int) {
+      for (;;) {
+        auto [i, next] = take();
+        if (i < 0) return;
+        try {
+          put(i, make(std::move(next)), sink);
+        } catch (...) {
+          const std::lock_guard lock(writing);
+          failed[i] = std::current_exception();
+        }
+      }
+    });
+    if (!failed.empty()) std::rethrow_exception(failed.begin()->second);
+  });
+  return n;
 }
 
 void Io::write_to(const std::string& path, const Stream& stream) const {
-  const bool text = ascii || needs_text(path, stream);
+  const bool text = ascii || needs_text(*this, path, stream);
   write_atomically(path, [&](const Sink& sink) { encode(path, stream, text, sink); });
 }
 

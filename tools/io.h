@@ -2,12 +2,14 @@
 // A program's input, output, messages and report.
 #pragma once
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/formats.h"
+#include "tools/files.h"
 #include "tools/options.h"
 
 namespace meshpipe {
@@ -24,6 +26,9 @@ class Io : public CommonOptions {
   static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE or standard output.
   void write(Stream& stream);
+  /// Writes what `make` makes of each stream of FILE, in parallel: of those of a shard, of which read() has
+  /// returned the first. Returns how many there are. Throws: BadUsage if -o FILE is no stream.
+  int write_each(const std::function<Stream(Stream)>& make);
   /// Returns whether -o FILE has to be text; reports what its format cannot hold.
   /// Throws: CannotWrite for --binary STL whose single precision does not hold the surface.
   bool text_for(const Stream& stream) const;
@@ -47,6 +52,7 @@ class Io : public CommonOptions {
   std::string program;
   std::string arguments;  ///< that change the result, for the stream's history
   bool any_size = false;
+  bool takes_shards = false;      ///< FILE may have several streams
   Stream stream;                  ///< what read() has read, as far as the program has come with it
   bool names_way_out = true;      ///< on a failure; not if it will be tried again
   nlohmann::ordered_json report;  ///< --json FILE gets it on success and on status 4 (if not empty), 5, 6
@@ -57,8 +63,8 @@ class Io : public CommonOptions {
   mutable std::string finished_file;  ///< the complete -o FILE: removed by a later failure
 
  private:
-  bool needs_text(const std::string& path, const Stream& stream) const;
   std::vector<std::pair<std::string, std::string>> expected_files_;  ///< option, path
+  std::unique_ptr<InputFile> input_;                                 ///< FILE, if it may have several streams
 };
 
 }  // namespace meshpipe

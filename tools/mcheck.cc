@@ -60,7 +60,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   Stream& stream = read(io, summary);
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
-  if (has_check_shares(stream)) return check_shard(io);
+  if (is_check_share(stream)) return check_shard(io);
   if (stream.find("checked"))
     throw NotAdmissible("this is what was measured of a shard; expected --join DIR");
   if (o.shards.count > 0) return cut_into_shards(io, o.shards, o.tile, o.samples, contract);
@@ -135,6 +135,7 @@ int main(int argc, char** argv) {
       "made from.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/11-relax.ply -o checked.ply\n"
       "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 --json tree.json -o tree.ply",
-      add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0), summary); });
+      add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0), summary); },
+      {.shards = true});
   return o.tsv.empty() ? status : add_to_table(o.tsv, summary, status);
 }

@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   auto body = [&](Io& io) {
     const bool in_shards = o.shards.count > 0 || !o.shards.from.empty();
     Stream& stream = io.read();
-    if (has_tiles(stream)) {
+    if (is_tile(stream)) {
       if (in_shards || !o.reference.empty())
         throw BadUsage("the input is a shard, which is neither cut nor joined");
       return relax_shard(io, o.relax.sweeps);
@@ -131,5 +131,5 @@ int main(int argc, char** argv) {
       "  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o "
       "relaxed.ply\n"
       "  mclean tree.stl | mrelax --reference tree.stl -o better.ply",
-      add_options, body);
+      add_options, body, {.shards = true});
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/relax_shards.h"
 
+#include <atomic>
+
 #include "formats/stream/lift_tables.h"
 #include "formats/stream/tile_tables.h"
 #include "lib/core/error.h"
-#include "lib/core/parallel.h"
 
 namespace meshpipe {
 namespace {
@@ -15,49 +16,38 @@ int tiles_of(const TiledMesh& whole, const RelaxOptions& options) {
 
 /// Writes the tiles into a directory, neighbors in one shard.
 void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const ShardFiles& to) {
-  const int tiles = tiles_of(whole, relax.options), count = std::min(to.count, tiles);
-  make_directory(to.into);
-  const TileWork work{relax.line_kind, relax.pass(whole, repair)};
-  int next = 0, shard = 0;
-  TileTables some;
-  relax.cut(whole, work.pass, [&](const Tile& tile) {
-    some.add(next++, tile);
-    if (next < (long long)(shard + 1) * tiles / count) return;
-    Stream stream;
-    stream.history = io.stream.history, stream.remarks = io.stream.remarks;
-    stream.ascii = io.stream.ascii;
-    some.write(stream, work);
-    io.write_to(shard_name(to.into, shard++), stream);
+  const int tiles = tiles_of(whole, relax.options);
+  const TilePass pass = relax.pass(whole, repair);
+  ShardWriter shards(io, to, tiles);
+  int next = 0;
+  relax.cut(whole, pass, [&](Tile tile) {
+    Stream stream = stream_of({next++, relax.line_kind, pass, false, std::move(tile)});
+    stream.history = io.stream.history;
+    shards.add(stream);
   });
-  io.say(std::to_string(count) + (count == 1 ? " shard of " : " shards of ") + std::to_string(tiles) +
-         " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
-  io.report["shards"] = count;
+  io.say(std::to_string(shards.count()) + (shards.count() == 1 ? " shard of " : " shards of ") +
+         std::to_string(tiles) + " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
+  io.report["shards"] = shards.count();
   io.report["tiles"] = tiles;
 }
 
 }  // namespace
 
 void relax_shard(Io& io, int sweeps) {
-  TileShard shard = take_tiles(io.stream);
-  if (shard.relaxed) throw NotAdmissible("these tiles are relaxed; join them by mrelax --join");
-  if (shard.pass.sweeps != sweeps)
-    throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(shard.pass.sweeps));
-  io.stream.surface = {}, io.stream.tables.clear();  // frees its memory now
-  const int n = (int)shard.tiles.size();
-  parallel_for(n, [&](int i) { relax_tile(shard.tiles[i], shard.line_kind, shard.pass); });
-  shard.relaxed = true;
-  std::size_t triangles = 0;
-  TileTables done;
-  for (int i = 0; i < n; ++i) {
-    triangles += shard.tiles[i].mesh.tris.size();
-    done.add(shard.numbers[i], shard.tiles[i]);
-    shard.tiles[i] = {};  // frees its memory now
-  }
+  std::atomic<std::size_t> triangles = 0;
+  const int n = io.write_each([&](Stream stream) {
+    TileJob job = take_tile(std::move(stream));
+    if (job.relaxed) throw NotAdmissible("these tiles are relaxed; join them by mrelax --join");
+    if (job.pass.sweeps != sweeps)
+      throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(job.pass.sweeps));
+    relax_tile(job.tile, job.line_kind, job.pass);
+    job.relaxed = true;
+    triangles += job.tile.mesh.tris.size();
+    return stream_of(std::move(job));
+  });
   io.say(std::to_string(n) + (n == 1 ? " tile, " : " tiles, ") + std::to_string(triangles) + " triangles");
   io.report["tiles"] = n;
-  io.report["triangles"] = triangles;
-  done.write(io.stream, shard);
-  io.write(io.stream);
+  io.report["triangles"] = triangles.load();
 }
 
 std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
@@ -85,8 +75,7 @@ std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const Tiled
   const TilePass pass = relax.pass(whole, optimized);
   relax.join(whole,
              join_tiles(whole, (int)relax.reference.tris.size(), tiles_of(whole, relax.options), pass,
-                        {io.program, "", io.arguments}, shards_in(shards.from),
-                        [&](const std::string& name) { return io.read(name); }),
+                        {io.program, "", io.arguments}, shards_in(shards.from), read_shard),
              pass, between.counts);
   if (shards.count > 0) {
     cut(io, whole, relax, true, shards);

@@ -48,6 +48,26 @@ std::vector<std::string> shards_in(const std::string& directory) {
   return names;
 }
 
+void read_shard(const std::string& name, const std::function<void(Stream)>& take) {
+  InputFile file(name);
+  for (int i = 1; i == 1 || !file.next(1).empty(); ++i)
+    take(read_next(file, i == 1 ? name : name + " stream " + std::to_string(i), true));
+}
+
+ShardWriter::ShardWriter(const Io& io, const ShardFiles& to, int streams)
+    : ascii_(io.ascii), directory_(to.into), streams_(streams), count_(std::min(to.count, streams)) {
+  make_directory(directory_);
+}
+
+void ShardWriter::add(const Stream& stream) {
+  if (!file_) file_.emplace(shard_name(directory_, shard_));
+  write_stream(stream, ascii_, [this](std::string_view bytes) { file_->write(bytes); });
+  if (++next_ < (shard_ + 1LL) * streams_ / count_) return;
+  file_->finish();
+  file_.reset();
+  ++shard_;
+}
+
 void write_as_it_is(Io& io, const Stream& stream) {
   io.ascii |= stream.ascii && !io.binary;
   if (io.output == "-" && !io.ascii && ::isatty(STDOUT_FILENO))

@@ -2,6 +2,7 @@
 // The files of shards: DIR/1.ply, DIR/2.ply, ...
 #pragma once
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,23 @@ std::string shard_name(const std::string& directory, std::size_t shard);
 
 /// Returns the names of all shards in a directory. Throws: BadInput if there are none.
 std::vector<std::string> shards_in(const std::string& directory);
+
+/// Reads a file for what joins shards.
+void read_shard(const std::string& name, const std::function<void(Stream)>& take);
+
+/// Writes a number of streams into shards, as they come.
+class ShardWriter {
+ public:
+  ShardWriter(const Io& io, const ShardFiles& to, int streams);
+  void add(const Stream& stream);
+  int count() const { return count_; }
+
+ private:
+  bool ascii_;
+  std::string directory_;
+  int streams_, count_, next_ = 0, shard_ = 0;
+  std::optional<AtomicFile> file_;
+};
 
 /// Writes the stream as other programs have made it: the history stays.
 void write_as_it_is(Io& io, const Stream& stream);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/stream/check_tables.h"
 
-#include "formats/stream/spans.h"
+#include "formats/stream/mesh_tables.h"
 #include "lib/core/error.h"
 
 namespace meshpipe {
@@ -9,28 +9,26 @@ namespace {
 
 constexpr const char* writer = "mcheck --shards";
 
-/// A column of one number per share.
-template <class T, class Share, class Of>
-void set_column(Table& table, const char* name, const std::vector<Share>& shares, Of of) {
-  std::vector<T> values;
-  for (const Share& s : shares) values.push_back(static_cast<T>(of(s)));
-  table.set(name, std::move(values));
+/// A column with one row.
+template <class T>
+void set_value(Table& table, const std::string& name, T value) {
+  table.set(name, std::vector<T>{value});
 }
 
 constexpr std::pair<const char*, double OneWay::*> lengths[] = {
     {"largest", &OneWay::largest}, {"upper", &OneWay::upper}, {"mean", &OneWay::mean}, {"rms", &OneWay::rms}};
 constexpr std::pair<const char*, double Vec3::*> axes[] = {{"x", &Vec3::x}, {"y", &Vec3::y}, {"z", &Vec3::z}};
 
-/// Columns of table `check_share`: the rows of each in the other tables.
-constexpr const char* sizes[] = {"vertices", "faces", "other_vertices", "other_faces"};
-
 /// A table of pairs, and back.
 template <class A, class B>
 Table pair_table(const char* name, const char* first, const char* second,
                  const std::vector<std::pair<A, B>>& pairs) {
   Table table{name, 0, {}};
-  set_column<A>(table, first, pairs, [](const auto& p) { return p.first; });
-  set_column<B>(table, second, pairs, [](const auto& p) { return p.second; });
+  std::vector<A> a;
+  std::vector<B> b;
+  for (const auto& [x, y] : pairs) a.push_back(x), b.push_back(y);
+  table.set(first, std::move(a));
+  table.set(second, std::move(b));
   return table;
 }
 template <class A, class B>
@@ -53,161 +51,119 @@ void expect_row(long long row, long long rows, const char* what) {
 
 }  // namespace
 
-void ShareTables::add(int number, const CheckShare& s) {
-  numbers_.push_back(number);
-  heads_.push_back({s.of_result, s.own, {}, {}, {}, {}, {}, s.diagonal, s.most, s.samples, s.budget});
-  auto count = [](const auto& list) { return static_cast<int>(list.size()); };
-  rows_.push_back({count(s.mesh.points), count(s.mesh.tris), count(s.other.points), count(s.other.tris)});
-  append_tris(meshes_.tris, s.mesh.tris, meshes_.points.size());
-  append(meshes_.points, s.mesh.points);
-  append_tris(others_.tris, s.other.tris, others_.points.size());
-  append(others_.points, s.other.points);
-  append(vertices_, s.vertices), append(triangles_, s.triangles), append(allowed_, s.allowed);
-  allowed_.resize(triangles_.size());  // none of those that are only next to the share
-}
-
-void ShareTables::write(Stream& stream, int all) {
-  stream.tables.clear();
+Stream stream_of(CheckJob job) {
+  Stream stream;
+  CheckShare& s = job.share;
   Table table{"check_share", 0, {}};
-  table.set("number", std::move(numbers_));
-  table.set("of", std::vector<int>(table.rows, all));
-  set_column<int>(table, "of_result", heads_, [](const CheckShare& s) { return s.of_result; });
-  set_column<int>(table, "own", heads_, [](const CheckShare& s) { return s.own; });
-  for (int i = 0; i < 4; ++i)
-    set_column<int>(table, sizes[i], rows_, [i](const auto& rows) { return rows[i]; });
-  set_column<int>(table, "samples", heads_, [](const CheckShare& s) { return s.samples; });
-  set_column<int>(table, "budget", heads_, [](const CheckShare& s) { return s.budget; });
-  set_column<double>(table, "diagonal", heads_, [](const CheckShare& s) { return s.diagonal; });
-  set_column<double>(table, "most", heads_, [](const CheckShare& s) { return s.most; });
+  set_value(table, "number", job.number);
+  set_value(table, "of", job.all);
+  set_value(table, "of_result", static_cast<int>(s.of_result));
+  set_value(table, "own", s.own);
+  set_value(table, "samples", s.samples);
+  set_value(table, "budget", s.budget);
+  set_value(table, "diagonal", s.diagonal);
+  set_value(table, "most", s.most);
   stream.set(std::move(table));
-  stream.surface = surface_of(std::move(meshes_));
-  stream.set(table_of("other_vertex", others_, true));
-  stream.set(table_of("other_face", others_, false));
+  stream.surface = surface_of(std::move(s.mesh));
+  stream.set(point_table("other_vertex", s.other));
+  stream.set(triangle_table("other_face", s.other));
   Table vertices{"check_vertex", 0, {}}, triangles{"check_face", 0, {}};
-  vertices.set("row", std::move(vertices_));
-  triangles.set("row", std::move(triangles_));
-  triangles.set("allowed", std::move(allowed_));
+  vertices.set("row", std::move(s.vertices));
+  s.allowed.resize(s.triangles.size());  // none of those that are only next to the share
+  triangles.set("row", std::move(s.triangles));
+  triangles.set("allowed", std::move(s.allowed));
   stream.set(std::move(vertices));
   stream.set(std::move(triangles));
-  *this = {};
+  return stream;
 }
 
-CheckShard read_shares(const Stream& stream) {
-  const Surface& s = stream.surface;
-  const Table& table = stream.need("check_share", writer);
-  const Table &points = stream.need("other_vertex", writer), &tris = stream.need("other_face", writer);
-  const Mesh others = mesh_from(points, tris);
-  const Table &rows = stream.need("check_vertex", writer), &triangles = stream.need("check_face", writer);
-  const auto vertices = spans_of(table, sizes[0], s.points.size()),
-             faces = spans_of(table, sizes[1], s.tris.size()),
-             other_vertices = spans_of(table, sizes[2], points.rows),
-             other_faces = spans_of(table, sizes[3], tris.rows);
-  Span vertex, triangle;  // of a share in the tables of rows
-  if (table.rows == 0) throw BadInput("it has no shares");
-  CheckShard shard{table.get<int>("of")[0], table.get<int>("number"), {}};
-  for (std::size_t i = 0; i < table.rows; ++i) {
-    CheckShare& c = shard.shares.emplace_back();
-    c.of_result = table.get<int>("of_result")[i] != 0;
-    c.own = table.get<int>("own")[i];
-    c.samples = table.get<int>("samples")[i], c.budget = table.get<int>("budget")[i];
-    c.diagonal = table.get<double>("diagonal")[i], c.most = table.get<double>("most")[i];
-    if (c.own < 1 || c.own > faces[i].size() || c.samples < 1 || !(c.diagonal > 0))
-      throw BadInput("share " + std::to_string(shard.numbers[i]) + " has " + std::to_string(c.own) + " of " +
-                     std::to_string(faces[i].size()) + " triangles and " + std::to_string(c.samples) +
-                     " samples");
-    c.mesh = {vertices[i].of(s.points), tris_of(s.tris, faces[i], vertices[i])};
-    c.other = {other_vertices[i].of(others.points), tris_of(others.tris, other_faces[i], other_vertices[i])};
-    vertex = {vertex.last, vertex.last + (c.of_result ? vertices[i].size() : 0)};
-    triangle = {triangle.last, triangle.last + (c.of_result ? faces[i] : other_faces[i]).size()};
-    if (vertex.last > static_cast<int>(rows.rows) || triangle.last > static_cast<int>(triangles.rows))
-      throw BadInput("share " + std::to_string(shard.numbers[i]) + " has more rows than there are");
-    c.vertices = vertex.of(rows.get<int>("row"));
-    c.triangles = triangle.of(triangles.get<int>("row"));
-    c.allowed = triangle.of(triangles.get<double>("allowed"));
-    if (c.of_result) c.allowed.resize(c.own);
-    for (double a : c.allowed)
-      if (!(a > 0))
-        throw BadInput("share " + std::to_string(shard.numbers[i]) + " allows no distance at a triangle");
-  }
-  return shard;
+CheckJob take_share(Stream stream) {
+  const Table& table = need_row(stream, "check_share", writer);
+  CheckJob job{table.get<int>("number")[0], table.get<int>("of")[0], {}};
+  CheckShare& s = job.share;
+  s.of_result = table.get<int>("of_result")[0] != 0;
+  s.own = table.get<int>("own")[0];
+  s.samples = table.get<int>("samples")[0], s.budget = table.get<int>("budget")[0];
+  s.diagonal = table.get<double>("diagonal")[0], s.most = table.get<double>("most")[0];
+  s.mesh = std::move(static_cast<Mesh&>(stream.surface));
+  s.other = mesh_from(stream.need("other_vertex", writer), stream.need("other_face", writer));
+  s.vertices = stream.need("check_vertex", writer).get<int>("row");
+  const Table& triangles = stream.need("check_face", writer);
+  s.triangles = triangles.get<int>("row");
+  s.allowed = triangles.get<double>("allowed");
+  const std::string name = "share " + std::to_string(job.number);
+  if (s.own < 1 || s.own > static_cast<int>(s.mesh.tris.size()) || s.samples < 1 || !(s.diagonal > 0))
+    throw BadInput(name + " has " + std::to_string(s.own) + " of " + std::to_string(s.mesh.tris.size()) +
+                   " triangles and " + std::to_string(s.samples) + " samples");
+  if (s.vertices.size() != (s.of_result ? s.mesh.points.size() : 0) ||
+      s.triangles.size() != (s.of_result ? s.mesh : s.other).tris.size())
+    throw BadInput(name + " has " + std::to_string(s.vertices.size()) + " rows of vertices and " +
+                   std::to_string(s.triangles.size()) + " of triangles, others than it has in its meshes");
+  if (s.of_result) s.allowed.resize(s.own);
+  for (double a : s.allowed)
+    if (!(a > 0)) throw BadInput(name + " allows no distance at a triangle");
+  return job;
 }
 
-void write_findings(Stream& stream, const CheckShard& shard, const std::vector<ShareFindings>& found) {
-  stream.tables.clear();
-  stream.surface = {};
+Stream stream_of(int number, int all, ShareFindings f) {
+  Stream stream;
   Table table{"checked", 0, {}};
-  table.set("number", shard.numbers);
-  table.set("of", std::vector<int>(table.rows, shard.all));
-  set_column<int>(table, "of_result", found, [](const ShareFindings& f) { return f.of_result; });
-  set_column<double>(table, "area", found, [](const ShareFindings& f) { return f.area; });
-  for (const auto& [name, length] : lengths)
-    set_column<double>(table, name, found, [of = length](const ShareFindings& f) { return f.distance.*of; });
-  set_column<double>(table, "worst", found,
-                     [](const ShareFindings& f) { return f.distance.deviation.worst; });
-  set_column<int>(table, "triangle", found,
-                  [](const ShareFindings& f) { return f.distance.deviation.triangle; });
+  set_value(table, "number", number);
+  set_value(table, "of", all);
+  set_value(table, "of_result", static_cast<int>(f.of_result));
+  set_value(table, "area", f.area);
+  const OneWay& d = f.distance;
+  for (const auto& [name, length] : lengths) set_value(table, name, d.*length);
+  set_value(table, "worst", d.deviation.worst);
+  set_value(table, "triangle", d.deviation.triangle);
   for (const auto& [name, axis] : axes) {
-    set_column<double>(table, name, found,
-                       [of = axis](const ShareFindings& f) { return f.distance.place.*of; });
-    set_column<double>(table, ("worst_" + std::string(name)).c_str(), found,
-                       [of = axis](const ShareFindings& f) { return f.distance.deviation.place.*of; });
+    set_value(table, name, d.place.*axis);
+    set_value(table, "worst_" + std::string(name), d.deviation.place.*axis);
   }
   stream.set(std::move(table));
-  ShareFindings all;
-  for (const ShareFindings& f : found) {
-    append(all.ratios, f.ratios), append(all.off, f.off);
-    append(all.crossings, f.crossings), append(all.folds, f.folds);
-  }
-  stream.set(pair_table("checked_ratio", "triangle", "ratio", all.ratios));
-  stream.set(pair_table("checked_vertex", "vertex", "distance", all.off));
-  stream.set(pair_table("checked_crossing", "a", "b", all.crossings));
+  stream.set(pair_table("checked_ratio", "triangle", "ratio", f.ratios));
+  stream.set(pair_table("checked_vertex", "vertex", "distance", f.off));
+  stream.set(pair_table("checked_crossing", "a", "b", f.crossings));
   Table folds{"checked_fold", 0, {}};
-  folds.set("half_edge", std::move(all.folds));
+  folds.set("half_edge", std::move(f.folds));
   stream.set(std::move(folds));
+  return stream;
 }
 
 namespace {
 
-/// Returns what one shard has measured, and the shares' numbers; only the first has lists.
-std::vector<ShareFindings> read_findings(const Stream& stream, const Surface& result, CheckShard& shard) {
-  const Table& table = stream.need("checked", "mcheck");
-  std::vector<ShareFindings> found(table.rows);
-  if (found.empty()) throw BadInput("it has no shares");
-  shard.all = table.get<int>("of")[0];
-  shard.numbers = table.get<int>("number");
+/// Returns what was measured of a share, and its number. Throws: BadInput for rows that the result has not.
+std::pair<int, ShareFindings> read_findings(const Stream& stream, const Surface& result, int& all) {
+  const Table& table = need_row(stream, "checked", "mcheck");
+  ShareFindings f;
+  all = table.get<int>("of")[0];
   const auto n_tris = static_cast<long long>(result.tris.size());
-  for (std::size_t i = 0; i < table.rows; ++i) {
-    ShareFindings& f = found[i];
-    f.of_result = table.get<int>("of_result")[i] != 0;
-    f.area = table.get<double>("area")[i];
-    for (const auto& [name, length] : lengths) f.distance.*length = table.get<double>(name)[i];
-    Deviation& d = f.distance.deviation;
-    d.worst = table.get<double>("worst")[i];
-    d.triangle = table.get<int>("triangle")[i];
-    if (d.triangle != -1) expect_row(d.triangle, n_tris, "triangle");
-    for (const auto& [name, axis] : axes) {
-      f.distance.place.*axis = table.get<double>(name)[i];
-      d.place.*axis = table.get<double>("worst_" + std::string(name))[i];
-    }
+  f.of_result = table.get<int>("of_result")[0] != 0;
+  f.area = table.get<double>("area")[0];
+  for (const auto& [name, length] : lengths) f.distance.*length = table.get<double>(name)[0];
+  Deviation& d = f.distance.deviation;
+  d.worst = table.get<double>("worst")[0];
+  d.triangle = table.get<int>("triangle")[0];
+  if (d.triangle != -1) expect_row(d.triangle, n_tris, "triangle");
+  for (const auto& [name, axis] : axes) {
+    f.distance.place.*axis = table.get<double>(name)[0];
+    d.place.*axis = table.get<double>("worst_" + std::string(name))[0];
   }
-  ShareFindings& all = found[0];
-  all.ratios = pairs_of<int, double>(stream, "checked_ratio", "triangle", "ratio");
-  all.off = pairs_of<int, double>(stream, "checked_vertex", "vertex", "distance");
-  all.crossings = pairs_of<int, int>(stream, "checked_crossing", "a", "b");
-  all.folds = stream.need("checked_fold", "mcheck").get<int>("half_edge");
-  for (const auto& [t, ratio] : all.ratios) expect_row(t, n_tris, "triangle");
-  for (const auto& [v, off] : all.off) expect_row(v, static_cast<long long>(result.points.size()), "vertex");
-  for (const auto& [a, b] : all.crossings)
-    expect_row(a, n_tris, "triangle"), expect_row(b, n_tris, "triangle");
-  for (int h : all.folds) expect_row(h, 3 * n_tris, "half-edge");
-  return found;
+  f.ratios = pairs_of<int, double>(stream, "checked_ratio", "triangle", "ratio");
+  f.off = pairs_of<int, double>(stream, "checked_vertex", "vertex", "distance");
+  f.crossings = pairs_of<int, int>(stream, "checked_crossing", "a", "b");
+  f.folds = stream.need("checked_fold", "mcheck").get<int>("half_edge");
+  for (const auto& [t, ratio] : f.ratios) expect_row(t, n_tris, "triangle");
+  for (const auto& [v, off] : f.off) expect_row(v, static_cast<long long>(result.points.size()), "vertex");
+  for (const auto& [a, b] : f.crossings) expect_row(a, n_tris, "triangle"), expect_row(b, n_tris, "triangle");
+  for (int h : f.folds) expect_row(h, 3 * n_tris, "half-edge");
+  return {table.get<int>("number")[0], std::move(f)};
 }
 
 }  // namespace
 
 std::vector<ShareFindings> join_checks(const Stream& whole, const Provenance& by,
-                                       const std::vector<std::string>& names,
-                                       const std::function<Stream(const std::string&)>& read) {
+                                       const std::vector<std::string>& names, const ReadShard& read) {
   std::vector<ShareFindings> all;
   std::vector<const std::string*> from;
   auto text = [](const Provenance& p) {  // --accept changes only what becomes of a failure
@@ -215,32 +171,25 @@ std::vector<ShareFindings> join_checks(const Stream& whole, const Provenance& by
     if (const std::size_t at = words.find(" --accept "); at != words.npos) words.erase(at, 9);
     return words;
   };
-  for (const std::string& name : names) try {
-      const Stream stream = read(name);
-      if (has_check_shares(stream)) throw BadInput("its shares are not measured yet");
-      const auto &made = stream.history, &known = whole.history;
-      bool same = made.size() == known.size() + 1 && text(made.back()) == text(by);
-      for (std::size_t i = 0; same && i < known.size(); ++i) same = text(made[i]) == text(known[i]);
-      if (!same) throw BadInput("it was made of another result, or with other options");
-      CheckShard shard;
-      std::vector<ShareFindings> found = read_findings(stream, whole.surface, shard);
-      const long long most = 2 + static_cast<long long>(whole.surface.tris.size()) +
-                             static_cast<long long>(whole.need("ref_face", "mlift").rows);
-      if (all.empty() && shard.all > 0 && shard.all <= most) all.resize(shard.all), from.resize(shard.all);
-      if (shard.all != static_cast<int>(all.size())) throw BadInput("the check was cut otherwise");
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        const int number = shard.numbers[i];
-        expect_row(number, shard.all, "share");
-        if (from[number])
-          throw BadInput("share " + std::to_string(number) + " is in " + *from[number] + ", too");
-        from[number] = &name;
-        all[number] = std::move(found[i]);
-      }
-    } catch (const BadInput& e) {
-      throw BadInput(name + ": " + e.what());
-    } catch (const NotAdmissible& e) {
-      throw BadInput(name + ": " + e.what());
-    }
+  const long long most = 2 + static_cast<long long>(whole.surface.tris.size()) +
+                         static_cast<long long>(whole.need("ref_face", "mlift").rows);
+  auto take = [&](const std::string& name, const Stream& stream) {
+    if (is_check_share(stream)) throw BadInput("its shares are not measured yet");
+    const auto &made = stream.history, &known = whole.history;
+    bool same = made.size() == known.size() + 1 && text(made.back()) == text(by);
+    for (std::size_t i = 0; same && i < known.size(); ++i) same = text(made[i]) == text(known[i]);
+    if (!same) throw BadInput("it was made of another result, or with other options");
+    int shares = 0;
+    auto [number, found] = read_findings(stream, whole.surface, shares);
+    if (all.empty() && shares > 0 && shares <= most) all.resize(shares), from.resize(shares);
+    if (shares != static_cast<int>(all.size())) throw BadInput("the check was cut otherwise");
+    expect_row(number, shares, "share");
+    if (from[number]) throw BadInput("share " + std::to_string(number) + " is in " + *from[number] + ", too");
+    from[number] = &name;
+    all[number] = std::move(found);
+  };
+  for (const std::string& name : names)
+    read(name, [&](const Stream& stream) { of_shard(name, [&] { take(name, stream); }); });
   for (std::size_t i = 0; i < from.size(); ++i)
     if (!from[i])
       throw BadInput("share " + std::to_string(i) + " of " + std::to_string(from.size()) + " is in no shard");

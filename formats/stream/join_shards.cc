@@ -163,20 +163,23 @@ Table joined_parts(const std::vector<Taken>& taken, std::size_t n_parts) {
 
 }  // namespace
 
+void of_shard(const std::string& name, const std::function<void()>& take) {
+  try {
+    take();
+  } catch (const BadInput& e) {
+    throw BadInput(name + ": " + e.what());
+  } catch (const NotAdmissible& e) {
+    throw BadInput(name + ": " + e.what());
+  }
+}
+
 void join_shards(Stream& whole, const std::vector<std::string>& names, const Provenance& by,
                  const std::function<Stream(const std::string&)>& read) {
   std::vector<Taken> taken;
   std::vector<Home> homes(whole.need("part", "mpartition").rows);
   for (const std::string& name : names) {
     Stream shard = read(name);
-    auto failed = [&](const std::exception& e) { return BadInput(name + ": " + e.what()); };
-    try {
-      taken.push_back(take_shard(whole, name, std::move(shard), by));
-    } catch (const BadInput& e) {
-      throw failed(e);
-    } catch (const NotAdmissible& e) {
-      throw failed(e);
-    }
+    of_shard(name, [&] { taken.push_back(take_shard(whole, name, std::move(shard), by)); });
     const std::vector<int>& parts = taken.back().numbers.parts;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (homes[parts[i]].shard >= 0)

@@ -190,8 +190,15 @@ class Rows {
       else
         read_binary(e);
     }
-    if (const std::size_t left = stream_.ascii ? bytes_.size() - at_ : source_.next(all).size(); left > 0)
-      fail(std::to_string(left) + " bytes follow the last row of '" + elements.back().name + "'");
+    if (stream_.ascii) source_.drop(at_);
+  }
+
+  /// Throws: BadInput if something follows, except for another stream where there may be `several`.
+  void expect_end(const Element& last, bool several) {
+    const bool another = source_.next(4).starts_with("ply\n");
+    if (another && !several) fail("another stream follows; only mrelax and mcheck read shards");
+    if (const std::size_t left = another ? 0 : source_.next(std::string_view::npos).size(); left > 0)
+      fail(std::to_string(left) + " bytes follow the last row of '" + last.name + "'");
   }
 
  private:
@@ -466,6 +473,7 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
   for (const char* corner : {"a", "b", "c"}) {
     check.column("chart_face", corner, "chart_point");
     check.column("ref_face", corner, "ref_vertex");
+    check.column("other_face", corner, "other_vertex");
   }
   check.column("vertex", "ref_face", "ref_face");
   check.column("vertex", "line", "line", -1);
@@ -479,7 +487,7 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
 
 }  // namespace
 
-Stream read_stream(Source& source, const std::string& where) {
+Stream read_stream(Source& source, const std::string& where, bool several) {
   if (const std::string_view bytes = source.next(200); bytes.starts_with("mply-failed ")) {
     auto w = words(bytes.substr(0, std::min(bytes.find('\n'), bytes.size())));
     int status = 1;
@@ -492,7 +500,9 @@ Stream read_stream(Source& source, const std::string& where) {
   Header header(source, where, stream);
   header.read();
   source.drop(header.bytes());
-  Rows(source, where, stream, header.bytes(), header.lines()).read(header.elements);
+  Rows rows(source, where, stream, header.bytes(), header.lines());
+  rows.read(header.elements);
+  rows.expect_end(header.elements.back(), several);
   check_indices(stream, header.elements, where);
   return stream;
 }

@@ -152,8 +152,7 @@ Stream region_boundaries(const Stream& stream, const std::vector<int>& labels) {
   std::vector<int> wanted = labels;
   if (wanted.empty())
     for (const auto& [front, back] : sides) wanted.insert(wanted.end(), {front, back});
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  sort_unique(wanted);
   out.tables.clear();
   out.names.clear();
   const std::vector<Tri> tris = std::move(out.surface.tris);

@@ -30,8 +30,7 @@ void number_lines(const Stream& whole, const std::vector<int>& local_part, Shard
   std::vector<int> used;  // lines
   for (const LineUse& u : lines.uses)
     if (local_part[u.part] >= 0) used.push_back(u.line);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  sort_unique(used);
   std::vector<char> here(lines.points.size(), 0);
   std::vector<std::pair<int, int>> first;  // row, and its line or -1
   for (int l : used) {
@@ -74,6 +73,13 @@ const std::vector<int>& part_of_faces(const Stream& whole) {
 }
 
 }  // namespace
+
+const Table& need_row(const Stream& stream, const char* name, const char* writer) {
+  const Table& table = stream.need(name, writer);
+  if (table.rows != 1)
+    throw BadInput(std::string("table '") + name + "' has " + std::to_string(table.rows) + " rows, not 1");
+  return table;
+}
 
 std::vector<char> kept_vertices(const Stream& stream) {
   const Surface& s = stream.surface;

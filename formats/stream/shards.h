@@ -33,6 +33,15 @@ ShardNumbers number_shard(const Stream& whole, std::vector<int> parts);
 /// `kept`: kept_vertices of the whole; empty if sizes are not known yet.
 Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::vector<char>& kept);
 
+/// Reads the file of this name, and hands the streams in it over one by one.
+using ReadShard = std::function<void(const std::string&, const std::function<void(Stream)>&)>;
+
+/// Returns a table that has one row. Throws: BadInput if it has others; as Stream::need.
+const Table& need_row(const Stream& stream, const char* table, const char* writer);
+
+/// Calls `take`, whose errors get the name of a shard in front. Throws: BadInput.
+void of_shard(const std::string& name, const std::function<void()>& take);
+
 /// Adds to the whole what a program has made of its shards, as it makes it of the whole: plane meshes, else
 /// charts, without those that are missing. `read` returns a shard by its name.
 /// Throws: BadInput, with a shard's name, for one that is none of the whole, parts that are missing, doubled

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "formats/stream/lift_tables.h"
-#include "formats/stream/spans.h"
+#include "formats/stream/mesh_tables.h"
 #include "lib/core/error.h"
 
 namespace meshpipe {
@@ -35,8 +34,7 @@ Table pass_table(const TilePass& pass) {
 }
 
 TilePass pass_from(const Stream& stream) {
-  const Table& table = stream.need("tile_pass", writer);
-  if (table.rows != 1) throw BadInput("table 'tile_pass' has " + std::to_string(table.rows) + " rows, not 1");
+  const Table& table = need_row(stream, "tile_pass", writer);
   auto number = [&](const char* name) { return table.get<int>(name)[0]; };
   auto length = [&](const char* name) {
     const double x = table.get<double>(name)[0];
@@ -82,165 +80,80 @@ TiledMesh tiled_from(const Surface& s, LiftedMesh mesh) {
   return tiled;
 }
 
-/// Columns of table `tile`: the rows of each in the other tables, in this order.
-constexpr const char* sizes[] = {"vertices",  "faces",          "edges",      "ref_vertices",
-                                 "ref_faces", "other_vertices", "other_faces"};
-constexpr std::size_t sizes_of_relaxed = 3;
-
 }  // namespace
 
-void TileTables::add(int number, const Tile& tile) {
-  const LiftedMesh& from = tile.mesh;
-  const Surface& slice = tile.slice;
-  auto count = [](const auto& list) { return static_cast<int>(list.size()); };
-  numbers_.push_back(number);
-  rows_.push_back({count(from.points), count(from.tris), count(tile.model_rim), count(slice.points),
-                   count(slice.tris), count(tile.others.points), count(tile.others.tris)});
-  counts_.push_back(tile.counts);
-  LiftedMesh& to = all_.mesh;
-  append_tris(to.tris, from.tris, to.points.size());
-  append(to.points, from.points), append(to.kind, from.kind), append(to.line, from.line);
-  append(to.size, from.size), append(to.patch, from.patch), append(to.part, from.part);
-  append(to.model, from.model);
-  const int first_face = count(slice_.tris);
-  for (Place p : from.place) p.face += first_face, to.place.push_back(p);
-  append(all_.hold, tile.hold), append(all_.refinement, tile.refinement);
-  append(vertices_, tile.vertices), append(excess_, tile.excess), append(faces_, tile.faces);
-  append(corner_, tile.corner);
-  append_tris(others_.tris, tile.others.tris, others_.points.size());
-  append(others_.points, tile.others.points);
-  for (const auto& [a, b] : tile.model_rim) rim_[0].push_back(a), rim_[1].push_back(b);
-  append_tris(slice_.tris, slice.tris, slice_.points.size());
-  append(slice_.points, slice.points);
-  auto column = [&]<class T>(Table& table, const Table& more, const char* name, T) {
-    if (!more.has(name)) return;
-    if (!table.has(name)) table.set(name, std::vector<T>());
-    append(table.get<T>(name), more.get<T>(name));
-    table.rows = table.get<T>(name).size();
-  };
-  column(slice_.vertex, slice.vertex, "size", 0.0);
-  column(slice_.face, slice.face, "model", std::uint8_t());
-}
-
-void TileTables::write(Stream& stream, const TileWork& work) {
-  stream.tables.clear();
-  Table table{"tile", 0, {}};
-  table.set("number", std::move(numbers_));
-  auto column = [&](const char* name, const auto& list, auto of) {
-    std::vector<int> values;
-    for (const auto& x : list) values.push_back(of(x));
-    table.set(name, std::move(values));
-  };
-  for (std::size_t i = 0; i < (work.relaxed ? sizes_of_relaxed : std::size(sizes)); ++i)
-    column(sizes[i], rows_, [i](const auto& rows) { return rows[i]; });
-  if (work.relaxed)
-    for (const auto& [name, member] : count_columns)
-      column(name, counts_, [m = member](const RelaxCounts& c) { return c.*m; });
-  std::vector<double> b0 = first_weights(all_.mesh.place);
-  stream.surface = surface_from(std::move(all_.mesh));
-  set_tiled(stream.surface, std::move(b0), all_.hold, std::move(all_.refinement));
-  stream.surface.vertex.set("row", std::move(vertices_));
+Stream stream_of(TileJob job) {
+  Stream stream;
+  Tile& tile = job.tile;
+  Table table{"tile", 0, {}}, edges{"tile_edge", 0, {}}, lines{"tile_line", 0, {}};
+  table.set("number", std::vector<int>{job.number});
+  if (job.relaxed)
+    for (const auto& [name, member] : count_columns) table.set(name, std::vector<int>{tile.counts.*member});
+  std::vector<double> b0 = first_weights(tile.mesh.place);
+  stream.surface = surface_from(std::move(tile.mesh));
+  set_tiled(stream.surface, std::move(b0), tile.hold, std::move(tile.refinement));
+  stream.surface.vertex.set("row", std::move(tile.vertices));
   stream.set(std::move(table));
-  stream.set(pass_table(work.pass));
-  Table edges{"tile_edge", 0, {}};
-  edges.set("a", std::move(rim_[0]));
-  edges.set("b", std::move(rim_[1]));
+  stream.set(pass_table(job.pass));
+  std::vector<int> a, b;
+  for (const auto& [from, to] : tile.model_rim) a.push_back(from), b.push_back(to);
+  edges.set("a", std::move(a));
+  edges.set("b", std::move(b));
   stream.set(std::move(edges));
-  Table lines{"tile_line", 0, {}};
-  lines.set("kind", work.line_kind);
+  lines.set("kind", std::move(job.line_kind));
   stream.set(std::move(lines));
-  if (!work.relaxed) {
-    stream.surface.vertex.set("excess", std::move(excess_));
-    Table vertex = table_of("ref_vertex", slice_, true), face = table_of("ref_face", slice_, false);
-    for (Column& c : slice_.vertex.columns) vertex.columns.push_back(std::move(c));
-    for (Column& c : slice_.face.columns) face.columns.push_back(std::move(c));
-    if (!corner_.empty()) vertex.set("corner", std::vector<std::uint8_t>(corner_.begin(), corner_.end()));
-    face.set("row", std::move(faces_));
-    stream.set(std::move(vertex));
-    stream.set(std::move(face));
-    stream.set(table_of("other_vertex", others_, true));
-    stream.set(table_of("other_face", others_, false));
-  }
-  *this = {};
+  if (job.relaxed) return stream;
+  stream.surface.vertex.set("excess", std::move(tile.excess));
+  Table vertex = point_table("ref_vertex", tile.slice), face = triangle_table("ref_face", tile.slice);
+  for (Column& c : tile.slice.vertex.columns) vertex.columns.push_back(std::move(c));
+  for (Column& c : tile.slice.face.columns) face.columns.push_back(std::move(c));
+  if (!tile.corner.empty())
+    vertex.set("corner", std::vector<std::uint8_t>(tile.corner.begin(), tile.corner.end()));
+  face.set("row", std::move(tile.faces));
+  stream.set(std::move(vertex));
+  stream.set(std::move(face));
+  stream.set(point_table("other_vertex", tile.others));
+  stream.set(triangle_table("other_face", tile.others));
+  return stream;
 }
 
-namespace {
-
-/// Gives the tiles what only those have that are not relaxed yet.
-void read_slices(const Stream& stream, const Table& table, TileShard& shard) {
-  const Table &vertex = stream.need("ref_vertex", writer), &face = stream.need("ref_face", writer);
-  const Table &other_vertex = stream.need("other_vertex", writer),
-              &other_face = stream.need("other_face", writer);
-  const Mesh reference = mesh_from(vertex, face), others = mesh_from(other_vertex, other_face);
-  const auto points = spans_of(table, "ref_vertices", vertex.rows),
-             tris = spans_of(table, "ref_faces", face.rows),
-             other_points = spans_of(table, "other_vertices", other_vertex.rows),
-             other_tris = spans_of(table, "other_faces", other_face.rows),
-             vertices = spans_of(table, "vertices", stream.surface.vertex.rows);
-  for (std::size_t i = 0; i < shard.tiles.size(); ++i) {
-    Tile& tile = shard.tiles[i];
-    Surface& s = tile.slice;
-    s.points = points[i].of(reference.points);
-    s.tris = tris_of(reference.tris, tris[i], points[i]);
-    if (vertex.has("size")) s.vertex.set("size", points[i].of(vertex.get<double>("size")));
-    if (face.has("model")) s.face.set("model", tris[i].of(face.get<std::uint8_t>("model")));
-    tile.faces = tris[i].of(face.get<int>("row"));
-    if (vertex.has("corner"))
-      for (std::uint8_t c : points[i].of(vertex.get<std::uint8_t>("corner"))) tile.corner.push_back(c != 0);
-    tile.others.points = other_points[i].of(others.points);
-    tile.others.tris = tris_of(others.tris, other_tris[i], other_points[i]);
-    tile.excess = vertices[i].of(stream.surface.vertex.get<int>("excess"));
-    for (Place& p : tile.mesh.place) {
-      if (p.face < tris[i].first || p.face >= tris[i].last)
-        throw BadInput("tile " + std::to_string(shard.numbers[i]) + " has a vertex on ref_face " +
-                       std::to_string(p.face) + " of another tile");
-      p.face -= tris[i].first;
-    }
-  }
-}
-
-}  // namespace
-
-TileShard take_tiles(Stream& stream) {
-  const Table &table = stream.need("tile", writer), &edges = stream.need("tile_edge", writer);
-  TileShard shard;
-  shard.numbers = table.get<int>("number");
-  shard.line_kind = stream.need("tile_line", writer).get<int>("kind");
-  shard.pass = pass_from(stream);
-  shard.relaxed = table.has("tries");
+TileJob take_tile(Stream stream) {
+  const Table &table = need_row(stream, "tile", writer), &edges = stream.need("tile_edge", writer);
+  TileJob job;
+  job.number = table.get<int>("number")[0];
+  job.line_kind = stream.need("tile_line", writer).get<int>("kind");
+  job.pass = pass_from(stream);
+  job.relaxed = table.has("tries");
+  Tile& tile = job.tile;
   Surface& s = stream.surface;
-  const TiledMesh all =
-      tiled_from(s, take_lifted(s,
-                                shard.relaxed ? std::numeric_limits<int>::max()
-                                              : static_cast<int>(stream.need("ref_face", writer).rows),
-                                static_cast<int>(shard.line_kind.size())));
-  const auto vertices = spans_of(table, "vertices", all.mesh.points.size()),
-             faces = spans_of(table, "faces", all.mesh.tris.size()),
-             rim = spans_of(table, "edges", edges.rows);
-  for (std::size_t i = 0; i < table.rows; ++i) {
-    Tile& tile = shard.tiles.emplace_back();
-    const Span &v = vertices[i], &f = faces[i];
-    LiftedMesh& m = tile.mesh;
-    m.points = v.of(all.mesh.points), m.place = v.of(all.mesh.place), m.kind = v.of(all.mesh.kind);
-    m.line = v.of(all.mesh.line), m.size = v.of(all.mesh.size), m.patch = f.of(all.mesh.patch);
-    m.part = f.of(all.mesh.part), m.model = f.of(all.mesh.model), m.tris = tris_of(all.mesh.tris, f, v);
-    tile.hold = v.of(all.hold), tile.refinement = v.of(all.refinement);
-    tile.vertices = v.of(s.vertex.get<int>("row"));
-    for (int e = rim[i].first; e < rim[i].last; ++e)
-      tile.model_rim.push_back({edges.get<int>("a")[e], edges.get<int>("b")[e]});
-    std::sort(tile.model_rim.begin(), tile.model_rim.end());
-    if (shard.relaxed)
-      for (const auto& [name, member] : count_columns) tile.counts.*member = table.get<int>(name)[i];
+  const int faces =
+      job.relaxed ? std::numeric_limits<int>::max() : static_cast<int>(stream.need("ref_face", writer).rows);
+  static_cast<TiledMesh&>(tile) =
+      tiled_from(s, take_lifted(s, faces, static_cast<int>(job.line_kind.size())));
+  tile.vertices = std::move(s.vertex.get<int>("row"));
+  const auto &a = edges.get<int>("a"), &b = edges.get<int>("b");
+  for (std::size_t e = 0; e < edges.rows; ++e) tile.model_rim.push_back({a[e], b[e]});
+  std::sort(tile.model_rim.begin(), tile.model_rim.end());
+  if (job.relaxed) {
+    for (const auto& [name, member] : count_columns) tile.counts.*member = table.get<int>(name)[0];
+    return job;
   }
-  if (!shard.relaxed) read_slices(stream, table, shard);
-  return shard;
+  const Table &vertex = stream.need("ref_vertex", writer), &face = stream.need("ref_face", writer);
+  static_cast<Mesh&>(tile.slice) = mesh_from(vertex, face);
+  if (vertex.has("size")) tile.slice.vertex.set("size", vertex.get<double>("size"));
+  if (face.has("model")) tile.slice.face.set("model", face.get<std::uint8_t>("model"));
+  tile.faces = face.get<int>("row");
+  if (vertex.has("corner"))
+    for (std::uint8_t c : vertex.get<std::uint8_t>("corner")) tile.corner.push_back(c != 0);
+  tile.others = mesh_from(stream.need("other_vertex", writer), stream.need("other_face", writer));
+  tile.excess = std::move(s.vertex.get<int>("excess"));
+  return job;
 }
 
 namespace {
 
 /// Throws: BadInput if a relaxed tile does not fit into the mesh.
-void expect_fits(const Tile& tile, int number, const TiledMesh& whole, int reference_faces) {
-  const std::string name = "tile " + std::to_string(number);
+void expect_fits(const Tile& tile, const std::string& name, const TiledMesh& whole, int reference_faces) {
   for (std::size_t v = 0; v < tile.vertices.size(); ++v) {
     const int row = tile.vertices[v];
     if (row < -1 || row >= static_cast<int>(whole.mesh.points.size()) ||
@@ -257,33 +170,26 @@ void expect_fits(const Tile& tile, int number, const TiledMesh& whole, int refer
 
 std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int tiles, const TilePass& pass,
                              const Provenance& by, const std::vector<std::string>& names,
-                             const std::function<Stream(const std::string&)>& read) {
+                             const ReadShard& read) {
   std::vector<Tile> all(tiles);
   std::vector<const std::string*> from(tiles, nullptr);
-  for (const std::string& name : names) try {
-      Stream stream = read(name);
-      TileShard shard = take_tiles(stream);
-      if (!shard.relaxed) throw BadInput("its tiles are not relaxed yet");
-      const Provenance made = stream.history.empty() ? Provenance{} : stream.history.back();
-      if (made.program != by.program || made.arguments != by.arguments)
-        throw BadInput("it was made with options '" + made.arguments + "', not '" + by.arguments + "'");
-      if (!same(shard.pass, pass)) throw BadInput("its tiles are those of another mesh or pass");
-      for (std::size_t i = 0; i < shard.tiles.size(); ++i) {
-        const int number = shard.numbers[i];
-        if (number < 0 || number >= tiles)
-          throw BadInput("it has tile " + std::to_string(number) + ", but there are " +
-                         std::to_string(tiles));
-        if (from[number])
-          throw BadInput("tile " + std::to_string(number) + " is in " + *from[number] + ", too");
-        expect_fits(shard.tiles[i], number, whole, reference_faces);
-        from[number] = &name;
-        all[number] = std::move(shard.tiles[i]);
-      }
-    } catch (const BadInput& e) {
-      throw BadInput(name + ": " + e.what());
-    } catch (const NotAdmissible& e) {
-      throw BadInput(name + ": " + e.what());
-    }
+  auto take = [&](const std::string& name, Stream stream) {
+    const Provenance made = stream.history.empty() ? Provenance{} : stream.history.back();
+    TileJob job = take_tile(std::move(stream));
+    if (!job.relaxed) throw BadInput("its tiles are not relaxed yet");
+    if (made.program != by.program || made.arguments != by.arguments)
+      throw BadInput("it was made with options '" + made.arguments + "', not '" + by.arguments + "'");
+    if (!same(job.pass, pass)) throw BadInput("its tiles are those of another mesh or pass");
+    const std::string tile = "tile " + std::to_string(job.number);
+    if (job.number < 0 || job.number >= tiles)
+      throw BadInput("it has " + tile + ", but there are " + std::to_string(tiles));
+    if (from[job.number]) throw BadInput(tile + " is in " + *from[job.number] + ", too");
+    expect_fits(job.tile, tile, whole, reference_faces);
+    from[job.number] = &name;
+    all[job.number] = std::move(job.tile);
+  };
+  for (const std::string& name : names)
+    read(name, [&](Stream stream) { of_shard(name, [&] { take(name, std::move(stream)); }); });
   for (int i = 0; i < tiles; ++i)
     if (!from[i])
       throw BadInput("tile " + std::to_string(i) + " of " + std::to_string(tiles) + " is in no shard");
@@ -306,8 +212,7 @@ void write_tiled(Stream& stream, const TiledMesh& mesh, const std::vector<char>&
 }
 
 TiledMesh take_tiled(Stream& stream, LiftedMesh mesh, BetweenPasses& between) {
-  const Table& table = stream.need("relaxing", "mrelax --join");
-  if (table.rows != 1) throw BadInput("table 'relaxing' has " + std::to_string(table.rows) + " rows, not 1");
+  const Table& table = need_row(stream, "relaxing", "mrelax --join");
   for (const auto& [name, member] : count_columns) between.counts.*member = table.get<int>(name)[0];
   between.second_order = table.get<int>("second_order")[0] != 0;
   stream.erase("relaxing"), stream.erase("relaxing_corner");

@@ -12,12 +12,6 @@
 namespace meshpipe {
 namespace {
 
-template <class T>
-void sort_out(std::vector<T>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 constexpr double reach = 2;                     // edges: farther away, a distance is more than is allowed
 constexpr double longest = 4;                   // edges: longer triangles of the reference are halved
 constexpr double small_ratio = 0.5;             // of the allowed distance: sizes stay where it is no more
@@ -26,6 +20,7 @@ constexpr int bounded_effort = 64, effort = 8;  // points per sample, as in dist
 /// Appends triangles of a mesh to a part, whose vertices have these rows in the mesh.
 void append_part(const Mesh& mesh, const int* first, const int* last, std::vector<int>& number, Mesh& part,
                  std::vector<int>& rows) {
+  part.tris.reserve(part.tris.size() + (last - first));
   for (; first != last; ++first) {
     Tri& t = part.tris.emplace_back(mesh.tris[*first]);
     for (int& v : t) {
@@ -85,7 +80,7 @@ struct Side {
 
 /// Cuts the shares of one side; `common`: what all have.
 void cut_side(const Side& side, const std::vector<double>& allowed, int triangles, double edge,
-              const CheckShare& common, const std::function<void(const CheckShare&)>& take) {
+              const CheckShare& common, const std::function<void(CheckShare)>& take) {
   const auto boxes = split_into_boxes(side.mesh, all_rows(side.mesh), triangles);
   const double area = total_area(side.mesh);
   const double own_edge = size_for_count(area, (double)side.mesh.tris.size());
@@ -113,7 +108,7 @@ void cut_side(const Side& side, const std::vector<double>& allowed, int triangle
       share.vertices = rows;
     }
     forget(rows, number), forget(other_rows, other_number);
-    take(share);
+    take(std::move(share));
   }
 }
 
@@ -133,7 +128,7 @@ void cut_check(const Mesh& result, const Mesh& reference, const std::vector<doub
   auto shares_of = [&](const Mesh& mesh) { return ((int)mesh.tris.size() + triangles - 1) / triangles; };
   const int all = shares_of(result) + shares_of(pieces);
   int number = 0;
-  const auto number_it = [&](const CheckShare& share) { take(share, number++, all); };
+  const auto number_it = [&](CheckShare share) { take(std::move(share), number++, all); };
   cut_side({result, reference, true}, allowed, triangles, edge, common, number_it);
   cut_side({pieces, result, false}, allowed, triangles, edge, common, number_it);
 }
@@ -218,8 +213,8 @@ Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& res
   deviation.allowed = std::move(allowed);
   for (double& off : m.off)
     if (!(off < std::numeric_limits<double>::infinity())) off = 0;  // of unused vertices
-  sort_out(m.intersections);
-  sort_out(m.folds);
+  sort_unique(m.intersections);
+  sort_unique(m.folds);
   m.distance.to_reference = largest[1] / unit, m.distance.to_mesh = largest[0] / unit;
   m.distance.hausdorff = std::max(largest[0], largest[1]) / unit;
   m.distance.bound = upper / unit - m.distance.hausdorff;

@@ -32,7 +32,7 @@ struct ShareFindings {
 };
 
 /// Takes a share, its number, and that of all.
-using TakeShare = std::function<void(const CheckShare&, int, int)>;
+using TakeShare = std::function<void(CheckShare, int, int)>;
 /// Cuts the check of a result into shares of at most `triangles`, and calls `take` for each. `reference`: as
 /// examine compares with. `allowed` and `samples`: as for distance_between; `most`: a length, or 0.
 void cut_check(const Mesh& result, const Mesh& reference, const std::vector<double>& allowed, int triangles,

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows by key, in flat arrays.
 #pragma once
+#include <algorithm>
 #include <numeric>
 #include <span>
 #include <vector>
 
 namespace meshpipe {
+
+template <class T>
+void sort_unique(std::vector<T>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
 
 /// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].
 struct Lists {

@@ -11,11 +11,6 @@
 
 namespace meshpipe {
 
-inline void sort_unique(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 /// A neighborhood changed on trial.
 struct Trial {
   double objective;

@@ -101,18 +101,15 @@ TEST(Shares, AreStreams) {
   faces.set("a", std::vector<int>(reference.tris.size()));
   whole.set(std::move(faces));
   std::vector<Stream> files;
-  const auto read = [&](const std::string& name) { return files.at(std::stoi(name)); };
+  const auto read = [&](const std::string& name, const auto& take) { take(files.at(std::stoi(name))); };
   std::vector<std::string> names;
   std::vector<ShareFindings> direct;
   cut_examination(result, reference, 1000, 10000, 0.01, [&](const CheckShare& share, int number, int all) {
     direct.push_back(measure(share));
-    Stream s;
-    ShareTables tables;
-    tables.add(number, share);
-    tables.write(s, all);
-    CheckShard shard = read_shares(read_stream(write_stream(s, true), "share"));
-    Stream out;
-    write_findings(out, shard, {measure(shard.shares.at(0))});
+    const Stream s = stream_of({number, all, share});
+    const CheckJob job = take_share(read_stream(write_stream(s, true), "share"));
+    EXPECT_EQ(job.number, number);
+    Stream out = stream_of(number, job.all, measure(job.share));
     out.history = {{"mcheck", "1", "--accept"}};
     names.push_back(std::to_string(files.size()));
     files.push_back(out);

@@ -33,23 +33,22 @@ struct Example {
     options.tile = 400;
     pass = relax.pass(whole, true);
   }
-  Stream shard(bool relaxed) const {
-    TileTables tiles;
-    int number = 0;
+  std::vector<Stream> tiles(bool relaxed) const {
+    std::vector<Stream> streams;
     relax.cut(whole, pass, [&](Tile tile) {
       if (relaxed) relax_tile(tile, kinds, pass);
-      tiles.add(number++, tile);
+      streams.push_back(stream_of({(int)streams.size(), kinds, pass, relaxed, std::move(tile)}));
+      streams.back().history = {{"mrelax", "1", ""}};
     });
-    Stream stream;
-    tiles.write(stream, {kinds, pass, relaxed});
-    stream.history = {{"mrelax", "1", ""}};
-    return stream;
+    return streams;
   }
-  std::vector<Tile> join(const std::vector<Stream>& shards) const {
+  std::vector<Tile> join(const std::vector<std::vector<Stream>>& shards) const {
     const std::vector<std::string> names{"a", "b"};
     return join_tiles(whole, (int)reference.tris.size(), 5, pass, {"mrelax", "", ""},
                       {names.begin(), names.begin() + (long)shards.size()},
-                      [&](const std::string& name) { return shards[name == "b"]; });
+                      [&](const std::string& name, const auto& take) {
+                        for (const Stream& s : shards[name == "b"]) take(s);
+                      });
   }
 };
 
@@ -57,11 +56,13 @@ struct Example {
 
 TEST(TileTables, HoldTilesToTheBit) {
   const Example e;
-  Stream stream = read_stream(write_stream(e.shard(false), true), "shard");
-  const TileShard shard = take_tiles(stream);
+  const std::vector<Stream> streams = e.tiles(false);
   int next = 0;
   e.relax.cut(e.whole, e.pass, [&](const Tile& tile) {
-    const Tile& read = shard.tiles.at(next++);
+    const TileJob job = take_tile(read_stream(write_stream(streams.at(next), true), "tile"));
+    EXPECT_EQ(job.number, next++);
+    EXPECT_FALSE(job.relaxed);
+    const Tile& read = job.tile;
     EXPECT_EQ(read.mesh.points, tile.mesh.points);
     EXPECT_EQ(read.mesh.tris, tile.mesh.tris);
     EXPECT_EQ(read.hold, tile.hold);
@@ -83,23 +84,51 @@ TEST(TileTables, HoldTilesToTheBit) {
 
 TEST(TileTables, AreJoinedOnlyIfTheyFit) {
   const Example e;
-  const Stream good = e.shard(true);
+  const std::vector<Stream> good = e.tiles(true);
   EXPECT_EQ(e.join({good}).size(), 5u);
-  EXPECT_THROW(e.join({good, good}), BadInput);      // doubled
-  EXPECT_THROW(e.join({e.shard(false)}), BadInput);  // not relaxed
-  Stream other = good;
-  other.history.back().arguments = "--sweeps=1";
+  EXPECT_EQ(e.join({{good.begin() + 2, good.end()}, {good.begin(), good.begin() + 2}}).size(), 5u);
+  EXPECT_THROW(e.join({{good.begin(), good.end() - 1}}), BadInput);  // one is missing
+  EXPECT_THROW(e.join({good, good}), BadInput);                      // doubled
+  EXPECT_THROW(e.join({e.tiles(false)}), BadInput);                  // not relaxed
+  std::vector<Stream> other = good;
+  other.back().history.back().arguments = "--sweeps=1";
   EXPECT_THROW(e.join({other}), BadInput);
   Example moved;
   for (Vec3& p : moved.whole.mesh.points) p.x += 1;
   EXPECT_THROW(moved.join({good}), BadInput);
 }
 
+// several streams one after the other are read where that is allowed, binary and as text
+TEST(ReadStream, TakesOneOfSeveral) {
+  struct Memory : Source {
+    std::string_view left;
+    std::string_view next(std::size_t) override { return left; }
+    void drop(std::size_t n) override { left.remove_prefix(n); }
+    std::size_t most_left() const override { return left.size(); }
+  } source;
+  const Example e;
+  for (bool ascii : {false, true}) {
+    std::string all;
+    for (const Stream& s : e.tiles(false)) all += write_stream(s, ascii);
+    source.left = all;
+    int next = 0;
+    while (!source.left.empty()) EXPECT_EQ(take_tile(read_stream(source, "shard", true)).number, next++);
+    EXPECT_EQ(next, 5);
+    EXPECT_THROW(read_stream(all, "shard"), BadInput);
+    for (const std::string& bad : {all + "x", all.substr(0, all.size() - 1)}) {
+      source.left = bad;
+      for (int i = 0; i < 4; ++i) read_stream(source, "shard", true);
+      EXPECT_THROW(read_stream(source, "shard", true), BadInput);
+    }
+  }
+}
+
 // each number of a shard replaced by a wrong one: an error, or another sound shard, but no crash
 TEST(TileTables, WrongNumbersAreRefused) {
   const Example e;
   for (bool relaxed : {false, true}) {
-    const Stream good = e.shard(relaxed);
+    const std::vector<Stream> tiles = e.tiles(relaxed);
+    const Stream& good = tiles[0];
     auto spoil = [&](const Table& table, auto pick) {
       for (const Column& c : table.columns)
         for (int wrong : {-2, 1 << 30}) {
@@ -109,9 +138,9 @@ TEST(TileTables, WrongNumbersAreRefused) {
           t.template get<int>(c.name)[t.rows / 2] = wrong;
           try {
             if (relaxed)
-              e.join({bad});
+              e.join({{bad}, {tiles.begin() + 1, tiles.end()}});
             else
-              take_tiles(bad);
+              take_tile(bad);
           } catch (const BadInput&) {
           } catch (const NotAdmissible&) {
           }
