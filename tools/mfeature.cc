@@ -7,6 +7,7 @@
 #include "formats/stream/region_tables.h"
 #include "formats/stream/stages.h"
 #include "lib/cap/cap.h"
+#include "lib/core/lists.h"
 #include "lib/core/triangle_count.h"
 #include "lib/defeature/defeature.h"
 #include "lib/feature/feature.h"
@@ -40,8 +41,7 @@ void relabel_sheets(Stream& stream, const PatchMerge& merge) {
   if (!has_sheets(stream)) return;
   std::vector<SheetPatch> sheets = read_sheets(stream);
   for (SheetPatch& s : sheets) s.patch = merge(s.patch);
-  std::sort(sheets.begin(), sheets.end());
-  sheets.erase(std::unique(sheets.begin(), sheets.end()), sheets.end());
+  sort_unique(sheets);
   for (std::size_t i = 1; i < sheets.size(); ++i)
     if (const SheetPatch& a = sheets[i - 1], &b = sheets[i]; a.patch == b.patch)
       throw NotAdmissible("patches merged to " + std::to_string(a.patch) +

@@ -12,6 +12,7 @@
 #include "formats/stream/model_lines.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -144,8 +145,7 @@ class Elements {
 std::vector<int> Elements::physical_tags(int dim) const {
   std::vector<int> tags;
   for (const Tags& t : dim == 1 ? lines_ : surfaces_) tags.push_back(t.physical);
-  std::sort(tags.begin(), tags.end());
-  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  sort_unique(tags);
   return tags;
 }
 

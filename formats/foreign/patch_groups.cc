@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "formats/text.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -62,8 +63,7 @@ bool is_lost(const std::string& word, const Stream& stream) {
 std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& where, const Stream& stream) {
   std::vector<int> labels;
   if (stream.surface.face.has("patch")) labels = stream.surface.face.get<int>("patch");
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  sort_unique(labels);
   Text text(bytes, where);
   std::vector<PatchGroup> groups;
   std::vector<std::pair<std::string, std::size_t>> named;  // and on which line

@@ -173,8 +173,7 @@ std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
 void find_chords(Findings& f, const Connectivity& result, const Surface& given) {
   auto add = [](const auto& more, auto& pairs) {
     pairs.insert(pairs.end(), more.begin(), more.end());
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    sort_unique(pairs);
   };
   const auto found = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
   if (found.empty()) return;

@@ -28,8 +28,7 @@ std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& op
   const std::vector<int>& label = surface.face.get<int>("patch");
   std::vector<int> labels;
   std::unique_copy(label.begin(), label.end(), std::back_inserter(labels));  // few are left to sort
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  sort_unique(labels);
   std::map<std::string, int> number;  // in the order of the names
   for (int l : labels) number[name(l)];
   for (auto& [text, i] : number) {

@@ -70,8 +70,7 @@ Junctions junctions_of(const Mesh& joined, const std::vector<char>& inside, cons
     if (line.find(e) == e) j.lines.push_back(edges[e].key);
   std::sort(j.lines.begin(), j.lines.end());
   for (const auto& [p, t] : j.edges) j.free.push_back(p);
-  std::sort(j.free.begin(), j.free.end());
-  j.free.erase(std::unique(j.free.begin(), j.free.end()), j.free.end());
+  sort_unique(j.free);
   return j;
 }
 

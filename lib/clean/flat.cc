@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "lib/clean/repair.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -162,8 +163,7 @@ class Flat {
         vertices.push_back(target(r_.tris, g));
         vertices.push_back(origin(r_.tris, prev(g)));
       });
-      std::sort(vertices.begin(), vertices.end());
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      sort_unique(vertices);
       return inside;
     };
     std::vector<int> link_a, link_b, common;

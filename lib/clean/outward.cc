@@ -67,8 +67,7 @@ std::vector<std::vector<int>> containers(const Repair& r, const std::vector<Vec3
         j = k;
       }
     }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    sort_unique(touched);
     std::sort(all.begin(), all.end());
     auto count = [&](const std::vector<int>& v,
                      int d) {  // samples of component d that are not on it, or all on it

@@ -241,8 +241,7 @@ std::vector<std::pair<int, int>> sheet_intersections(Mesh& mesh, const Bvh& tree
       if (inside && other >= 0) pairs.push_back(std::minmax(h / 3, other));
     }
   });
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   return pairs;
 }
 

@@ -20,8 +20,7 @@ bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners)
     v.insert(v.end(), mesh.tris[t].begin(), mesh.tris[t].end());
     whole = whole + area_vector(mesh, t);
   }
-  std::sort(v.begin(), v.end());
-  v.erase(std::unique(v.begin(), v.end()), v.end());
+  sort_unique(v);
   if (v.size() > 64) {
     // the farthest point of a triangle from any other is a corner, and so is the farthest from a side
     auto farthest = [&](auto distance) {

@@ -160,8 +160,7 @@ std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vecto
 
 std::vector<int> labels(const Surface& s) {
   std::vector<int> all = s.face.has("patch") ? s.face.get<int>("patch") : std::vector<int>();
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  sort_unique(all);
   return all;
 }
 

@@ -111,8 +111,7 @@ int Zipper::contract_regions() {
         around += length;
         if (o >= 0) mean = mean + length * normalized(normal(o / 3));
       }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    sort_unique(vertices);
     const bool disk = 2 * ((int)vertices.size() + (int)region.size() - 1) == edges;
     if (!disk || norm(high - low) > options_.tolerance || norm(mean) < least_mean * around) continue;
     for (int v : vertices) region_[v] = n;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 #include "lib/feature/feature.h"
@@ -68,8 +69,7 @@ int PatchMerge::count() const {
 PatchMerge no_merge(const Surface& surface) {
   PatchMerge m;
   m.patch = surface.face.has("patch") ? surface.face.get<int>("patch") : std::vector<int>{1};
-  std::sort(m.patch.begin(), m.patch.end());
-  m.patch.erase(std::unique(m.patch.begin(), m.patch.end()), m.patch.end());
+  sort_unique(m.patch);
   m.into = m.patch;
   return m;
 }

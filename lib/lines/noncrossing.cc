@@ -378,8 +378,7 @@ void Refinement::run() {
       for (SegmentOf& r : refine) r.line = chains_.leader[r.line];
       for (int& l : strip) l = chains_.leader[l];
     }
-    std::sort(refine.begin(), refine.end());
-    refine.erase(std::unique(refine.begin(), refine.end()), refine.end());
+    sort_unique(refine);
 
     std::fill(dirty.begin(), dirty.end(), 0);
     auto touch = [&](int line) {

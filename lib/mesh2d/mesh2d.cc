@@ -74,8 +74,7 @@ Drawing draw(const PartLines& parts, int part) {
         d.segments.push_back({a, parts.point[l.first + (k + 1) % l.count], border});
     }
   }
-  std::sort(d.row.begin(), d.row.end());
-  d.row.erase(std::unique(d.row.begin(), d.row.end()), d.row.end());
+  sort_unique(d.row);
   auto number = [&](int row) {
     return (int)(std::lower_bound(d.row.begin(), d.row.end(), row) - d.row.begin());
   };
@@ -88,8 +87,7 @@ Drawing draw(const PartLines& parts, int part) {
 class Numbers {
  public:
   Numbers(const Chart& chart, std::vector<int> wanted) : chart_(chart), global_(std::move(wanted)) {
-    std::sort(global_.begin(), global_.end());
-    global_.erase(std::unique(global_.begin(), global_.end()), global_.end());
+    sort_unique(global_);
     half_edge_.assign(global_.size(), -1);
     std::vector<int> slot(chart.mesh.vertex.size());
     for (std::size_t v = 0; v < slot.size(); ++v) slot[v] = find(chart.mesh.vertex[v]);

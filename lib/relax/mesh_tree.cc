@@ -96,8 +96,7 @@ void renew(Crossings& crossings, const State& s, MeshTree& search) {
         pairs.push_back({std::min(t, u), std::max(t, u)});
     });
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
 }
 
 }  // namespace meshpipe

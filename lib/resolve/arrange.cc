@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "lib/core/lists.h"
 #include "lib/resolve/plane.h"
 
 namespace meshpipe {
@@ -84,8 +85,7 @@ void Cuts::edge_and_triangle(int p, int q, int at_p, int at_q, const Tri& t) {
 }
 
 void Cuts::put(int s, int t) {
-  std::sort(found_.begin(), found_.end());
-  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  sort_unique(found_);
   if (found_.empty()) return;
   for (int u : {s, t}) cuts.push_back({u, found_.front(), found_.back()});
   found_.clear();
@@ -200,8 +200,7 @@ Pieces arrange(const std::vector<Tri>& tris, const std::vector<int>& weight,
   Cuts found(tris, points);
   for (const auto& [s, t] : pairs) found.add(s, t);
   std::vector<Cut>& cuts = found.cuts;
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  sort_unique(cuts);
   Pieces pieces;
   TriangleArrangement plane(points);
   Regions regions(points);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lib/core/connectivity.h"
+#include "lib/core/lists.h"
 #include "lib/core/random.h"
 #include "lib/core/weld.h"
 #include "lib/shape/shape.h"
@@ -179,8 +180,7 @@ Mesh voronoi(int seeds, bool ball, int n, int seed) {
     if (!ball || next == facets || std::abs(more) < enough * edges || i + 1 == tries) break;
     diagram.set_sides(body(ball, facets = next));
   }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sort_unique(keys);
   std::vector<Vec3> corners;
   for (const Key& key : keys) corners.push_back(diagram.corner(key));
   Mesh mesh;

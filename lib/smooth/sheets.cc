@@ -50,8 +50,7 @@ std::vector<std::vector<int>> joined_ends(const std::vector<Edge>& edges, const 
       ends.join(e.a, e.b);
       found.insert(found.end(), {e.a, e.b});
     }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sort_unique(found);
   std::sort(found.begin(), found.end(), [&](int a, int b) {
     const int i = ends.find(a), j = ends.find(b);
     return i != j ? i < j : a < b;

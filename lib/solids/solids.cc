@@ -221,8 +221,7 @@ int row_of(const std::vector<RegionMeasure>& regions, int label) {
 std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets) {
   std::vector<int> labels;
   for (const SheetPatch& s : sheets) labels.insert(labels.end(), {s.front, s.back});
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+  sort_unique(labels);
   std::vector<RegionMeasure> regions;
   for (int label : labels) regions.push_back({label});
   const std::vector<int>& patch = surface.face.get<int>("patch");

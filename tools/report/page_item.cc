@@ -52,8 +52,7 @@ double kappa_of(const Mesh& mesh, int t) {
 LabelColumn labels_of(const std::string& name, const std::vector<int>& values,
                       const std::function<std::string(int)>& name_of) {
   std::vector<int> known(values);
-  std::sort(known.begin(), known.end());
-  known.erase(std::unique(known.begin(), known.end()), known.end());
+  sort_unique(known);
   LabelColumn column{name, {}, {}};
   for (int x : values)
     column.values.push_back((int)(std::lower_bound(known.begin(), known.end(), x) - known.begin()));
