@@ -72,6 +72,7 @@ Stream& Io::read() {
   if (takes_shards) {
     input_ = std::make_unique<InputFile>(input);
     stream = accepted(*this, read_next(*input_, name_of(input), true));
+    if (input_->next(1).empty()) input_.reset();  // frees its memory now
   } else {
     stream = read(input);
   }
@@ -120,7 +121,7 @@ int Io::write_each(const std::function<Stream(Stream)>& make) {
     const std::lock_guard lock(reading);
     if (n == 0) return std::pair(n++, std::move(stream));
     const std::lock_guard other(writing);
-    if (!failed.empty() || input_->next(1).empty()) return std::pair(-1, Stream());
+    if (!failed.empty() || !input_ || input_->next(1).empty()) return std::pair(-1, Stream());
     try {
       const std::string where = name_of(input) + " stream " + std::to_string(n + 1);
       Stream next = read_next(*input_, where, true);

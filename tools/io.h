@@ -64,7 +64,7 @@ class Io : public CommonOptions {
 
  private:
   std::vector<std::pair<std::string, std::string>> expected_files_;  ///< option, path
-  std::unique_ptr<InputFile> input_;                                 ///< FILE, if it may have several streams
+  std::unique_ptr<InputFile> input_;                                 ///< FILE, if it has several streams
 };
 
 }  // namespace meshpipe
