@@ -57,6 +57,15 @@ class Source {
   virtual std::size_t most_left() const = 0;
 };
 
+/// Bytes that are in memory.
+struct MemorySource : Source {
+  std::string_view left;
+  explicit MemorySource(std::string_view bytes) : left(bytes) {}
+  std::string_view next(std::size_t) override { return left; }
+  void drop(std::size_t n) override { left.remove_prefix(n); }
+  std::size_t most_left() const override { return left.size(); }
+};
+
 /// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
 /// Nothing may follow; where there may be `several`, as in a shard, another stream.
 /// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".

@@ -508,13 +508,7 @@ Stream read_stream(Source& source, const std::string& where, bool several) {
 }
 
 Stream read_stream(std::string_view bytes, const std::string& where) {
-  struct Memory : Source {
-    std::string_view left;
-    std::string_view next(std::size_t) override { return left; }
-    void drop(std::size_t n) override { left.remove_prefix(n); }
-    std::size_t most_left() const override { return left.size(); }
-  } memory;
-  memory.left = bytes;
+  MemorySource memory(bytes);
   return read_stream(memory, where);
 }
 

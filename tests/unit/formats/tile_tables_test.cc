@@ -100,17 +100,11 @@ TEST(TileTables, AreJoinedOnlyIfTheyFit) {
 
 // several streams one after the other are read where that is allowed, binary and as text
 TEST(ReadStream, TakesOneOfSeveral) {
-  struct Memory : Source {
-    std::string_view left;
-    std::string_view next(std::size_t) override { return left; }
-    void drop(std::size_t n) override { left.remove_prefix(n); }
-    std::size_t most_left() const override { return left.size(); }
-  } source;
   const Example e;
   for (bool ascii : {false, true}) {
     std::string all;
     for (const Stream& s : e.tiles(false)) all += write_stream(s, ascii);
-    source.left = all;
+    MemorySource source(all);
     int next = 0;
     while (!source.left.empty()) EXPECT_EQ(take_tile(read_stream(source, "shard", true)).number, next++);
     EXPECT_EQ(next, 5);
