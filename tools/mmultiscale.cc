@@ -88,6 +88,7 @@ int main(int argc, char** argv) {
     options.keep_maps = !directory.empty();
     Stream& stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
+    count_parts(stream.surface);  // refuses what no partition has
     std::vector<MultiscaleCut> cuts;
     std::vector<Topology> topology;
     std::vector<int> opposite;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "lib/cap/steps.h"
+#include "lib/core/largest_patch.h"
 #include "lib/core/number.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -277,7 +278,9 @@ struct Treatment {
     take_rows(surface.face, rows);
     if (!surface.face.has("model")) surface.face.set("model", std::vector<std::uint8_t>(surface.tris.size()));
     std::vector<int>& patch = surface.face.get<int>("patch");
-    int next = patch.empty() ? 1 : std::max(0, *std::max_element(patch.begin(), patch.end())) + 1;
+    std::size_t more = 0;
+    for (const EndReport& r : reports) more += (r.cap > 0) + (r.extension > 0);
+    int next = largest_patch(patch, more) + 1;
     const int first_new = next;
     for (EndReport& r : reports)
       if (r.cap) r.cap_patch = next++;

@@ -7,6 +7,7 @@
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/largest_patch.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -198,10 +199,7 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
   if (holes == 0) return;
   if (!surface.face.has("patch")) surface.face.set("patch", std::vector<int>(surface.tris.size(), 1));
   std::vector<int>& patch = surface.face.get<int>("patch");
-  const int most = *std::max_element(patch.begin(), patch.end());
-  if (most > std::numeric_limits<int>::max() - holes)
-    throw NotAdmissible("patch " + std::to_string(most) + " leaves no numbers for " + std::to_string(holes) +
-                        " more patches");
+  const int most = largest_patch(patch, holes);
   for (int i = 1; i <= holes; ++i) report.holes.patches.push_back(most + i);
   for (std::size_t t = 0; t < cap.size(); ++t)
     if (cap[t] >= 0) patch[t] = report.holes.patches[cap[t]];

@@ -3,6 +3,7 @@
 
 #include "lib/clean/repair.h"
 #include "lib/core/edges.h"
+#include "lib/core/largest_patch.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -37,7 +38,7 @@ bool mark_sheets(Surface& surface, const Repair& apart, CleanReport& report) {
   for (int t = 0; t < n; ++t)
     if (meets[component[t]]) labels.push_back({patch[t], component[t], t});
   std::sort(labels.begin(), labels.end());
-  int last = n ? *std::max_element(patch.begin(), patch.end()) : 0;
+  int last = largest_patch(patch, labels.size());
   for (std::size_t i = 1; i < labels.size(); ++i) {
     const Label &before = labels[i - 1], &l = labels[i];
     if (l.patch != before.patch) continue;

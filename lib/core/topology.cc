@@ -293,13 +293,14 @@ bool admissible(const Topology& t, double max_aspect) {
 int count_parts(const Surface& surface) {
   const std::vector<int>& part = surface.face.get<int>("part");
   const int n_tris = (int)surface.tris.size();
-  const int n = n_tris ? *std::max_element(part.begin(), part.end()) + 1 : 0;
-  std::vector<int> faces(std::min(n, n_tris), 0);
+  int n = 0;
+  std::vector<int> faces(n_tris, 0);
   for (int t = 0; t < n_tris; ++t) {
     if (part[t] < 0 || part[t] >= n_tris)
       throw NotAdmissible("face " + std::to_string(t) + " has part " + std::to_string(part[t]) + " of " +
                           std::to_string(n_tris) + " triangles");
     ++faces[part[t]];
+    n = std::max(n, part[t] + 1);
   }
   for (int p = 0; p < n; ++p)
     if (!faces[p])

@@ -8,6 +8,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/connectivity.h"
 #include "lib/core/edges.h"
+#include "lib/core/largest_patch.h"
 #include "lib/core/ray.h"
 #include "lib/core/union_find.h"
 
@@ -190,7 +191,7 @@ std::vector<SheetPatch> sheet_patches(Surface& surface, const Solids& solids, co
   for (int t = 0; t < n; ++t)
     rows.push_back({{patch[t], label[solids.sides[t][0]], label[solids.sides[t][1]]}, t});
   std::sort(rows.begin(), rows.end());
-  int last = n ? *std::max_element(patch.begin(), patch.end()) : 0, was = 0;
+  int last = largest_patch(patch, rows.size()), was = 0;
   std::vector<SheetPatch> sheets;
   for (int i = 0; i < n; ++i) {
     const SheetPatch& s = rows[i].sheet;

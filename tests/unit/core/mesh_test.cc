@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lib/core/error.h"
+#include "lib/core/largest_patch.h"
 
 using namespace meshpipe;
 
@@ -30,6 +31,15 @@ TEST(Mesh, SplitByLabelGivesEveryPartItsOwnNumbers) {
   EXPECT_EQ(parts[1].vertex, (std::vector<int>{0, 1, 2}));
   EXPECT_EQ(parts[0].tris[0], (Tri{0, 1, 2}));
   EXPECT_EQ(parts[0].points[2].y, 1);
+}
+
+TEST(Mesh, LargestPatchLeavesNumbersForMore) {
+  constexpr int most = std::numeric_limits<int>::max();
+  EXPECT_EQ(largest_patch({}, 1), 0);
+  EXPECT_EQ(largest_patch({-3}, 1), 0);
+  EXPECT_EQ(largest_patch({2, 7, 1}, 5), 7);
+  EXPECT_EQ(largest_patch({most - 2}, 2), most - 2);
+  EXPECT_THROW(largest_patch({most - 2}, 3), NotAdmissible);
 }
 
 TEST(Mesh, KappaIsOneForTheEquilateralAndZeroForTheFlat) {
