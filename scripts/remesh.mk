@@ -18,7 +18,13 @@
 FLAGS ?= -q
 inputs := stl obj off ply msh vtu vtp vtk mesh meshb
 outputs := vtu vtp vtk stl obj off ply msh msh2 msh4 mesh meshb gts inp bdf nas poly
-stages := 01-clean 02-topo 03-feature 04-partition 05-multiscale 06-param 07-size 08-lines 09-mesh2d 10-lift 11-relax
+# the stages in order, from size on also in later rounds
+names := clean topo feature partition multiscale param size lines mesh2d lift relax check
+stages := $(shell n=0; for s in $(names); do n=$$((n + 1)); printf '%02d-%s ' $$n $$s; done)
+later := $(shell echo $(names) | sed 's/.* size //; s/ check//')
+numbered = $(filter %-$(1),$(stages))
+mapped := $(call numbered,param)
+last := $(lastword $(filter-out %-check,$(stages)))
 
 goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
@@ -52,18 +58,19 @@ endif
 	  { echo "$(@D): another run is at work there, process $$(cat $@)" >&2; exit 1; }; echo $$PPID >$@
 
 upper = $(shell printf %s '$(1)' | tr a-z A-Z)
+name_of = $(word 2,$(subst -, ,$(1)))
 # the options of a stage are a file too, which is written when they change
 define options
 %.stages/$(1).options: FORCE | %.stages/lock
 	@printf '%s\n' '$$(call args,$(2))' | cmp -s - $$@ || printf '%s\n' '$$(call args,$(2))' >$$@
 endef
-$(foreach s,$(stages) 12-check,$(eval $(call options,$(s),$(call upper,$(word 2,$(subst -, ,$(s)))))))
+$(foreach s,$(stages),$(eval $(call options,$(s),$(call upper,$(call name_of,$(s))))))
 
 # the input is known by its checksum, too: another one may be older
 define clean
 %.stages/input: %.$(1) FORCE | %.stages/lock
 	@sum=$$$$(cksum <$$<); [ "$$$$sum" = "$$$$(cat $$@ 2>/dev/null)" ] || printf %s "$$$$sum" >$$@
-%.stages/01-clean.ply: %.$(1) %.stages/01-clean.options %.stages/input
+%.stages/$(call numbered,clean).ply: %.$(1) %.stages/$(call numbered,clean).options %.stages/input
 	mclean $$(FLAGS) $$(call args,CLEAN) $$< -o $$@
 endef
 $(foreach e,$(inputs),$(eval $(call clean,$(e))))
@@ -73,19 +80,19 @@ define stage
 %.stages/$(1).ply: %.stages/$(2).ply %.stages/$(1).options
 	$(3) $$(FLAGS) $$(call args,$(4)) $$< -o $$@
 endef
-previous := 01-clean
-$(foreach s,$(filter-out 01-clean,$(stages)),\
-  $(eval name := $(word 2,$(subst -, ,$(s))))\
+previous := $(call numbered,clean)
+$(foreach s,$(filter-out %-clean %-check,$(stages)),\
+  $(eval name := $(call name_of,$(s)))\
   $(eval $(call stage,$(s),$(previous),m$(name),$(call upper,$(name))))\
   $(eval previous := $(s)))
 
 # mcheck of a stem's mesh into a result; it says in the verdict what is next
-check = mcheck $(FLAGS) $(call args,CHECK) --json $(1).stages/12-check.json --verdict $(1).stages/verdict \
+check = mcheck $(FLAGS) $(call args,CHECK) --json $(1).stages/$(call numbered,check).json --verdict $(1).stages/verdict \
   --refine $(1).stages/refined.ply $(2) -o $(3) || \
   $(MAKE) --no-print-directory -f $(this) again STEM='$(1)' RESULT='$(3)'
 
 define result
-%.mesh.$(1): %.stages/11-relax.ply %.stages/12-check.options
+%.mesh.$(1): %.stages/$(last).ply %.stages/$(call numbered,check).options
 	@rm -f $$*.stages/verdict
 	+$$(call check,$$*,$$<,$$@)
 endef
@@ -93,7 +100,12 @@ $(foreach e,$(outputs),$(eval $(call result,$(e))))
 
 # one more round, if the verdict asks for it; a number of triangles holds as long as it says
 dir := $(STEM).stages
-again_args = $(FLAGS) $(call args,$(1)) $(dir)/again/$(2).ply -o $(dir)/again/$(3).ply
+# stage $(1) of that round, after `previous`
+define repeat
+$(eval name := $(call name_of,$(1)))m$(name) $(FLAGS) $(call args,$(call upper,$(name))) \
+  $(dir)/again/$(previous).ply -o $(dir)/again/$(1).ply$(eval previous := $(1))
+
+endef
 again:
 	@[ -e $(dir)/verdict ]
 	@tail -n 1 $(dir)/verdict | grep -qx next=refine || \
@@ -101,9 +113,6 @@ again:
 	@mkdir -p $(dir)/again; mv $(dir)/refined.ply $(dir)/again/field.ply
 	msize $(FLAGS) $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),$$(tail -n 2 $(dir)/verdict | \
 	  grep -qx count=free || echo --triangles $(TRIANGLES))) $(BOUNDS) --field $(dir)/again/field.ply:size \
-	  $(dir)/06-param.ply -o $(dir)/again/07-size.ply
-	mlines $(call again_args,LINES,07-size,08-lines)
-	mmesh2d $(call again_args,MESH2D,08-lines,09-mesh2d)
-	mlift $(call again_args,LIFT,09-mesh2d,10-lift)
-	mrelax $(call again_args,RELAX,10-lift,11-relax)
-	+$(call check,$(STEM),$(dir)/again/11-relax.ply,$(RESULT))
+	  $(dir)/$(mapped).ply -o $(dir)/again/$(call numbered,size).ply
+	$(eval previous := $(call numbered,size))$(foreach n,$(later),$(call repeat,$(call numbered,$(n))))
+	+$(call check,$(STEM),$(dir)/again/$(last).ply,$(RESULT))
