@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lib/core/segments.h"
+
 namespace meshpipe {
 namespace {
 
@@ -30,9 +32,7 @@ std::array<int, 2> tree_sizes(int n) {
 }
 
 Vec3 segment_weights(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 d = b - a;
-  const double dd = dot(d, d);
-  const double t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0;
+  const double t = nearest_on_segment(p, a, b);
   const Vec3 e = p - lerp(a, b, t);
   return {1 - t, t, dot(e, e)};
 }

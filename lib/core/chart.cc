@@ -6,6 +6,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/predicates.h"
+#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -77,7 +78,7 @@ Place place_inside(const Chart& chart, int t, Vec2 p) {
 /// The nearest place to p on half-edge h, and its squared distance.
 Place place_on_edge(const Chart& chart, int h, Vec2 p, double& distance2) {
   Vec2 a = chart.uv[origin(chart.mesh.tris, h)], b = chart.uv[target(chart.mesh.tris, h)];
-  double l2 = dot(b - a, b - a), t = l2 > 0 ? std::clamp(dot(p - a, b - a) / l2, 0.0, 1.0) : 0;
+  const double t = nearest_on_segment(p, a, b);
   Vec2 d = p - lerp(a, b, t);
   distance2 = dot(d, d);
   double bary[3] = {0, 0, 0};

@@ -43,12 +43,16 @@ class SegmentTree {
 /// Turns of one segment as seen from p: the crossings of the ray from p along +x, counted upwards.
 int ray_crossing(Vec2 p, Vec2 from, Vec2 to);
 
-/// Distance of p from the segment from a to b, in the plane or in space.
+/// Where on the segment from a to b the point nearest to p is, in the plane or in space: 0 at a, 1 at b.
+template <class Point>
+double nearest_on_segment(Point p, Point a, Point b) {
+  const double l2 = dot(b - a, b - a);
+  return l2 > 0 ? std::clamp(dot(p - a, b - a) / l2, 0.0, 1.0) : 0;
+}
+/// Distance of p from it.
 template <class Point>
 double distance_to_segment(Point p, Point a, Point b) {
-  const Point d = b - a;
-  const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0., 1.) : 0;
-  return norm(a + t * d - p);
+  return norm(a + nearest_on_segment(p, a, b) * (b - a) - p);
 }
 
 /// True if two segments meet elsewhere than at one common end.

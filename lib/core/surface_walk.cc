@@ -5,6 +5,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/normals.h"
+#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -114,8 +115,7 @@ Place SurfaceWalk::across(const Place& p) const {
 double SurfaceWalk::squared_distance(int h, Vec3 target, double& t) const {
   const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
              q = mesh_.points[meshpipe::target(mesh_.tris, h)];
-  const double l2 = dot(q - p, q - p);
-  t = l2 > 0 ? std::clamp(dot(target - p, q - p) / l2, 0.0, 1.0) : 0;
+  t = nearest_on_segment(target, p, q);
   const Vec3 e = lerp(p, q, t) - target;
   return dot(e, e);
 }

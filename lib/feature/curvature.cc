@@ -56,7 +56,9 @@ std::vector<int> within(const std::vector<int>& opposite, std::vector<int> tris,
     for (const std::size_t last = tris.size(); first < last; ++first)
       for (int h = 3 * tris[first]; h < 3 * tris[first] + 3; ++h)
         if (const int u = opposite[h] / 3; opposite[h] >= 0 && !seen[u]) seen[u] = 1, tris.push_back(u);
-  std::sort(tris.begin(), tris.end());
+  tris.clear();
+  for (int t = 0; t < (int)seen.size(); ++t)
+    if (seen[t]) tris.push_back(t);
   return tris;
 }
 

@@ -185,12 +185,9 @@ void Refinement::for_piece(int part, const Drawing& d, int segment, const Edge& 
 /// Returns how far the chain strays from the segment.
 double Refinement::deviation(int part, const Drawing& d, int segment) const {
   const Segment& s = d.segments[segment];
-  const Vec2 along = s.q - s.p;
-  const double length2 = dot(along, along);
   double most = 0;
   for_piece(part, d, segment, [&](Vec2, Vec2 x) {
-    const double t = length2 > 0 ? std::clamp(dot(x - s.p, along) / length2, 0.0, 1.0) : 0;
-    most = std::max(most, norm(x - lerp(s.p, s.q, t)));
+    most = std::max(most, norm(x - lerp(s.p, s.q, nearest_on_segment(x, s.p, s.q))));
   });
   return most;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
@@ -30,9 +31,9 @@ constexpr double least_area = 0.2;  ///< of a circle as long: a path there and b
 /// Finds the rings around tubes, from one vertex after the other.
 class TubeFinder {
  public:
-  TubeFinder(const Mesh& mesh, const Neighbors& next)
+  explicit TubeFinder(const Mesh& mesh)
       : mesh_(mesh),
-        next_(next),
+        next_(mesh),
         normal_(vertex_area_vectors(mesh)),
         distance_(mesh.points.size(), infinite),
         from_(mesh.points.size()),
@@ -88,7 +89,7 @@ class TubeFinder {
   }
 
   const Mesh& mesh_;
-  const Neighbors& next_;
+  const Neighbors next_;
   std::vector<Vec3> normal_;
   std::vector<double> distance_;
   std::vector<int> from_, branch_, reached_, near_;
@@ -155,18 +156,18 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   for (const Peak& p : sharp_peaks(surface, size))
     feature[p.vertex] = std::max(least, size[p.vertex] * std::max(p.angle, least_peak) / ring_edges);
   const std::vector<double> whole = closed_areas(surface);
-  const Neighbors next(mesh);
   for (std::size_t t = 0; t < mesh.tris.size(); ++t)
     for (int v : mesh.tris[t]) {
       const double most = size_for_count(whole[t], least_triangles);
       if (most < size[v]) feature[v] = std::min(feature[v], most);
       bend[v] = std::max(bend[v], curvature[t]);
     }
-  TubeFinder tubes(mesh, next);
+  std::optional<TubeFinder> finder;  // most surfaces of a scan bend nowhere as much
   std::vector<char> done(n, 0);
   for (int v = 0; v < static_cast<int>(n); ++v) {
     const double below = ring_edges * size[v];
     if (done[v] || !(bend[v] * below > full_bend)) continue;
+    TubeFinder& tubes = finder ? *finder : finder.emplace(mesh);
     const double length = tubes.ring(v, below);
     // every vertex of a tube is within a quarter of its ring of one that was searched from
     for (int u : tubes.near()) {

@@ -9,7 +9,7 @@
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
-#include "lib/core/union_find.h"
+#include "lib/core/segments.h"
 
 namespace meshpipe {
 namespace {
@@ -31,44 +31,34 @@ constexpr double flat_triangle = 1e-7;  ///< height over length, below which rou
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
 constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
 constexpr double least_piece = 1e-4;    ///< of an edge: bounds the measurements of one
+constexpr double most_reach = 32;       ///< sizes, within which what is near edges is looked at,
+constexpr std::size_t most_near = 16;   ///< if it is no more triangles for each of them
+constexpr double one_way = 0.7;  ///< least cosine between an axis and the normals of a sheet that is a graph
 constexpr double corner_turn = 0.35;  ///< radians: a line that turns by more may come near others there only
-
-double clamp01(double t) { return std::clamp(t, 0.0, 1.0); }
-
-/// The point nearest to p on a segment.
-Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 d = b - a;
-  const double l = dot(d, d);
-  return l > 0 ? lerp(a, b, clamp01(dot(p - a, d) / l)) : a;
-}
 
 /// Looks at what is connected, in one place after the other.
 class Search {
  public:
-  explicit Search(const Connectivity& surface)
-      : surface_(surface), seen_(surface.n_tris(), 0), sets_(surface.n_vertices()) {}
+  explicit Search(const Connectivity& surface) : surface_(surface), seen_(surface.n_tris(), 0) {}
 
-  /// Whether the triangles of the tree within `reach` of a box are all connected, by ways around vertices
-  /// nearer than `most` to all of it.
-  bool connected(const Bvh& tree, const Box& box, double reach, double most) {
-    const Vec3 margin{reach, reach, reach};
-    bool all = true;
-    tree.overlapping({box.lo - margin, box.hi + margin}, [&](int t) {
-      if (!all) return;
-      ++work;
-      int before = -1;
-      for (int v : surface_.mesh.tris[t]) {
-        const Vec3 far = upper(surface_.point(v) - box.lo, box.hi - surface_.point(v));
-        if (!(dot(far, far) < most * most)) continue;
-        if (before >= 0) sets_.join(before, v);
-        used_.push_back(before = v);
+  /// Whether these triangles are one sheet that is a graph over a plane, and have no edge on a line.
+  bool one_graph(const std::vector<int>& triangles, const std::vector<Vec3>& normal) {
+    Vec3 axis;
+    for (int t : triangles) axis = axis + normal[t];
+    axis = normalized(axis);
+    for (int t : triangles)
+      if (!(dot(normal[t], axis) > one_way)) return false;
+    ++turn_;
+    for (int t : triangles) seen_[t] = turn_;
+    queue_.assign(1, triangles[0]);
+    seen_[triangles[0]] = 0;
+    for (std::size_t i = 0; i < queue_.size(); ++i)
+      for (int h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
+        if (surface_.is_border(h) || surface_.is_model(h)) return false;
+        if (int& seen = seen_[surface_.opposite[h] / 3]; seen == turn_)
+          seen = 0, queue_.push_back(surface_.opposite[h] / 3);
       }
-      all = before >= 0;
-    });
-    for (int v : used_) all = all && sets_.find(v) == sets_.find(used_[0]);
-    for (int v : used_) sets_.merge_into(v, v);
-    used_.clear();
-    return all;
+    return queue_.size() == triangles.size();
   }
 
   /// Calls visit(t) for the triangles nearer to p than reach(), from the first one on, across edges that pass
@@ -96,9 +86,8 @@ class Search {
 
  private:
   const Connectivity& surface_;
-  std::vector<int> seen_, queue_, used_;
+  std::vector<int> seen_, queue_;
   int turn_ = 0;
-  UnionFind sets_;
 };
 
 /// How an edge bends.
@@ -131,14 +120,22 @@ class Measure {
     return found;
   }
   const Bvh& tree() const { return tree_; }
+  const std::vector<Vec3>& normals() const { return normal_; }
   const Connectivity& surface() const { return surface_; }
   /// Does the line of h turn at its start? For half-edges on lines.
   bool turns(int h) const {
-    const int g = before_[h];
     auto along = [&](int e) { return surface_.point(surface_.to(e)) - surface_.point(surface_.from(e)); };
-    return g >= 0 && angle(along(g), along(h)) > corner_turn;
+    return angle(along(before(h)), along(h)) > corner_turn;
   }
-  int before(int h) const { return before_[h]; }
+  /// Neighbors of half-edges on lines, around the region.
+  int before(int h) const {
+    for (h = prev(h); !is_line(h);) h = prev(surface_.opposite[h]);
+    return h;
+  }
+  int after(int h) const {
+    for (h = next(h); !is_line(h);) h = next(surface_.opposite[h]);
+    return h;
+  }
   bool is_line(int h) const {
     return surface_.is_border(h) || surface_.is_model(h) || surface_.is_model(surface_.opposite[h]);
   }
@@ -153,8 +150,7 @@ class Measure {
   const Connectivity& surface_;
   const std::vector<double>& asked_;
   double least_width_, largest_;
-  std::vector<Vec3> normal_;         ///< of triangles
-  std::vector<int> after_, before_;  ///< per half-edge on a line: its neighbors around the region; else -1
+  std::vector<Vec3> normal_;  ///< of triangles
   Bvh tree_;
 };
 
@@ -164,17 +160,7 @@ Measure::Measure(const Connectivity& surface, const std::vector<double>& asked)
       least_width_(least_width * diagonal(surface.mesh)),
       largest_(*std::max_element(asked.begin(), asked.end())),
       normal_(face_normals(surface.mesh)),
-      after_(surface.n_half_edges(), -1),
-      before_(surface.n_half_edges(), -1),
-      tree_(surface.mesh) {
-  for (int h = 0; h < surface_.n_half_edges(); ++h) {
-    if (!is_line(h)) continue;
-    int g = next(h);
-    while (!is_line(g)) g = next(surface_.opposite[g]);
-    after_[h] = g;
-    before_[g] = h;
-  }
-}
+      tree_(surface.mesh) {}
 
 /// Whether q on the half-edge `other` is reached from p on h along the lines around their region, on a way
 /// that is short for the width between them.
@@ -186,10 +172,10 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
     Vec3 x = p;
     for (int g = h; g != other || way == 0;) {
       const int v = forward ? surface_.to(g) : surface_.from(g);
-      const int then = forward ? after_[g] : before_[g];
+      const int then = forward ? after(g) : before(g);
       way += norm(surface_.point(v) - x);
       x = surface_.point(v);
-      if (then < 0 || way > most) {
+      if (way > most || then == h) {
         way = infinite;
         break;
       }
@@ -199,10 +185,6 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
           angle(x - surface_.point(forward ? surface_.from(g) : surface_.to(g)), surface_.point(w) - x);
       sharp = sharp || (opening < sharp_corner && opening * way < most_opening * width);
       g = then;
-      if (g == h) {
-        way = infinite;
-        break;
-      }
     }
     way += norm(q - x);
     if (way <= per_width * width || (sharp && way <= largest_)) return true;
@@ -233,9 +215,9 @@ SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
       {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
       [&](int t) {
         for (int g = 3 * t; g < 3 * t + 3; ++g) {
-          if (g == h || after_[g] < 0) continue;
-          const Vec3 q =
-              nearest_on_segment(p, surface_.point(surface_.from(g)), surface_.point(surface_.to(g)));
+          if (g == h || !is_line(g)) continue;
+          const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
+          const Vec3 q = lerp(a, b, nearest_on_segment(p, a, b));
           const double d = norm(q - p);
           if (!(d < width) || d <= least || dot(q - p, inward(h, d)) < opposed * d ||
               dot(p - q, inward(g, d)) < opposed * d || adjacent_along(h, p, g, q, d))
@@ -262,7 +244,8 @@ double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) c
           const double za = dot(a - p, up) - most, zb = dot(b - p, up) - most;
           if ((za > 0) != (zb > 0) && n < 2) level[n++] = lerp(a, b, za / (za - zb));
         }
-        if (n == 2) reach = std::min(reach, norm(nearest_on_segment(p, level[0], level[1]) - p));
+        const double at = nearest_on_segment(p, level[0], level[1]);
+        if (n == 2) reach = std::min(reach, norm(lerp(level[0], level[1], at) - p));
         return true;
       });
   return reach;
@@ -337,21 +320,33 @@ void measure_edge(const Measure& measure, int h, Search& search, std::vector<Siz
 }
 
 /// Measures edges next to each other, where bounds in their middles are on sheets within the gap; at once if
-/// all of the surface near them is connected.
+/// what is near them is one sheet. `near`: triangles, all that are near these edges among them; empty: the
+/// tree has them.
 void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Search& search,
-                    long long most_work, std::vector<SizeBound>& found) {
+                    long long most_work, std::vector<SizeBound>& found, const std::vector<int>& near = {}) {
   if (edges.empty() || search.work >= most_work) return;
+  if (edges.size() == 1) return measure_edge(measure, edges[0].half_edge, search, found);
   Box box{edges[0].place, edges[0].place};
-  double gap = 0, asked = infinite;
+  double gap = 0;
   for (const SizeBound& x : edges) {
     box = join(box, {x.place, x.place});
     gap = std::max(gap, x.gap);
-    asked = std::min(asked, x.size);
   }
-  if (edges.size() == 1) return measure_edge(measure, edges[0].half_edge, search, found);
-  if (norm(box.hi - box.lo) + 2 * gap < asked && search.connected(measure.tree(), box, gap, asked)) return;
+  const Vec3 margin{gap, gap, gap};
+  const Box around{box.lo - margin, box.hi + margin};
+  std::vector<int> list;
+  if (near.empty() && norm(around.hi - around.lo) < most_reach * edges[0].size) {
+    measure.tree().overlapping(around, [&](int t) {
+      ++search.work;
+      if (list.size() <= most_near * edges.size()) list.push_back(t);
+    });
+    if (list.size() > most_near * edges.size()) list.clear();
+  }
+  for (int t : near)
+    if (overlap(box_of(measure.surface().mesh, t), around)) list.push_back(t);
+  if (!list.empty() && search.one_graph(list, measure.normals())) return;
   for (auto part : {edges.first(edges.size() / 2), edges.subspan(edges.size() / 2)})
-    measure_sheets(measure, part, search, most_work, found);
+    measure_sheets(measure, part, search, most_work, found, list);
 }
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
