@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Single points far out of their surface, as scanners and broken files have them.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "lib/clean/clean.h"
@@ -28,15 +28,27 @@ struct Rim {
   }
 };
 
-std::vector<Rim> rims_of(const std::vector<Vec3>& points, const std::vector<Tri>& tris,
-                         const std::vector<int>& same) {
-  std::vector<Rim> rims(points.size());
-  for (const Tri& t : tris)
-    for (int i = 0; i < 3; ++i) {
-      const int v = same[t[i]];
-      for (int w : {same[t[(i + 1) % 3]], same[t[(i + 2) % 3]]})
-        if (w != v) rims[v].add(points[w], norm(points[w] - points[v]));
-    }
+/// Flags the vertices opposite to an edge that is shorter than a triangle's others over `extents`, as those
+/// are that stick out.
+std::vector<char> apexes(const Surface& s, double extents) {
+  std::vector<char> flags(s.points.size(), 0);
+  for (const Tri& t : s.tris) {
+    double edge[3];  // opposite to each corner
+    for (int i = 0; i < 3; ++i) edge[i] = norm(s.points[t[(i + 2) % 3]] - s.points[t[(i + 1) % 3]]);
+    for (int i = 0; i < 3; ++i)
+      if (std::min(edge[(i + 1) % 3], edge[(i + 2) % 3]) > extents * edge[i]) flags[t[i]] = 1;
+  }
+  return flags;
+}
+
+/// Returns the rims of the vertices flagged.
+std::map<int, Rim> rims_of(const Surface& s, const std::vector<int>& same, const std::vector<char>& flags) {
+  std::map<int, Rim> rims;
+  for (const Tri& t : s.tris)
+    for (int i = 0; i < 3; ++i)
+      if (const int v = same[t[i]]; flags[v])
+        for (int w : {same[t[(i + 1) % 3]], same[t[(i + 2) % 3]]})
+          if (w != v) rims[v].add(s.points[w], norm(s.points[w] - s.points[v]));
   return rims;
 }
 
@@ -44,28 +56,20 @@ bool sticks_out(const Rim& rim, double extents) {
   return rim.count > 2 && rim.nearest > extents * norm(rim.high - rim.low);
 }
 
-/// Has a triangle two edges longer than `extents` times the third, as those at a vertex that sticks out have?
-bool has_long_triangles(const Surface& s, double extents) {
-  return std::any_of(s.tris.begin(), s.tris.end(), [&](const Tri& t) {
-    double edge[3];
-    for (int i = 0; i < 3; ++i) edge[i] = norm(s.points[t[(i + 1) % 3]] - s.points[t[i]]);
-    std::sort(edge, edge + 3);
-    return edge[1] > extents * edge[0];
-  });
-}
-
 }  // namespace
 
 int flatten_spikes(Surface& s, double extents) {
-  if (!has_long_triangles(s, extents)) return 0;
+  std::vector<char> flags = apexes(s, extents);
+  if (std::count(flags.begin(), flags.end(), 1) == 0) return 0;
   const std::vector<int> same = first_equal(s.points, used_points(s));
-  const std::vector<Rim> rims = rims_of(s.points, s.tris, same);
+  for (std::size_t v = 0; v < same.size(); ++v) flags[same[v]] |= flags[v];
+  const std::map<int, Rim> rims = rims_of(s, same, flags);
   int n = 0;
   for (std::size_t v = 0; v < same.size(); ++v) {
-    const Rim& rim = rims[same[v]];
-    if (!sticks_out(rim, extents)) continue;
+    const auto found = rims.find(same[v]);
+    if (found == rims.end() || !sticks_out(found->second, extents)) continue;
     n += same[v] == (int)v;
-    s.points[v] = (1.0 / rim.count) * rim.sum;
+    s.points[v] = (1.0 / found->second.count) * found->second.sum;
   }
   return n;
 }
@@ -80,17 +84,16 @@ Spikes find_spikes(const Surface& s) {
   constexpr double most = 0.001;  // of the vertices: more are what the surface consists of
   std::vector<int> same(s.points.size());
   std::iota(same.begin(), same.end(), 0);
-  const std::vector<Rim> rims = rims_of(s.points, s.tris, same);
   Spikes found;
   double longest = 0;
-  for (int v = 0; v < (int)rims.size(); ++v) {
-    if (!sticks_out(rims[v], extents)) continue;
+  for (const auto& [v, rim] : rims_of(s, same, apexes(s, extents))) {
+    if (!sticks_out(rim, extents)) continue;
     ++found.count;
-    if (!(rims[v].nearest > longest)) continue;
-    longest = rims[v].nearest;
+    if (!(rim.nearest > longest)) continue;
+    longest = rim.nearest;
     found.longest = s.points[v];
   }
-  return found.count <= std::max(1.0, most * (double)rims.size()) ? found : Spikes{};
+  return found.count <= std::max(1.0, most * (double)same.size()) ? found : Spikes{};
 }
 
 }  // namespace meshpipe

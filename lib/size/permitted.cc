@@ -319,9 +319,8 @@ void measure_edge(const Measure& measure, int h, Search& search, std::vector<Siz
     measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, search, found);
 }
 
-/// Measures edges next to each other, where bounds in their middles are on sheets within the gap; at once if
-/// what is near them is one sheet. `near`: triangles, all that are near these edges among them; empty: the
-/// tree has them.
+/// Measures edges next to each other, on sheets within the gap of their middles; at once if what is near is
+/// one sheet. `near`: triangles, all that are near these edges among them; empty: the tree has them.
 void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Search& search,
                     long long most_work, std::vector<SizeBound>& found, const std::vector<int>& near = {}) {
   if (edges.empty() || search.work >= most_work) return;
