@@ -169,7 +169,7 @@ def test_others(browser, pages):
     shown(browser, pages["failed"])
     rows = browser.run("document.querySelectorAll('table.faults tbody tr').length")
     all_of_them = int(browser.run("document.querySelector('table.faults caption').textContent").split()[-1])
-    expect(f"triangles at fault are listed: {rows} of {all_of_them}", 0 < rows == min(100, all_of_them))
+    expect(f"offending triangles are listed: {rows} of {all_of_them}", 0 < rows == min(100, all_of_them))
     expect("there are more than are shown at first", all_of_them > 100)
     browser.run("document.querySelector('button[data-all]').click()")
     browser.wait(f"document.querySelectorAll('table.faults tbody tr').length === {all_of_them}")
@@ -203,7 +203,7 @@ def test_others(browser, pages):
     expect(f"100,000 triangles take {size} bytes", size <= MOST_BYTES)
     expect(f"the first picture comes after {took} ms", took < 1000 * MOST_SECONDS)
     size = os.path.getsize(pages["faulty"])
-    expect(f"100,000 triangles, most of them at fault, take {size} bytes", size <= 2e6)
+    expect(f"100,000 triangles, most of them offending, take {size} bytes", size <= 2e6)
     shown(browser, pages["two"])
     browser.run("""(() => { const s = document.querySelector('select:not(#color)');
         s.value = s.options.length - 1; s.dispatchEvent(new Event('change')); })()""")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The check of a large result in shards, as jobs of their own.
+// The check of a large result in shards, as separate jobs.
 #pragma once
 #include <vector>
 

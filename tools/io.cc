@@ -108,7 +108,7 @@ void Io::write(Stream& stream) {
 
 int Io::write_each(const std::function<Stream(Stream)>& make) {
   if (!is_stream_name(output))
-    throw BadUsage("-o " + output + ": what becomes of a shard is a stream (.ply)");
+    throw BadUsage("-o " + output + ": the result of a shard is a stream; expected the extension .ply");
   const bool text = ascii || (stream.ascii && !binary);
   const auto history = stream.history;
   std::mutex reading, writing;

@@ -69,7 +69,7 @@ void report_plane(Io& io, const std::vector<End>& ends, const std::vector<EndRep
       io, ends, " rim is moved into its plane, by ", " rims are moved into their planes, by at most ",
       [&](std::size_t i) { return done[i].moved > hardly_moved * ends[i].radius ? done[i].moved : 0; });
   if (!trims)
-    report_most(io, ends, " end is cut back to be plane, by ", " ends are cut back to be plane, by at most ",
+    report_most(io, ends, " end is trimmed to be planar, by ", " ends are trimmed to be planar, by at most ",
                 [&](std::size_t i) { return done[i].trimmed; });
   const auto stubs = std::count_if(done.begin(), done.end(), [](const EndReport& r) { return r.stub > 0; });
   if (stubs > 0)
@@ -112,7 +112,7 @@ void report(Io& io, const std::vector<End>& ends, const std::vector<EndReport>& 
   }
   if (not_plane > 0 && !flatten)
     io.say(std::to_string(not_plane) + (not_plane == 1 ? " cap is" : " caps are") +
-           " not plane, since the rim is not; --flatten cuts or raises such ends");
+           " not planar, since the rim is not; --flatten cuts or raises such ends");
 }
 
 /// Throws: NotAdmissible if a new patch, with a tag from `first` on, has the name of another: solvers tell
@@ -168,7 +168,7 @@ void run(Io& io, Options& o) {
   io.say(std::to_string(ends.size()) + (ends.size() == 1 ? " open end" : " open ends"));
   if (ends.empty() && (o.trim > 0 || o.extend > 0))
     throw NotAdmissible("the surface has no open end to " + std::string(o.trim > 0 ? "cut back" : "extend"));
-  if (ends.empty() && (o.flatten || o.cap)) io.warn("warning: no open ends: nothing is made plane or capped");
+  if (ends.empty() && (o.flatten || o.cap)) io.warn("warning: no open ends: nothing is flattened or capped");
   if (ends.empty() || !(o.trim > 0 || o.flatten || o.extend > 0 || o.cap)) {
     report(io, ends, std::vector<EndReport>(ends.size()), o.flatten);
   } else {
@@ -199,31 +199,36 @@ int main(int argc, char** argv) {
   Options o;
   return run_tool(
       argc, argv, "mcap",
-      "List the open ends of a surface, cut them back, make them planar, extend and cap them.\n\n"
-      "examples:\n  mclean tree.stl | mcap --list\n"
+      "List the open ends of a surface; trim, flatten, extend and cap them.\n\n"
+      "Examples:\n  mclean tree.stl | mcap --list\n"
       "  mclean tree.stl | mcap --flatten --cap -o closed.ply\n"
       "  mclean tree.stl | mcap --trim 0.5r --extend 3 --cap -o model.ply",
       [&](CLI::App& app) {
         app.add_flag("--list", o.list,
-                     "write a table of the ends to standard output, and a surface only to -o FILE")
+                     "write a table of the ends to standard output; write the surface only with -o FILE")
             ->group("Reports");
-        app.add_option("--names", o.name_file,
-                       "names of ends: in each line NAME X Y Z for the nearest, or NAME for the next in the "
-                       "order of area (default inlet, outlet_1 ...)")
+        app.add_option(
+               "--names", o.name_file,
+               "names of ends, one per line: NAME X Y Z for the end nearest to that point, NAME for the "
+               "next one by area (default: inlet, outlet_1 ...)")
             ->type_name("FILE");
-        app.add_option("--trim", o.length, "cut each end back by a length, or with r by radii of the end")
+        app.add_option(
+               "--trim", o.length,
+               "cut off this much of each end: a length, % of the diagonal, or radii of the end (0.5r)")
             ->type_name("L|P%|Kr");
-        auto* at = app.add_option("--at", o.at, "cut back and extend only these ends, by name or number")
+        auto* at = app.add_option("--at", o.at, "trim and extend only these ends (names or numbers)")
                        ->type_name("END,...");
-        app.add_option("--except", o.except, "cut back and extend all ends but these")
+        app.add_option("--except", o.except, "trim and extend all ends except these")
             ->type_name("END,...")
             ->excludes(at);
-        app.add_flag("--flatten", o.flatten, "make all rims plane: moved, cut, or raised by stubs");
-        app.add_option("--extend", o.extend, "extend each end straight by K radii, to a circle")
+        app.add_flag("--flatten", o.flatten, "make all rims planar: move, cut or raise them");
+        app.add_option("--extend", o.extend,
+                       "extend each end along its normal by K of its radii, to a circular section")
             ->check(positive_number())
             ->type_name("K");
-        app.add_flag("--cap", o.cap,
-                     "close each end by a cap, a patch of the end's name; almost plane rims are made plane");
+        app.add_flag(
+            "--cap", o.cap,
+            "close each end by a cap, a patch with the end's name; almost planar rims are made planar");
       },
       [&](Io& io) { run(io, o); });
 }

@@ -30,10 +30,9 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : warnings_of(io.stream, f)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
   if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
-    io.say(
-        std::to_string(n) +
-        " pairs of triangles intersect, as those of the input do: --resolve outer resolves those of closed "
-        "components, mwrap all");
+    io.say(std::to_string(n) +
+           " pairs of triangles intersect, as in the input: --resolve outer resolves those of closed "
+           "components, mwrap all of them");
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);
 }
@@ -61,8 +60,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   if (is_check_share(stream)) return check_shard(io);
-  if (stream.find("checked"))
-    throw NotAdmissible("this is what was measured of a shard; expected --join DIR");
+  if (stream.find("checked")) throw NotAdmissible("these are measurements of a shard; expected --join DIR");
   if (o.shards.count > 0) return cut_into_shards(io, o.shards, o.tile, o.samples, contract);
   std::vector<ShareFindings> shares;
   if (!o.shards.from.empty()) shares = read_checked(io, o.shards);
@@ -100,12 +98,14 @@ int main(int argc, char** argv) {
   std::optional<RoundFile> verdict;  // outlives the body, which may fail
   Summary summary;
   auto add_options = [&](CLI::App& app) {
-    auto* reference = app.add_option("--reference", o.reference,
-                                     "the surface to compare with; without it the stream's own, from mlift")
-                          ->type_name("FILE");
-    app.add_option("--require", o.require, "what must be met, see mcheck(1) (default " + o.require + ")")
+    auto* reference =
+        app.add_option("--reference", o.reference,
+                       "the surface to compare with (default: the one in the stream, from mlift on)")
+            ->type_name("FILE");
+    app.add_option("--require", o.require,
+                   "requirements of the contract, separated by commas (see mcheck(1), also for the default)")
         ->type_name("LIST");
-    app.add_option("--max-error", o.max_error, "requires hausdorff=E, too")
+    app.add_option("--max-error", o.max_error, "also require hausdorff=E")
         ->check(positive_number())
         ->type_name("E");
     app.add_flag("--accept", o.accept,
@@ -116,25 +116,26 @@ int main(int argc, char** argv) {
     report("--samples", o.samples, "points on each surface for the distance (default 10000)")
         ->check(CLI::Range(1, 100000000));
     report("--histogram", o.histogram, "draw kappa and angles of both meshes")->type_name("FILE.svg");
-    report("--refine", o.refine, "if the contract is missed, write the sizes that may meet it")
+    report("--refine", o.refine,
+           "if the contract is missed, write smaller sizes that may meet it, for msize --field")
         ->type_name("FILE");
-    report("--verdict", o.verdict, "add the outcome as lines key=value, errors too: see mcheck(1)")
+    report("--verdict", o.verdict, "append the outcome to this file, as lines key=value: see mcheck(1)")
         ->type_name("FILE");
-    report("--tsv", o.tsv, "add the verdict to this table as a line, tab-separated")->type_name("FILE");
-    report("--culprits", o.offending, "write the triangles at fault")->type_name("FILE");
+    report("--tsv", o.tsv, "append the verdict to this tab-separated table, as one row")->type_name("FILE");
+    report("--culprits", o.offending, "write the offending triangles to this file")->type_name("FILE");
     app.add_option("--tile", o.tile,
-                   "triangles of a share (default 250000); results up to four times that have none")
+                   "triangles per share (default 250000); results of up to four times as many are not shared")
         ->check(CLI::Range(100, 100000000))
         ->type_name("N")
         ->group("Shards");
-    add_shard_options(app, o.shards, "of the check", reference);
+    add_shard_options(app, o.shards, "of measurements", reference);
   };
   const int status = run_tool(
       argc, argv, "mcheck",
       "Verify a result: connectivity, self-intersections, quality, and distance to the surface it was "
       "made from.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/11-relax.ply -o checked.ply\n"
-      "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 --json tree.json -o tree.ply",
+      "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 -o tree.ply",
       add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0), summary); },
       {.shards = true});
   return o.tsv.empty() ? status : add_to_table(o.tsv, summary, status);

@@ -124,7 +124,7 @@ void say(Io& io, const CleanReport& r, const CleanOptions& options, const Surfac
   io.report["components"] = r.components;
   for (const auto& [key, count, what] : table_of(r, options)) {
     char line[160];  // a clean surface may still have copies and flat triangles
-    std::snprintf(line, sizeof line, "%9d %s%s", count, what.c_str(), r.nothing ? " (so in the input)" : "");
+    std::snprintf(line, sizeof line, "%9d %s%s", count, what.c_str(), r.nothing ? " (as in the input)" : "");
     if (count) io.say(line);
   }
   if (r.opened_edges > 0)  // not to go unseen
@@ -168,30 +168,34 @@ bool is_of_former_run(const std::string& remark) {
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("--weld", o.within,
-                 "merge vertices this close: auto (default, by precision), length, or % of the diagonal")
+                 "merge vertices closer than this: auto (default: the precision of the coordinates), a "
+                 "length, or % of "
+                 "the diagonal")
       ->type_name("auto|TOL");
-  app.add_option("--keep-components", o.most, "keep the N largest components by area (default all)")
+  app.add_option("--keep-components", o.most, "keep the N components of largest area (default: all)")
       ->type_name("N|all");
   app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
       ->check(CLI::Range(3, 100000))
       ->type_name("N");
-  app.add_flag("--cap-patches", o.cap_patches, "give each filled hole a patch of its own, named cap-1 ...");
+  app.add_flag("--cap-patches", o.cap_patches,
+               "give each filled hole a separate patch, named cap-1, cap-2 ...");
   app.add_flag("--drop-nonorientable", o.drop_nonorientable,
-               "drop components that are not orientable, instead of cutting them open");
-  app.add_option("--sheets", o.how,
-                 "edges of more than two triangles: keep, pair (by solids), split, or auto (default): pair "
-                 "where sheets are closed solids that touch, else keep")
+               "drop components that cannot be oriented instead of cutting them open");
+  app.add_option(
+         "--sheets", o.how,
+         "edges of more than two triangles: auto (default), keep (one conforming mesh), pair (by solid) or "
+         "split; see mclean(1)")
       ->check(CLI::IsMember({"auto", "pair", "split", "keep"}));
-  app.add_option("--require-data", o.data, "fail with 4 unless the vertices have data of this name")
+  app.add_option("--require-data", o.data, "fail with status 4 unless the vertices have data of this name")
       ->type_name("NAME")
       ->group("Reports");
   app.add_option("--resolve", o.resolving,
-                 "self-intersections: none (default: left as they are), outer: only what bounds the "
-                 "outside is kept, or all: every piece")
+                 "self-intersections: none (default) leaves them, outer keeps the outer surface only, all "
+                 "keeps all pieces")
       ->check(CLI::IsMember({"none", "outer", "all"}));
   app.add_option("--drop-spikes", o.spikes,
-                 "move vertices farther from all their neighbors than R times the extent of these among "
-                 "them (default 1000; 0: none)")
+                 "move a vertex to the mean of its neighbors if all are farther from it than R times their "
+                 "extent (default 1000; 0: never)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("R");
   app.add_option("--culprits", o.offending, "write the offending triangles to this file")
@@ -202,7 +206,8 @@ void add_options(CLI::App& app, Options& o) {
 /// Moves spikes as the options ask; returns their number.
 int flatten(Io& io, Surface& s, const Options& o) {
   const int n = o.spikes > 0 ? flatten_spikes(s, o.spikes) : 0;
-  if (n > 0) io.say("vertices that stuck out and moved among their neighbors: " + std::to_string(n));
+  if (n > 0)
+    io.say("vertices that stuck out and were moved to the mean of their neighbors: " + std::to_string(n));
   io.report["spikes"] = n;
   return n;
 }
@@ -223,7 +228,7 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mclean",
       "Make a triangle soup an oriented manifold, and report every repair.\n\n"
-      "examples:\n  mclean tree.stl -o clean.ply\n"
+      "Examples:\n  mclean tree.stl -o clean.ply\n"
       "  mclean --weld 0.0001% --keep-components 1 tree.stl | mtopo > topo.ply\n"
       "  mclean --drop-nonorientable --culprits bad.ply tree.stl -o clean.ply",
       [&](CLI::App& app) { add_options(app, o); },

@@ -113,31 +113,31 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mconvert",
       "Convert between mesh formats and the stream.\n\n"
-      "examples:\n  mconvert tree.stl -o tree.vtu\n"
+      "Examples:\n  mconvert tree.stl -o tree.vtu\n"
       "  mclean tree.stl | mconvert --ascii > tree.mply",
       [&](CLI::App& app) {
         app.add_flag("--charts", o.charts,
-                     "the charts of mparam as a flat mesh, at u v 0, instead of the surface");
-        app.add_option("--color", o.color, "face columns red green blue by this label")
+                     "write the charts of mparam as a flat mesh (u v 0) instead of the surface");
+        app.add_option("--color", o.color, "write face columns red, green, blue by part or patch")
             ->check(CLI::IsMember({"part", "patch"}))
             ->type_name("part|patch");
         app.add_option("--sol", o.sol, "add the values of this .sol or .solb file to the vertices")
             ->type_name("FILE");
         app.add_option("--feature-edges", o.feature_edges,
-                       "also write the model edges, as lines: .obj, .vtk or .eMesh")
+                       "also write the model edges as lines to this file (.obj, .vtk or .eMesh)")
             ->type_name("FILE")
             ->group("Reports");
         app.add_option(
                "--regions", o.regions,
-               "the whole boundary of each region between sheets (or only of these), as a patch of its own")
+               "write the whole boundary of each region between sheets (or of these regions) as one patch")
             ->check([](const std::string& list) { return list.empty() ? "expected all or labels" : ""; })
             ->type_name("all|L,L");
-        app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA, not as UNSTRUCTURED_GRID");
-        app.add_option("--scale", o.scale, "multiply the coordinates by this")
+        app.add_flag("--polydata", o.polydata, "write .vtk as POLYDATA instead of UNSTRUCTURED_GRID");
+        app.add_option("--scale", o.scale, "multiply the coordinates by this factor")
             ->check(positive_number())
             ->type_name("F");
-        app.add_flag("--center", o.center, "first move the middle of the bounding box to the origin");
-        app.add_flag("--surface", o.surface, "leave out all except vertices, faces, patches and colors");
+        app.add_flag("--center", o.center, "first move the center of the bounding box to the origin");
+        app.add_flag("--surface", o.surface, "write only vertices, faces, patches and colors");
       },
       [&](Io& io) {
         if (o.polydata && !io.output.ends_with(".vtk"))

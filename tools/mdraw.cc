@@ -45,20 +45,22 @@ int main(int argc, char** argv) {
     app.add_option("--color", color, "plain, part, patch or kappa (default plain)")
         ->check(CLI::IsMember({"plain", "part", "patch", "kappa"}))
         ->type_name("BY");
-    app.add_option("--beside", others, "more meshes, drawn to the right at the same scale and place")
+    app.add_option("--beside", others, "more meshes, drawn to the right at the same scale")
         ->type_name("FILE");
     app.add_option("--clip", plane,
-                   "leave out what is beyond half of the box along x, y or z, or this share of it")
+                   "cut away the part beyond this share of the bounding box along x, y or z (default 0.5)")
         ->type_name("x|y|z[=SHARE]");
     app.add_option("--azimuth", view.azimuth,
-                   "direction of the viewer around the z axis, degrees (default 30)");
-    app.add_option("--elevation", view.elevation, "height of the viewer, degrees (default 20)");
-    app.add_option("--zoom", view.zoom, "enlarge about the center (default 1)")->check(positive_number());
+                   "azimuth of the viewer around the z axis, degrees (default 30)");
+    app.add_option("--elevation", view.elevation, "elevation of the viewer, degrees (default 20)");
+    app.add_option("--zoom", view.zoom, "magnification about the center (default 1)")
+        ->check(positive_number());
     app.add_option("--right", view.shift_x, "move the center right by this share of the width");
     app.add_option("--up", view.shift_y, "move the center up by this share of the width");
-    app.add_option("--width", width, "pixels of one picture (default 800)")->check(CLI::Range(16, 8192));
-    app.add_option("--height", height, "pixels (default 800)")->check(CLI::Range(16, 8192));
-    app.add_flag("--no-edges", smooth, "leave the mesh lines out");
+    app.add_option("--width", width, "width of one picture in pixels (default 800)")
+        ->check(CLI::Range(16, 8192));
+    app.add_option("--height", height, "height in pixels (default 800)")->check(CLI::Range(16, 8192));
+    app.add_flag("--no-edges", smooth, "draw no mesh lines");
   };
   Frame frame;
   auto picture = [&](const Stream& s) {
@@ -93,6 +95,6 @@ int main(int argc, char** argv) {
   };
   return run_tool(argc, argv, "mdraw",
                   "Draw a mesh as a PNG picture; model edges are drawn thick. Needs no display.\n\n"
-                  "example:\n  mdraw tree.stl -o tree.png",
+                  "Example:\n  mdraw tree.stl -o tree.png",
                   add_options, body, {.writes = ".png"});
 }

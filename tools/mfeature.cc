@@ -112,8 +112,7 @@ void report(Io& io, const FeatureReport& r) {
          " between patches, " + (r.given_edges ? std::to_string(r.given_edges) + " given, " : std::string()) +
          std::to_string(r.crease_edges) + " on creases; " + std::to_string(r.corners) + " corners");
   if (r.slivers > 0)
-    io.say(std::to_string(r.slivers) +
-           " triangles thinner than 0.06 of the size make no creases of their own");
+    io.say(std::to_string(r.slivers) + " triangles thinner than 0.06 of the size make no creases");
   for (const auto& [key, n] : {std::pair{"slivers", r.slivers},
                                {"model_edges", r.model_edges},
                                {"patch_edges", r.patch_edges},
@@ -157,8 +156,8 @@ double tolerance_of(const Options& o, double length, double diagonal) {
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("--feature-angle", o.angles,
-                 "auto: creases that look designed; A,B: edges above A degrees, and above B where they "
-                 "go on; none")
+                 "auto (default): creases that look designed; A,B: creases start at edges above A degrees "
+                 "and continue along edges above B; none")
       ->type_name("auto|A[,B]|none");
   auto* size =
       app.add_option("--size", o.size, "target edge length")->check(positive_number())->type_name("H");
@@ -166,20 +165,22 @@ void add_options(CLI::App& app, Options& o) {
       ->check(count_between(1, 715827882))
       ->excludes(size)
       ->type_name("N");
-  app.add_option("--merge", o.group_file, "make one patch of each group of patches in this file")
+  app.add_option("--merge", o.group_file,
+                 "merge each group of patches that this file lists, one group per line")
       ->type_name("FILE");
-  app.add_option("--edges", o.edge_file,
-                 "the lines of this mesh are model edges too; none: nor are those of the input's file")
+  app.add_option(
+         "--edges", o.edge_file,
+         "add the lines of this mesh to the model edges; none: ignore the lines of the input's file as well")
       ->type_name("FILE|none");
   app.add_option("--tolerance", o.tolerance,
-                 "remove features narrower than this, as a length or as P% of the diagonal; auto: 0.06 of "
-                 "the target edge length; 0: none")
+                 "remove features narrower than this: a length, P% of the diagonal, or auto (default): 0.06 "
+                 "of the target edge length, at most 1% of the diagonal; 0: none")
       ->type_name("D|P%|auto");
   app.add_option("--max-error", o.max_error,
-                 "an automatic tolerance is at most a quarter of this share of the diagonal")
+                 "limit the automatic tolerance to a quarter of this share of the diagonal")
       ->check(positive_number())
       ->type_name("E");
-  app.add_flag("--keep-boundary", o.keep_boundary, "features are removed without moving the borders' points");
+  app.add_flag("--keep-boundary", o.keep_boundary, "move no point of the border when features are removed");
   app.add_flag("--merge-auto", o.merge_auto,
                "merge patches that are tangent to each other, or smaller than the mesh size");
 }

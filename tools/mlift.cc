@@ -30,8 +30,9 @@ std::string lost_data(const Surface& s) {
 int main(int argc, char** argv) {
   Options o;
   auto add_options = [&](CLI::App& app) {
-    app.add_flag("--curved", o.curved, "vertices on the smooth surface through the input's vertices");
-    app.add_option("--order", o.order, "2: triangles of second order, with nodes within their edges")
+    app.add_flag("--curved", o.curved,
+                 "put the vertices on a smooth surface through the vertices of the input");
+    app.add_option("--order", o.order, "2: triangles of second order, with a node in the middle of each edge")
         ->check(CLI::Range(1, 2))
         ->type_name("N");
   };
@@ -41,7 +42,7 @@ int main(int argc, char** argv) {
     const std::vector<PlaneMesh> meshes = read_plane_meshes(stream, charts);
     for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
     if (const std::string names = lost_data(stream.surface); !names.empty())
-      io.say("left out, since triangles of the result are not those of the input: face data " + names);
+      io.say("face data left out, since the result has other triangles: " + names);
     LiftedMesh mesh = lift(stream.surface, std::move(charts), read_lines(stream), meshes);
     Surface reference = std::move(stream.surface);
     reference.face.erase("curved");
@@ -59,10 +60,8 @@ int main(int argc, char** argv) {
       argc, argv, "mlift",
       "Map the plane meshes of the charts back to the surface and glue them "
       "along the lines.\n\n"
-      "examples:\n"
-      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mlift stages/09-mesh2d.ply -o lifted.vtu\n"
-      "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && mlift --curved --order 2 stages/09-mesh2d.ply "
-      "-o "
-      "second-order.vtu",
+      "Examples:\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mlift s/09-mesh2d.ply -o lifted.vtu\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mlift --curved --order 2 s/09-mesh2d.ply -o order-2.vtu",
       add_options, body);
 }

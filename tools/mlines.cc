@@ -41,14 +41,11 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "mlines",
-      "Divide the mesh border, the model edges and the interfaces between "
-      "parts by the size field, so "
-      "that no two of them cross in any chart.\n\n"
-      "example:\n  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
-      "mlines stages/07-size.ply -o "
-      "lines.ply",
+      "Divide borders, model edges and interfaces between parts into segments of the length that the size "
+      "field asks for; no two segments cross in any chart.\n\n"
+      "Example:\n  mremesh -q --keep s tree.stl -o a.stl && mlines s/07-size.ply -o lines.ply",
       [&](CLI::App& app) {
-        app.add_flag("--keep-boundary", keep_boundary, "the border has the input's points, and no others");
+        app.add_flag("--keep-boundary", keep_boundary, "keep exactly the input's points on the border");
       },
       body);
 }

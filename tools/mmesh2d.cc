@@ -60,7 +60,8 @@ int main(int argc, char** argv) {
     app.add_option("--mesher", mesher, "frontal (default), delaunay or meshadapt")
         ->check(CLI::IsMember(meshers));
     auto* shards = add_join_option(app, from);
-    app.add_option("--svg", pictures, "draw each chart in this directory, its map and its mesh side by side")
+    app.add_option("--svg", pictures,
+                   "draw the map and the mesh of each chart, as SVG pictures in this directory")
         ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
         ->type_name("DIR")
         ->group("Reports")
@@ -110,11 +111,8 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "mmesh2d",
-      "Mesh every chart in the plane, so that the triangles have the size asked for on the surface.\n\n"
-      "examples:\n  mremesh -q --keep stages tree.stl -o mesh.stl && mmesh2d stages/08-lines.ply -o "
-      "plane.ply\n"
-      "  mclean -q tree.stl | mpartition -q | mmultiscale -q | mparam -q | msize -q --size 0.1 | mlines -q | "
-      "mmesh2d "
-      "--mesher delaunay --svg pictures -o plane.ply",
+      "Mesh every chart in the plane with triangles that have the requested size on the surface.\n\n"
+      "Examples:\n  mremesh -q --keep s tree.stl -o a.stl && mmesh2d s/08-lines.ply -o plane.ply\n"
+      "  mclean tree.stl | mpartition | mmultiscale | mparam | msize | mlines | mmesh2d -o plane.ply",
       options, body);
 }

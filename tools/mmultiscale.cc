@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
                    "cut parts with a larger geodesic aspect ratio (default 4)")
         ->check(CLI::Range(0.5, 1e6))
         ->type_name("ETA");
-    app.add_option("--levels", directory, "draw the maps of all levels as SVG pictures")
+    app.add_option("--levels", directory, "draw the maps of all levels, as SVG pictures in this directory")
         ->type_name("DIR")
         ->group("Reports");
   };
@@ -106,8 +106,7 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "mmultiscale",
-      "Cut every part whose aspect ratio is too large to be mapped in two, along a line through all of "
-      "its holes.\n\n"
-      "example:\n  mclean tree.stl | mtopo | mfeature | mpartition | mmultiscale -o parts.ply",
+      "Cut every part that is too long to be mapped into two, along a line through all of its holes.\n\n"
+      "Example:\n  mclean tree.stl | mtopo | mfeature | mpartition | mmultiscale -o parts.ply",
       add_options, body);
 }

@@ -76,9 +76,9 @@ int main(int argc, char** argv) {
           ->check(CLI::IsMember(words))
           ->type_name("NAME");
     };
-    name("--map", options.map, map_names(), "conformal (default), harmonic or convex");
+    name("--map", options.map, map_names(), "map to try first: conformal (default), harmonic or convex");
     name("--conformal", options.form, form_names(),
-         "how: boundary-first (default), least-squares or spectral");
+         "method of the conformal map: boundary-first (default), least-squares or spectral");
     name("--weights", options.weights,
          std::map<std::string, Weights>{{"cotangent", Weights::cotangent},
                                         {"mean-value", Weights::mean_value},
@@ -86,13 +86,14 @@ int main(int argc, char** argv) {
          "of the convex map: cotangent (clamped, default), mean-value or uniform");
     name("--boundary", options.neumann, std::map<std::string, bool>{{"filled", false}, {"neumann", true}},
          "holes: filled (default) in the solve, or left to the natural condition (neumann)");
-    app.add_option("--optimize", options.optimize, "at most N steps that lower distortion (SLIM)")
+    app.add_option("--optimize", options.optimize,
+                   "lower the distortion of each map by at most N steps (SLIM)")
         ->check(CLI::Range(0, 10000))
         ->type_name("N");
     app.add_flag("--strict", options.strict,
-                 "no repair, no other map, no cut: fail (5) if a map is not one-to-one");
+                 "do not repair, replace or cut: fail with status 5 if a map is not one-to-one");
     add_join_option(app, from);
-    app.add_option("--svg", svg, "draw the charts, colored by area scale")
+    app.add_option("--svg", svg, "draw all charts, colored by area scale, as an SVG picture")
         ->type_name("FILE")
         ->group("Reports");
   };
@@ -106,7 +107,8 @@ int main(int argc, char** argv) {
       if (!svg.empty()) throw BadUsage("--svg draws all charts, but this is a shard");
       if (options.map != MapKind::conformal && !options.strict)
         throw NotAdmissible(
-            "before maps to the circle triangles are split, in the whole, but this is a shard");
+            "this is a shard, but maps to the circle first split triangles of the whole surface; try "
+            "--strict");
     }
     Surface& surface = stream.surface;
     if (!surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
@@ -138,6 +140,6 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mparam",
       "Map every part to the plane, one-to-one: conformal, or harmonic or convex where that fails.\n\n"
-      "example:\n  mclean tree.stl | mtopo | mfeature | mpartition | mmultiscale | mparam -o charts.ply",
+      "Example:\n  mclean tree.stl | mtopo | mfeature | mpartition | mmultiscale | mparam -o charts.ply",
       add_options, body);
 }

@@ -16,13 +16,14 @@ int main(int argc, char** argv) {
     app.add_option("--seed", options.seed, "seed of the partitioner (default 1)")
         ->check(CLI::Range(0, 1000000000))
         ->type_name("N");
-    app.add_option(
-           "--max-faces", options.max_faces,
-           "no part has more triangles than this (default 50000 on surfaces of more than 300000, else none)")
+    app.add_option("--max-faces", options.max_faces,
+                   "largest number of triangles of a part (default: 50000 on surfaces of more than 300000, "
+                   "else no limit)")
         ->check(CLI::Range(100, 2147483647))
         ->type_name("N");
     app.add_option("--method", method,
-                   "metis (default), or homology: cuts along handles too, if they give fewer parts")
+                   "metis (default), or homology: also try cuts along short loops around handles, if they "
+                   "give fewer parts")
         ->check(CLI::IsMember({"metis", "homology"}))
         ->type_name("NAME");
   };
@@ -48,7 +49,7 @@ int main(int argc, char** argv) {
   };
   return run_tool(argc, argv, "mpartition",
                   "Cut the surface until every part has genus 0 and at least one boundary.\n\n"
-                  "examples:\n  mclean tree.stl | mfeature | mpartition -o parts.ply\n"
+                  "Examples:\n  mclean tree.stl | mfeature | mpartition -o parts.ply\n"
                   "  mclean tree.stl | mpartition --max-faces 50000 -o parts.ply",
                   add_options, body);
 }

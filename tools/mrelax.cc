@@ -81,17 +81,19 @@ Task read_task(Io& io, Options& o) {
 int main(int argc, char** argv) {
   Options o;
   auto add_options = [&](CLI::App& app) {
-    app.add_option("--sweeps", o.relax.sweeps, "rounds of flips, moves and count keeping (default 4)")
+    app.add_option(
+           "--sweeps", o.relax.sweeps,
+           "number of sweeps of flips and moves, each of which restores the triangle count (default 4)")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
     auto* reference =
-        app.add_option("--reference", o.reference, "relax any mesh on this surface")->type_name("FILE");
+        app.add_option("--reference", o.reference, "optimize any oriented manifold mesh on this surface")
+            ->type_name("FILE");
     app.add_option("--tile", o.relax.tile,
-                   "optimize meshes of more than 4 N triangles in tiles of N at most (default 250000)")
+                   "optimize meshes of more than 4 N triangles in tiles of at most N (default 250000)")
         ->check(CLI::Range(100, 100000000))
         ->type_name("N");
-    app.add_flag("--accept", o.accept, "write the mesh even when triangles still intersect")
-        ->group("Reports");
+    app.add_flag("--accept", o.accept, "write the mesh even if triangles still intersect")->group("Reports");
     add_shard_options(app, o.shards, "of tiles", reference);
   };
   auto body = [&](Io& io) {
@@ -99,7 +101,7 @@ int main(int argc, char** argv) {
     Stream& stream = io.read();
     if (is_tile(stream)) {
       if (in_shards || !o.reference.empty())
-        throw BadUsage("the input is a shard, which is neither cut nor joined");
+        throw BadUsage("the input is a shard; expected the stream that shards are cut from");
       return relax_shard(io, o.relax.sweeps);
     }
     Task task = read_task(io, o);
@@ -125,11 +127,10 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "mrelax",
-      "Optimize a lifted mesh on the surface it came from: flip, collapse, split and move vertices over "
-      "that surface, across every interface that is not a model edge.\n\n"
-      "examples:\n"
-      "  mremesh --keep stages tree.stl -o tree-mesh.stl && mrelax --sweeps 20 stages/10-lift.ply -o "
-      "relaxed.ply\n"
+      "Optimize a lifted mesh on the surface it was made from, by flips, collapses, splits and moves of "
+      "vertices, across all interfaces that are not model edges.\n\n"
+      "Examples:\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mrelax --sweeps 20 s/10-lift.ply -o relaxed.ply\n"
       "  mclean tree.stl | mrelax --reference tree.stl -o better.ply",
       add_options, body, {.shards = true});
 }

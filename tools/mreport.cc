@@ -97,12 +97,12 @@ int main(int argc, char** argv) {
     app.add_option("RESULT", o.results,
                    "results, intermediates, or folders of mremesh --keep; - is standard input")
         ->type_name("");
-    app.add_option("--reference", o.reference, "the surface to compare with; without it a stream's own")
+    app.add_option("--reference", o.reference, "the surface to compare with (default: the one in the stream)")
         ->type_name("FILE");
     app.add_option("--require", o.require,
-                   "the contract, see mcheck(1); without it that of the stream's mcheck")
+                   "the contract, see mcheck(1) (default: that of mcheck in the stream's history)")
         ->type_name("LIST");
-    app.add_option("--max-error", o.max_error, "requires hausdorff=E, too")
+    app.add_option("--max-error", o.max_error, "also require hausdorff=E")
         ->check(positive_number())
         ->type_name("E");
     app.add_option("--samples", o.samples, "points on each surface for the distance (default 10000)")

@@ -125,22 +125,23 @@ void expect_own_options(const CLI::App& app, const std::string& kind) {
 }
 
 void add_region_options(CLI::App& app, Options& o) {
-  auto* brick = app.add_option("--brick", o.brick, "regions: cubes with all their faces (default 2x1x1)")
+  auto* brick = app.add_option("--brick", o.brick, "regions: a brick of N x M x K unit cubes (default 2x1x1)")
                     ->type_name("NxMxK");
-  auto* nested = app.add_option("--nested", o.nested, "regions: this many spheres, one within the other")
+  auto* nested = app.add_option("--nested", o.nested, "regions: N nested spheres")
                      ->check(CLI::Range(1, 1000))
                      ->excludes(brick)
                      ->type_name("N");
-  auto* voronoi = app.add_option("--voronoi", o.voronoi, "regions: those nearest to each of N seeds")
+  auto* voronoi = app.add_option("--voronoi", o.voronoi, "regions: Voronoi regions of N random points")
                       ->check(CLI::Range(1, 1000))
                       ->excludes(brick)
                       ->excludes(nested)
                       ->type_name("N");
-  app.add_option("--within", o.within, "regions of --voronoi: ball (default) or box")
+  app.add_option("--within", o.within, "regions: extent of --voronoi, ball (default) or box")
       ->check(CLI::IsMember({"ball", "box"}))
       ->needs(voronoi);
   app.add_option("--image", o.image,
-                 "regions of --voronoi as an image has them: smooth, or the sides of blocks")
+                 "regions: make --voronoi as a labeled image, by smooth surface nets or the faces of its "
+                 "voxels (blocks)")
       ->check(CLI::IsMember({"smooth", "blocks"}))
       ->needs(voronoi);
 }
@@ -157,38 +158,42 @@ int main(int argc, char** argv) {
         ->required()
         ->check(CLI::IsMember({"tube", "sphere", "torus", "genus", "tree", "body", "cube", "regions"}))
         ->type_name("");
-    app.add_option("--triangles", o.triangles, "about this many triangles")->check(CLI::Range(1, 100000000));
+    app.add_option("--triangles", o.triangles, "approximate number of triangles")
+        ->check(CLI::Range(1, 100000000));
     app.add_option("--aspect", o.aspect,
-                   "tube: height over diameter (default 10); tree: that of a tube of the same area")
+                   "tube: height over diameter (default 10); tree: aspect ratio of a tube with the same area")
         ->check(CLI::Range(0.01, 1e5));
-    app.add_option("--patches", o.patches, "body: about this many faces, each a patch (default 22)")
+    app.add_option("--patches", o.patches, "body: approximate number of faces, each a patch (default 22)")
         ->check(CLI::Range(8, 100000));
-    app.add_flag("--closed", o.closed, "tube: with flat caps");
-    app.add_option("--genus", o.genus, "genus: holes of the plate (default 2)")->check(CLI::Range(0, 10000));
-    generations =
-        app.add_option("--generations", o.generations, "tree: bifurcations from the inlet to every outlet")
-            ->check(CLI::Range(1, 10));
-    app.add_option("--outlets", o.outlets, "tree: open ends, the inlet counts (default 13)")
+    app.add_flag("--closed", o.closed, "tube: close the ends by flat caps");
+    app.add_option("--genus", o.genus, "genus: number of holes of the plate (default 2)")
+        ->check(CLI::Range(0, 10000));
+    generations = app.add_option("--generations", o.generations,
+                                 "tree: number of bifurcations from the inlet to every outlet")
+                      ->check(CLI::Range(1, 10));
+    app.add_option("--outlets", o.outlets, "tree: number of open ends, including the inlet (default 13)")
         ->check(CLI::Range(2, 2000))
         ->excludes(generations);
     app.add_option("--ratio", o.ratio,
-                   "tree: radius of a child over its parent's (default 0.8); torus: of the tube over the "
-                   "ring's (0.4)")
+                   "tree: radius of a child over that of its parent (default 0.8); torus: radius of the tube "
+                   "over that of the ring (default 0.4)")
         ->check(CLI::Range(0.05, 0.95));
-    app.add_option("--voxels", o.voxels,
-                   "as a segmentation shows it: the faces between voxels of this size; ends are closed")
+    app.add_option(
+           "--voxels", o.voxels,
+           "make the shape from voxel faces, as in a segmentation, with this voxel size; ends are closed")
         ->check(positive_number());
     add_region_options(app, o);
-    app.add_option("--noise", o.noise, "move vertices by up to this times the mean edge length")
+    app.add_option("--noise", o.noise, "move vertices randomly by up to this share of the mean edge length")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--slivers", o.slivers, "split this fraction of the edges close to one end")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--dirt", o.dirt,
-                   "fraction of bad triangles of each kind: doubled, without area, inconsistently oriented, "
+                   "add this fraction of each kind of bad triangle: duplicate, of zero area, inconsistently "
+                   "oriented, "
                    "not welded")
         ->check(CLI::Range(0.0, 1.0));
-    app.add_option("--seed", o.seed, "seed of all that is random (default 1)");
-    app.get_formatter()->column_width(30);
+    app.add_option("--seed", o.seed, "seed of the random numbers (default 1)");
+    for (const auto& [option, kinds] : kinds_of) app.get_option(option)->group("Options of some kinds");
   };
   auto body = [&](Io& io) {
     expect_own_options(*parsed, o.kind);

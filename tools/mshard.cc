@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own.
+// mshard: cut a stream into shards of whole parts, for mparam and mmesh2d as separate jobs.
 #include "formats/stream/shards.h"
 #include "tools/common.h"
 #include "tools/shard_files.h"
@@ -39,17 +39,18 @@ int main(int argc, char** argv) {
   int count = 0;
   std::string into;
   auto options = [&](CLI::App& app) {
-    app.add_option("--shards", count, "cut into N shards, of almost the same number of triangles")
+    app.add_option("--shards", count, "number of shards; all get almost the same number of triangles")
         ->required()
         ->check(CLI::Range(1, 100000))
         ->type_name("N");
-    app.add_option("--into", into, "where they go: DIR/1.ply, DIR/2.ply, ...")->required()->type_name("DIR");
+    app.add_option("--into", into, "directory of the shards: DIR/1.ply, DIR/2.ply, ...")
+        ->required()
+        ->type_name("DIR");
   };
   return run_tool(
       argc, argv, "mshard",
-      "Cut a stream into shards of whole parts, for mparam and mmesh2d as jobs of their own, whose --join "
-      "joins "
-      "what they have made.\n\nexamples:\n"
+      "Cut a stream into shards of whole parts, for mparam and mmesh2d as separate jobs; their --join puts "
+      "the results together.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
       "mshard --shards 2 --into in stages/08-lines.ply -o all.ply\n"
       "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply -o all.ply && "

@@ -95,24 +95,23 @@ void add_options(CLI::App& app, Options& o) {
     return app.add_option(name, value, what)->check(positive_number())->type_name(type);
   };
   auto* fixed = length("--size", o.size, "target edge length", "H");
-  app.add_option(
-         "--triangles", o.triangles,
-         "as many triangles as this, spread as the other options ask (default: as many as the input had)")
+  app.add_option("--triangles", o.triangles,
+                 "number of triangles, distributed as the other options ask (default: that of the input)")
       ->check(count_between(1, 715827882))
       ->type_name("N")
       ->excludes(fixed);
-  length("--curvature", o.per_turn, "edges a full turn where the surface bends most", "N");
-  length("--chord", o.chord, "largest distance of an edge from its arc", "EPS");
+  length("--curvature", o.per_turn, "edges per full turn, along the direction of largest curvature", "N");
+  length("--chord", o.chord, "largest distance between an edge and the arc that it spans", "EPS");
   auto text = [&](const char* name, std::string& value, const char* what, const char* type) {
     app.add_option(name, value, what)
         ->check([](const std::string& s) { return s.empty() ? "needs a value" : ""; })
         ->type_name(type);
   };
-  length("--around", o.around, "edges around tubes and other bodies, by their radius", "N");
-  length("--across", o.across, "elements across what is between two sides of the surface, inside", "N");
-  length("--gap", o.gap, "the same outside", "N");
+  length("--around", o.around, "edges around tubes and other bodies, by their local radius", "N");
+  length("--across", o.across, "elements across the thickness of a body", "N");
+  length("--gap", o.gap, "elements across the gap between bodies", "N");
   text("--layers", o.boundary_layers,
-       "check that boundary layers fit, first of thickness T (defaults: growth 1.2, 5 layers, inside)",
+       "check that boundary layers fit; T: thickness of the first (default growth: 1.2, 5 layers, inside)",
        "T[,GROWTH[,N]][,outside]");
   text("--data", o.data, "the input's vertex data of this name", "NAME");
   text("--field", o.field, "sizes in a file: a mesh with vertex data, .sol, or a table x y z h",
@@ -173,9 +172,9 @@ int main(int argc, char** argv) {
   };
   return run_tool(
       argc, argv, "msize",
-      "Set the size field, the target edge length at every vertex of the surface: the smallest of "
-      "what the options ask for.\n\n"
-      "examples:\n  msize --size 0.8 tree.stl -o sized.ply\n"
+      "Set the size field: the target edge length at every vertex, the smallest of those that the options "
+      "ask for.\n\n"
+      "Examples:\n  msize --size 0.8 tree.stl -o sized.ply\n"
       "  msize --triangles 20000 --curvature 24 tree.stl -o sized.ply\n"
       "  msize --around 10 --max 0.1 tree.stl -o sized.ply\n"
       "  msize --expression '0.02 + 0.1 * sqrt(x^2 + y^2)' tree.stl -o sized.ply",

@@ -44,15 +44,17 @@ int main(int argc, char** argv) {
   std::string within;
   return run_tool(
       argc, argv, "msmooth",
-      "Smooth the stairs of a segmentation, no vertex farther than a bound from where it was.\n\n"
-      "examples:\n  mshape tree --voxels 0.05 | mclean | msmooth -o smooth.ply\n"
+      "Smooth the stairs of a segmentation. No vertex moves farther than a bound.\n\n"
+      "Examples:\n  mshape tree --voxels 0.05 | mclean | msmooth -o smooth.ply\n"
       "  mclean tree.stl | msmooth --within 0.02 -o smooth.stl",
       [&](CLI::App& app) {
-        app.add_option("--within", within,
-                       "move no vertex farther than this: a length, or with % a part of the bounding box's "
-                       "diagonal (default: the mean edge length, about a voxel)")
+        app.add_option(
+               "--within", within,
+               "largest displacement of a vertex: a length, or % of the bounding box's diagonal (default: "
+               "the mean edge length, about a voxel)")
             ->type_name("D");
-        app.add_flag("--keep-features", o.keep_features, "vertices of model edges (mfeature) stay");
+        app.add_flag("--keep-features", o.keep_features,
+                     "do not move vertices of model edges (see mfeature)");
       },
       [&](Io& io) {
         if (!within.empty() && parse_length(within, 1).value_or(0) <= 0)

@@ -91,13 +91,13 @@ int main(int argc, char** argv) {
   std::string required, tsv_file;
   return run_tool(
       argc, argv, "mtopo",
-      "Report the topology and the aspect ratios of every component, and of every part.\n\n"
-      "examples:\n  mclean tree.stl | mtopo -o topo.ply\n"
+      "Report the topology and the aspect ratios of every component and every part.\n\n"
+      "Examples:\n  mclean tree.stl | mtopo -o topo.ply\n"
       "  mclean -q --fill-holes 200 tree.stl | mtopo --require closed --tsv topo.tsv > closed.ply",
       [&](CLI::App& app) {
         app.add_option("--require", required,
-                       "fail with 4 unless the surface is a manifold, all parts are closed, or disks (genus "
-                       "0 with at least one loop)")
+                       "fail with status 4 unless the surface is a manifold; closed: every part is; disk: "
+                       "every part has genus 0 and a border")
             ->check(CLI::IsMember({"disk", "manifold", "closed"}))
             ->group("Reports");
         app.add_option("--tsv", tsv_file, "write the table to this file, tab-separated")

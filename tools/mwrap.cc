@@ -53,16 +53,17 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mwrap",
       "Wrap any triangle soup in a closed surface at a distance.\n\n"
-      "examples:\n  mwrap tree.stl -o wrapped.stl\n"
+      "Examples:\n  mwrap tree.stl -o wrapped.stl\n"
       "  mwrap --alpha 5% --offset 0.5% tree.stl | mremesh --triangles 5000 - -o mesh.vtu",
       [&](CLI::App& app) {
         app.add_option("--alpha", alpha,
-                       "enter no hole, slot or cavity narrower than this: a length, or with % a part of the "
+                       "width of the narrowest hole, slot or cavity that is entered: a length, or % of the "
                        "bounding box's diagonal (default 2%)")
             ->type_name("LENGTH");
-        app.add_option("--offset", offset,
-                       "distance of the wrap from the input: a length, or with % a part of the diagonal "
-                       "(default: a fifth of alpha)")
+        app.add_option(
+               "--offset", offset,
+               "distance of the result from the input: a length, or % of the diagonal (default: a fifth "
+               "of alpha)")
             ->type_name("LENGTH");
       },
       [&](Io& io) {

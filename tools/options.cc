@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "lib/core/number.h"
 
@@ -12,8 +15,53 @@ namespace meshpipe {
 namespace {
 
 constexpr const char* common_group = "Common options";
+constexpr std::size_t help_width = 100;  // columns: two windows of this width fit on a wide screen
+constexpr std::size_t text_column = 28;  // where the texts of options start
+
+/// Breaks a text at blanks, so that its lines fit into help_width. All but the first get `indent` blanks in
+/// front.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string out;
+  std::size_t column = indent;
+  std::istringstream words(text);
+  for (std::string word; words >> word; column += word.size()) {
+    const bool fits = column + 1 + word.size() <= help_width;
+    if (!out.empty()) out += fits ? " " : '\n' + std::string(indent, ' ');
+    column = fits ? column + !out.empty() : indent;
+    out += word;
+  }
+  return out;
+}
 
 struct PlainHelp : CLI::Formatter {
+  PlainHelp() { label("Positionals", "Arguments"); }
+
+  /// The usage comes first, the examples, with which descriptions end, come last.
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    const std::string text = app->get_description();
+    const std::size_t examples = std::min(text.find("\n\nExample"), text.size());
+    const std::string arguments = make_positionals(app);
+    return make_usage(app, std::move(name)) + '\n' + wrapped(text.substr(0, examples), 0) + "\n\n" +
+           arguments + (arguments.empty() ? "" : "\n") + make_groups(app, mode) +
+           text.substr(std::min(examples + 1, text.size())) + '\n';
+  }
+
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    group += ":\n";
+    for (const CLI::Option* o : options) group += make_option(o, is_positional);
+    return group;
+  }
+
+  std::string make_option(const CLI::Option* o, bool is_positional) const override {
+    std::string line = "  " + make_option_name(o, is_positional) + make_option_opts(o);
+    if (line.size() + 2 > text_column)
+      line += '\n' + std::string(text_column, ' ');
+    else
+      line.resize(text_column, ' ');
+    return line + wrapped(make_option_desc(o), text_column) + '\n';
+  }
+
   std::string make_option_opts(const CLI::Option* o) const override {
     if (o->get_type_size() == 0) return "";
     const std::string text = o->get_type_name();  // the type, and after a colon the checks
@@ -32,37 +80,38 @@ struct PlainHelp : CLI::Formatter {
 
 }  // namespace
 
-void use_plain_help(CLI::App& app) {
-  app.formatter(std::make_shared<PlainHelp>());
-  app.get_formatter()->column_width(34);
-}
+void use_plain_help(CLI::App& app) { app.formatter(std::make_shared<PlainHelp>()); }
 
 void add_common_options(CLI::App& app, CommonOptions& options, const std::string& program, bool reads_file) {
   app.option_defaults()->group(common_group);
   if (reads_file)
-    app.add_option("FILE", options.input, "input: the stream or any mesh format; - is standard input")
+    app.add_option("FILE", options.input,
+                   "input: the stream or any mesh format; - (default) is standard input")
         ->type_name("");
   app.add_option("-o,--output", options.output, "write to this file instead of standard output")
       ->type_name("FILE");
-  auto* ascii = app.add_flag("--ascii", options.ascii, "write text");
-  app.add_flag("--binary", options.binary, "write binary")->excludes(ascii);
-  app.add_option("-j,--threads", options.threads, "threads; the result does not depend on it")
+  auto* ascii = app.add_flag("--ascii", options.ascii, "write the output as text");
+  app.add_flag("--binary", options.binary, "write the output in binary")->excludes(ascii);
+  app.add_option("-j,--threads", options.threads, "number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  app.add_flag("-q,--quiet", options.quiet, "say nothing but errors");
-  app.add_flag("-v,--verbose", options.verbose, "say more");
-  app.add_option("--json", options.json, "write the report to this file; - is standard output, if -o is not")
+  app.add_flag("-q,--quiet", options.quiet, "report errors only");
+  app.add_flag("-v,--verbose", options.verbose, "report more");
+  app.add_option("--json", options.json,
+                 "write the report as JSON to this file; - is standard output, unless that is -o")
       ->type_name("FILE");
   app.set_version_flag("--version", program + " " MESHPIPE_VERSION " (mply 1.0)");
-  app.get_option("--version")->description("the version, and that of the stream")->group(common_group);
-  app.set_help_flag("-h,--help", "this text");
+  app.get_option("--version")
+      ->description("print the versions of the program and of the stream")
+      ->group(common_group);
+  app.set_help_flag("-h,--help", "print this text");
   app.get_option("--help")->group(common_group);
 }
 
 std::string recorded_options(const CLI::App& app) {
   std::string out;
   for (const CLI::Option* o : app.get_options()) {
-    if (o->count() == 0 || o->get_group() != recorded_group) continue;
+    if (o->count() == 0 || !o->get_group().starts_with(recorded_group)) continue;
     if (!out.empty()) out += ' ';
     out += o->get_name(!o->nonpositional());
     if (o->get_expected_min() == 0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tiles of mrelax in shards, as jobs of their own.
+// The tiles of mrelax in shards, as separate jobs.
 #pragma once
 #include <optional>
 

@@ -11,18 +11,18 @@ namespace meshpipe {
 
 void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& what, CLI::Option* excluded) {
   auto* count =
-      app.add_option("--shards", shards.count, "cut into N shards " + what + ", as jobs of their own")
+      app.add_option("--shards", shards.count, "write N shards " + what + ", to be run as separate jobs")
           ->check(CLI::Range(1, 100000))
           ->type_name("N");
-  auto* into =
-      app.add_option("--into", shards.into, "where they go: DIR/1.ply, DIR/2.ply, ...")->type_name("DIR");
+  auto* into = app.add_option("--into", shards.into, "directory of the shards: DIR/1.ply, DIR/2.ply, ...")
+                   ->type_name("DIR");
   auto* join = add_join_option(app, shards.from);
   count->needs(into), into->needs(count);
   for (CLI::Option* option : {count, into, join}) option->group("Shards")->excludes(excluded);
 }
 
 CLI::Option* add_join_option(CLI::App& app, std::string& from) {
-  return app.add_option("--join", from, "join what was made of the shards in this directory")
+  return app.add_option("--join", from, "join the results of the shards in this directory")
       ->type_name("DIR")
       ->group("Shards");
 }

@@ -186,11 +186,11 @@ struct Treatment {
       reports[i].why_not += ", and " + obstacle[i];
       if (!options.cap || extends(i))
         why[i] = "its rim, which is " + shown(ends[i].planarity) +
-                 " out of its plane, cannot be made plane: " + reports[i].why_not;
+                 " out of its plane, cannot be made planar: " + reports[i].why_not;
     }
     refuse_all(ends, why,
                options.cap ? "try --trim, or do not extend it"
-                           : "try --cap, which closes it by a cap that is not plane",
+                           : "try --cap, which closes it by a cap that is not planar",
                options.cap ? &options.kept : nullptr);
     measure_all();
   }

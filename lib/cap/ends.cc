@@ -256,7 +256,7 @@ void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& wh
     ++listed;
   }
   if (first < 0) return;
-  const std::string others = count > 1 ? "; so with " + std::to_string(count - 1) + " more" : "";
+  const std::string others = count > 1 ? "; the same for " + std::to_string(count - 1) + " more" : "";
   refuse(ends, first,
          why[first] + others + "; " + advice +
              (kept && listed < n ? ", or try --except " + list : std::string()));

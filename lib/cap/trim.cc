@@ -18,7 +18,7 @@ namespace {
 constexpr double axis_step = 0.5;
 /// And at most this many, of ends that are very small.
 constexpr double most_rings = 10000;
-/// Radii to either side of a cut in which the wall tells its axis.
+/// Radii to either side of a cut in which the wall determines its axis.
 constexpr double axis_reach = 0.75;
 /// Cosine between the axis by the wall's normals and that by the middles of rings, below which the latter
 /// holds: where the wall is no tube.
@@ -167,7 +167,7 @@ std::string flood(const Connectivity& c, const std::vector<End>& ends, int i, co
       if (!c.is_border(h) && (above(c.from(h)) || above(c.to(h)))) take(c.opposite[h] / 3);
   }
   if (far) return "cutting at " + shown(plane.point) + " would remove a branch";
-  if (met >= 0) return "what would be cut off meets what would be cut off " + title_of(ends, met);
+  if (met >= 0) return "the piece to be cut off meets that of " + title_of(ends, met);
   return ends_there ? "" : "cutting at " + shown(plane.point) + " would leave nothing of the vessel";
 }
 
@@ -286,9 +286,9 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   for (int i = 0; i < n; ++i)
     if (const int rims = (int)ends[i].rims.size();
         planes[i] && (pieces[i].euler != 0 || pieces[i].loops != 2 * rims))
-      why[i] = "cutting at " + shown(planes[i]->point) + " would remove a branch: what is cut off " +
+      why[i] = "cutting at " + shown(planes[i]->point) + " would remove a branch: the piece " +
                (pieces[i].loops == 2 * rims
-                    ? "is no tube"
+                    ? "is not a tube"
                     : "has " + std::to_string(pieces[i].loops) + " borders, not " + std::to_string(2 * rims));
   if (!possible()) return why;
   std::vector<int> near(surface.points.size(), -1);  // which end a vertex of the cut belongs to

@@ -346,8 +346,7 @@ std::vector<std::string> describe(const SmoothReport& r) {
     lines.push_back(count(r.moved_back, "vertex", "vertices") +
                     " moved back where triangles would intersect");
   if (r.kept_ends)
-    lines.push_back(count(r.kept_ends, "border that is", "borders that are") + " far from plane stay" +
-                    (r.kept_ends == 1 ? "s as it is" : " as they are"));
+    lines.push_back(count(r.kept_ends, "border is", "borders are") + " not moved, far from planar");
   return lines;
 }
 

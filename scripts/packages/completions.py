@@ -26,12 +26,13 @@ class Option:
 
 
 def options_of(text):
-    """Returns the options in the text of --help: lines that begin with two blanks and a dash."""
+    """Returns the options in the text of --help: lines that begin with two blanks and a dash, and their continuations."""
     options = []
-    for line in text.splitlines():
+    for line in re.sub(r"\n {10,}", "  ", text).splitlines():
         if not line.startswith("  -"):
             continue
         head, _, what = line.strip().partition("  ")
+        what = " ".join(what.split())
         short = None
         for name, value in OPTION.findall(re.sub(r"(-[a-zA-Z]),(--)", r"\1, \2", head)):
             if short and not name.startswith("--"):
@@ -40,7 +41,7 @@ def options_of(text):
             if not name.startswith("--") and not value and ALIAS.search(head, head.find(name)):
                 short = name
                 continue
-            options.append(Option(name, value, what.strip() if "," not in head.replace(",-", "") else ""))
+            options.append(Option(name, value, what if "," not in head.replace(",-", "") else ""))
             if short:
                 options[-1].names.insert(0, short)
                 short = None

@@ -167,7 +167,7 @@ std::string worst_html(const PageItem& item, std::size_t number) {
 std::string offending_html(const PageItem& item, std::size_t number) {
   if (item.offending.empty()) return "";
   const std::size_t all = item.offending_triangles.size(), rows = item.offending.size();
-  HtmlTable table("Triangles at fault: " + std::to_string(all), {"triangle", "kappa#", "center", "fault"},
+  HtmlTable table("Offending triangles: " + std::to_string(all), {"triangle", "kappa#", "center", "fault"},
                   "faults");
   std::string rest;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -185,7 +185,7 @@ std::string offending_html(const PageItem& item, std::size_t number) {
             "\">Show " + (rows < all ? "the first " : "all ") + std::to_string(rows) +
             "</button>\n<script type=\"text/plain\" id=\"rows" + std::to_string(number) + "\">" +
             packed_bytes(rest) + "</script>\n";
-  return "<section>" + scrolled("Triangles at fault in " + item.name, html) + "</section>";
+  return "<section>" + scrolled("Offending triangles in " + item.name, html) + "</section>";
 }
 
 std::string data_uri(const char* type, const std::string& bytes) {
@@ -248,8 +248,8 @@ std::string viewer_html(const Page& page) {
 <div id="legend"></div>
 <p id="status" role="status"></p>
 <p class="note keys" id="keys">Drag or use the arrow keys to rotate, with Shift to move; turn the wheel or press + and - to
-zoom; Home shows the whole; n and p go to the next and the previous bad triangle (one at fault; where there is none, one of
-the worst). Model edges are thick, and fade where they would hide the surface. What hides a triangle that was gone to is cut away. Click a triangle for its figures.</p>
+zoom; Home shows the whole; n and p go to the next and the previous bad triangle (an offending one; if there is none, one of
+the worst). Model edges are thick, and fade where they would hide the surface. Triangles in front of the selected one are cut away. Click a triangle for its figures.</p>
 </div>
 <div id="stills"><p class="note" id="why">Scripts are needed to rotate the surface and for the buttons below; this is a picture of it.</p>
 )";
@@ -257,7 +257,7 @@ the worst). Model edges are thick, and fade where they would hide the surface. W
     if (!item.picture.empty())
       html += "<figure><img alt=\"" + escaped(item.name) + ", colored by kappa\" src=\"" +
               data_uri("image/png", item.picture) + "\"><figcaption>" + escaped(item.name) +
-              ", colored by kappa: dark 0, light 1" + (item.offending.empty() ? "" : "; red: at fault") +
+              ", colored by kappa: dark 0, light 1" + (item.offending.empty() ? "" : "; red: offending") +
               "</figcaption></figure>\n";
   return html + "</div></section>\n";
 }

@@ -44,7 +44,7 @@ void report_removed(Io& io, const DefeatureReport& r, double tolerance, const St
     vanished.push_back(name.empty() ? std::to_string(label) : name);
     names += (names.empty() ? "" : ", ") + vanished.back();
   }
-  if (!names.empty()) io.say("patches that were narrower and are gone: " + names);
+  if (!names.empty()) io.say("patches removed with them: " + names);
   io.report["removed"] = list;
   io.report["vanished"] = vanished;
 }

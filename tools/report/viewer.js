@@ -164,7 +164,7 @@ function legend() {
     for (const n of shown) add(`rgb(${hue(colorBy, n)})`, n);
     if ((names[colorBy] || []).length > 24) box.append(`and ${names[colorBy].length - 24} more`);
   }
-  if (panes.some(p => p.mesh?.kind === 'result' && report.results[p.mesh.result].offending.length)) add(`rgb(${fault})`, 'at fault');
+  if (panes.some(p => p.mesh?.kind === 'result' && report.results[p.mesh.result].offending.length)) add(`rgb(${fault})`, 'offending');
   if (panes.some(p => p.mesh?.dots)) add('rgb(255 170 0)', 'points of lines');
 }
 

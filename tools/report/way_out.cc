@@ -87,11 +87,11 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("msize", "--min"); },
      [](const Case&) {
-       return WayOut{"without --min", "smaller triangles come closer"};
+       return WayOut{"without --min", "smaller triangles reduce the distance"};
      }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("mcheck", "--max-error"); },
      [](const Case& c) {
-       return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "so close it came"};
+       return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "the distance that was reached"};
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.weld > 0 && !c.used("mclean", "--weld"); },
      [](const Case& c) {
@@ -111,19 +111,19 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.found.sheets && !c.ran("msmooth"); },
      [](const Case&) {
-       return WayOut{"--smooth", "sheets of labeled images meet along rough lines, which it smooths"};
+       return WayOut{"--smooth", "smooths the rough lines along which sheets of labeled images meet"};
      }},
     {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
      [](const Case&) {
-       return WayOut{"without --keep-boundary", "it is next to points of the border that are held"};
+       return WayOut{"without --keep-boundary", "the place is next to fixed points of the border"};
      }},
     {[](const Case& c) { return c.found.at_patch_border && !c.used("mfeature", "--merge-auto"); },
      [](const Case&) {
-       return WayOut{"--merge-auto", "it is next to a border of patches"};
+       return WayOut{"--merge-auto", "the place is next to a border of patches"};
      }},
     {[](const Case& c) { return c.found.at_crease && !c.used("mfeature", "--feature-angle"); },
      [](const Case&) {
-       return WayOut{"--feature-angle none", "it is next to a crease that is taken for a model edge"};
+       return WayOut{"--feature-angle none", "the place is next to a crease that became a model edge"};
      }},
     {[](const Case& c) { return c.status >= goal_missed && c.used("msize", "--min"); },
      [](const Case&) {
@@ -135,7 +135,7 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.status == contract_missed; },
      [](const Case&) {
-       return WayOut{"--accept", "the result is written as it is"};
+       return WayOut{"--accept", "writes the result although it misses its contract"};
      }},
 };
 

@@ -205,7 +205,7 @@ TEST(cap, caps_a_hole_without_space_for_a_stub) {
   o.flatten = o.cap = true;
   CapOptions without = o;
   without.cap = false;
-  EXPECT_NE(why(s, without).find("cannot be made plane"), std::string::npos);
+  EXPECT_NE(why(s, without).find("cannot be made planar"), std::string::npos);
   const std::vector<EndReport> r = treat_ends(s, ends, o);
   expect_sound(s);
   int flat = 0;
