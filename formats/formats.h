@@ -34,7 +34,7 @@ struct Reader {
 };
 const std::vector<Reader>& readers();
 
-/// What a format can hold of a stream besides its triangles.
+/// Parts of a stream, in addition to its triangles, that a format can hold.
 namespace holds {
 enum : unsigned {
   patches = 1,        ///< which triangles belong together

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shares of a check as streams, on which mcheck works as jobs of their own.
+// Shares of a check as streams, on which mcheck works as separate jobs.
 #pragma once
 #include "formats/stream/shards.h"
 #include "lib/check/check.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles of a mesh as streams, on which mrelax works as jobs of their own, and the mesh between two passes.
+// Tiles of a mesh as streams, on which mrelax works as separate jobs, and the mesh between two passes.
 #pragma once
 
 #include "formats/stream/shards.h"

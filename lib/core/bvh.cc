@@ -65,7 +65,7 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
   const double area = va + vb + vc;  // squared, of the parallelogram
-  // nearly no area: the regions below would be told apart by rounding
+  // nearly no area: the regions below would be separated by rounding
   if (!(area > 1e-12 * dot(ab, ab) * dot(ac, ac))) return closest_on_edges(p, {a, b, c});
   if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   if (d6 >= 0 && d5 <= d6) return {0, 0, 1};

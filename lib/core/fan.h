@@ -46,7 +46,7 @@ struct Everywhere {
 };
 
 /// Returns the border half-edge that follows border half-edge h, around the vertex between them. `inside(t)`
-/// tells which triangles the region has whose border this is.
+/// returns whether triangle t is in the region.
 template <class Inside = Everywhere>
 int next_on_border(const std::vector<int>& opposite, int h, Inside inside = {}) {
   h = next(h);

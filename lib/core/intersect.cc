@@ -46,7 +46,7 @@ bool edge_separates(std::span<const Vec2> p, std::span<const Vec2> q) {
   return false;
 }
 
-/// Two convex sets in the plane, one of them with area, are apart only if an edge of either tells them apart:
+/// Two convex sets in the plane, one of them with area, are apart only if an edge of either separates them:
 /// the edges of their Minkowski difference are parallel to theirs.
 bool polygons_meet(std::span<const Vec2> p, std::span<const Vec2> q) {
   return !edge_separates(p, q) && !edge_separates(q, p);

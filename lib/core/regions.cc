@@ -9,8 +9,8 @@
 namespace meshpipe {
 namespace {
 
-/// Counts the loops of a region's border half-edges and finds pinched vertices. `inside(t)` tells the
-/// region's triangles; `outgoing` is scratch, -1 for every vertex before and after.
+/// Counts the loops of a region's border half-edges and finds pinched vertices. `inside(t)` returns
+/// whether a triangle is in the region; `outgoing` is scratch, -1 for every vertex before and after.
 template <class Inside>
 void walk_border(const Connectivity& c, const std::vector<int>& border, std::vector<int>& outgoing,
                  Inside inside, Region& region) {

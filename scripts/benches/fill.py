@@ -142,13 +142,13 @@ def fill(mesher, result, work, timeout):
             done, tetrahedra, found = mesher(result, scratch, timeout)
         except (OSError, ValueError, IndexError):
             return {"filled": False}, "failed"
-    due = collections.Counter(t[3] for t in result["triangles"])
-    named = collections.Counter({result["names"].get(p, p): n for p, n in due.items()})
-    back = sum(found[p] == n for p, n in due.items()) or sum(found[p] == n for p, n in named.items())
+    expected = collections.Counter(t[3] for t in result["triangles"])
+    named = collections.Counter({result["names"].get(p, p): n for p, n in expected.items()})
+    back = sum(found[p] == n for p, n in expected.items()) or sum(found[p] == n for p, n in named.items())
     row = {"filled": done.status == 0 and tetrahedra > 0, "tetrahedra": tetrahedra, "seconds": done.cpu, "patches_back": back}
     if not row["filled"]:
         return row, "timeout" if done.status == -1 else f"failed ({done.status})"
-    return row, f"{tetrahedra}, {done.cpu:.1f} s, {'all' if back == len(due) else f'{back} of {len(due)}'}"
+    return row, f"{tetrahedra}, {done.cpu:.1f} s, {'all' if back == len(expected) else f'{back} of {len(expected)}'}"
 
 
 def remesh(path, count, work, args):

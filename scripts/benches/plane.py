@@ -4,7 +4,7 @@
 usage: scripts/bench plane [options] [FILE[:TRIANGLES] ...]
 
 Without files, surfaces made by mshape are used. The rate is triangles per second of a core, for meshing in the plane alone:
-what mmesh2d -v tells, and the CPU time that Gmsh prints for "meshing 2D" of the same surface by the same algorithm at the
+the rate that mmesh2d -v reports, and the CPU time that Gmsh prints for "meshing 2D" of the same surface by the same algorithm at the
 same edge length (its map of the surface is not counted, as ours is not). Edge lengths are over the size asked for.
 
   --runs N                 runs of each mesher; the median rate is shown (default 3, Gmsh once)

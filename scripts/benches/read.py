@@ -4,7 +4,7 @@
 usage: scripts/bench read [options]
 
 Makes a sphere as a binary STL. The first table has the CPU time of one core, the rate over the file's bytes and the
-largest resident memory of one process, over the file's size too: for mtopo on the file (which reads, welds and tells the
+largest resident memory of one process, over the file's size too: for mtopo on the file (which reads, welds and reports the
 topology), for mclean | mtopo, for Gmsh (reads it and makes its topology) and for every peer.
 The second table has a tenth of the triangles as text: the CPU time of mconvert, that of it without what the same surface
 as a stream costs (process, columns and output: what is left is the parsing), and its rate against that of std::from_chars

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Memory and time of stages in shards, as jobs of their own.
+"""Memory and time of stages in shards, as separate jobs.
 
 usage: scripts/bench shards [options]
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Counts lines of functions, members of classes, lines of comments and `opposite` parameters in C++.
 
-A scanner, not a compiler: it follows brackets in text formatted by clang-format and knows of the language only what tells
-a class, a function and a block apart.
+A scanner, not a compiler: it follows brackets in text formatted by clang-format, and recognizes classes, functions and blocks only.
 """
 import re
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Remeshes a surface of a cohort; a large one in steps, with maps, plane meshes, tiles of mrelax and measurements of mcheck made in
-shards as jobs of their own.
+shards as separate jobs.
 
 usage: shards.py STEP NAME SURFACE RECORD.json FORMAT SHARDS [options of mremesh]
 

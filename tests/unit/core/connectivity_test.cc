@@ -85,7 +85,7 @@ TEST(Fan, OpenGoesOnToTheOtherSide) {
   EXPECT_EQ(neighbors(wheel(4, false), 6), (std::vector<int>{3, 4, 5, 2, 1}));
 }
 
-TEST(Fan, StopsWhenToldSo) {
+TEST(Fan, StopsOnRequest) {
   const Mesh m = wheel(6, true);
   const std::vector<int> opposite = opposite_halfedges(m.tris, 7);
   int seen = 0;

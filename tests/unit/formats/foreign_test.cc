@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What files of other programs hold besides flat triangles: curved elements, lines, colors, odd sizes.
+// Data in files of other programs in addition to flat triangles: curved elements, lines, colors, odd sizes.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -134,7 +134,7 @@ TEST(Lines, OfInriaKeepReferencesRidgesAndWhatIsRequired) {
       "in:14: ridge 1, but there are 0 edges");
 }
 
-TEST(Lines, OfARemeshedSurfaceAreToldByItsVertices) {
+TEST(Lines, OfARemeshedSurfaceAreFoundByItsVertices) {
   Stream s = squares();
   s.surface.face.set<std::uint8_t>("model", {4, 1, 0, 0});
   s.surface.vertex.set<int>("line", {0, -1, 1, -1, -1, -1, -1, -1});

@@ -203,7 +203,7 @@ TEST(Formats, AnUnknownExtensionIsRefused) {
   EXPECT_PRED1(names_a_place, failure("\x1f\x8b\x08"));
 }
 
-TEST(Stl, BinaryIsToldByItsSizeNotItsFirstWord) {
+TEST(Stl, BinaryIsRecognizedByItsSizeNotItsFirstWord) {
   std::string bytes = write_as(two_patches(), "a.stl", false);
   std::memcpy(bytes.data(), "solid of a careless writer", 26);
   EXPECT_EQ(read_any(bytes, "in").surface.tris.size(), 4u);
