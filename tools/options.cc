@@ -95,7 +95,7 @@ void add_common_options(CLI::App& app, CommonOptions& options, const std::string
   app.add_option("-j,--threads", options.threads, "number of threads; the result does not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  app.add_flag("-q,--quiet", options.quiet, "report errors only");
+  app.add_flag("-q,--quiet", options.quiet, "report errors and warnings only");
   app.add_flag("-v,--verbose", options.verbose, "report more");
   app.add_option("--json", options.json,
                  "write the report as JSON to this file; - is standard output, unless that is -o")
