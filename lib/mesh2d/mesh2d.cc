@@ -14,6 +14,7 @@
 #include "lib/mesh2d/adapt.h"
 #include "lib/mesh2d/plane_metric.h"
 #include "lib/mesh2d/refine.h"
+#include "lib/mesh2d/subdivide.h"
 
 namespace meshpipe {
 namespace {
@@ -57,6 +58,7 @@ void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
 struct Drawing {
   std::vector<int> row;  // of Lines::points, ascending
   std::vector<FixedEdge> segments;
+  int stay = 0;  // points of borders and model edges
 };
 
 Drawing draw(const PartLines& parts, int part) {
@@ -67,6 +69,7 @@ Drawing draw(const PartLines& parts, int part) {
     const Line& l = parts.lines.lines[line];
     // a model line may lie inside the part: it does if no other part uses it
     const bool border = l.kind != model_line || parts.shared[line];
+    if (l.kind != interface_line) d.stay += l.count;
     for (int k = 0; k < l.count; ++k) {
       const int a = parts.point[l.first + k];
       d.row.push_back(a);
@@ -217,7 +220,10 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
   insert_kept(m, field, keep);
   switch (mesher) {
     case Mesher::frontal:
-      refine_frontal(m, field);
+      if (insert_subdivided(m, field, drawing.segments, drawing.stay))
+        fill_gaps(m, field);
+      else
+        refine_frontal(m, field);
       break;
     case Mesher::delaunay:
       refine_delaunay(m, field);

@@ -40,6 +40,7 @@ struct Site {
 class SizeMetric {
  public:
   SizeMetric(const Chart& chart, const std::vector<double>& size);  ///< keeps references
+  SizeMetric(const SizeMetric& field, double factor) : SizeMetric(field) { factor_ *= factor; }  ///< on sizes
   const Chart& chart() const { return chart_; }
   Site at(const Place& place) const;
   Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
@@ -50,6 +51,7 @@ class SizeMetric {
   const Chart& chart_;
   const std::vector<double>& size_;
   std::vector<LogMetric> map_;
+  double factor_ = 1;
 };
 
 }  // namespace meshpipe

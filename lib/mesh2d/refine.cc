@@ -19,6 +19,7 @@ struct Rule {
 // and shapes are best.
 constexpr double much_too_long = 1.8;  // an edge that is split although neither rule found a point
 constexpr Rule frontal_rule{true, 0.64, {0.8, 0.45}};
+constexpr Rule gap_rule{true, 0.8, {0.8, 0.45}};
 constexpr Rule delaunay_rule{false, 0.755, {0.6, 0.3}};
 
 // A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first;
@@ -193,6 +194,7 @@ class Refiner {
 }  // namespace
 
 void refine_frontal(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, frontal_rule).run(); }
+void fill_gaps(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, gap_rule).run(); }
 void refine_delaunay(SiteMesh& mesh, const SizeMetric& field) { Refiner(mesh, field, delaunay_rule).run(); }
 
 }  // namespace meshpipe

@@ -10,6 +10,9 @@ namespace meshpipe {
 /// nearly equilateral. Ends always: a triangle that takes no point is left as it is.
 void refine_frontal(SiteMesh& mesh, const SizeMetric& field);
 
+/// The same where points were inserted before, which may be a little farther apart.
+void fill_gaps(SiteMesh& mesh, const SizeMetric& field);
+
 /// Inserts the circumcenter of the largest triangle until every one has its size. Ends always.
 void refine_delaunay(SiteMesh& mesh, const SizeMetric& field);
 

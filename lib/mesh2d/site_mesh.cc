@@ -170,9 +170,9 @@ void flip_to_delaunay(SiteMesh& m) {
   flip_to_delaunay(m, todo);
 }
 
-void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
+void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps, bool flips) {
   Cdt& cdt = m.cdt;
-  flip_to_delaunay(m);
+  if (flips) flip_to_delaunay(m);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int v = m.line_points; v < (int)cdt.points.size(); ++v) {
       if (cdt.at[v] < 0) continue;
@@ -198,7 +198,7 @@ void smooth_in_plane(SiteMesh& m, const SizeMetric& field, int sweeps) {
       cdt.points[v] = q;
       m.site[v] = there;
     }
-    flip_to_delaunay(m);
+    if (flips) flip_to_delaunay(m);
   }
 }
 

@@ -50,7 +50,8 @@ void flip_to_delaunay(SiteMesh& mesh, std::vector<int>& todo);
 /// The same for all edges.
 void flip_to_delaunay(SiteMesh& mesh);
 
-/// Moves inner vertices between their neighbors, `sweeps` times, with flips before, between and after.
-void smooth_in_plane(SiteMesh& mesh, const SizeMetric& field, int sweeps);
+/// Moves inner vertices between their neighbors, `sweeps` times, with flips, unless unwanted, before, between
+/// and after.
+void smooth_in_plane(SiteMesh& mesh, const SizeMetric& field, int sweeps, bool flips = true);
 
 }  // namespace meshpipe

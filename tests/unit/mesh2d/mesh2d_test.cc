@@ -318,6 +318,22 @@ TEST(Mesh2d, AllMeshersMeetSizeAndShape) {
     }
 }
 
+TEST(Mesh2d, FewVerticesAreIrregularUnlessMostAreNearLines) {
+  auto irregular = [](double h) {
+    const Chart chart = annulus(60, 20, 0.2);
+    const PlaneMesh mesh = mesh_with(chart, border_lines(chart, h), h);
+    std::vector<int> valence(mesh.points.size());
+    for (const Tri& t : mesh.tris)
+      for (int v : t) ++valence[v];
+    int inside = 0, count = 0;
+    for (std::size_t v = 0; v < valence.size(); ++v)
+      if (mesh.points[v].line_point < 0) ++inside, count += valence[v] != 6;
+    return (double)count / inside;
+  };
+  EXPECT_LT(irregular(0.02), 0.1);
+  EXPECT_GT(irregular(0.1), 0.1);  // rows from both borders meet everywhere
+}
+
 // Doubles near 1e12 are 1.2e-4 apart: 8 times that is too little for a size, 400 times is not.
 TEST(Mesh2d, RefusesSizesThatTheMapDoesNotResolve) {
   Chart chart = square(10);
