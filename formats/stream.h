@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stream that the programs exchange: mply, a strict profile of PLY (formats/mply.md).
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,10 @@ class Source {
   /// Returns what comes next: n bytes or more, or all that are left; until the next call.
   virtual std::string_view next(std::size_t n) = 0;
   virtual void drop(std::size_t n) = 0;
+  /// Drops n bytes or all that are left, of which none need to be in memory.
+  virtual void skip(std::size_t n) {
+    for (std::size_t some; n > 0 && (some = std::min(n, next(1).size())) > 0; n -= some) drop(some);
+  }
   /// Returns how many bytes are left at most.
   virtual std::size_t most_left() const = 0;
 };
@@ -66,10 +71,15 @@ struct MemorySource : Source {
   std::size_t most_left() const override { return left.size(); }
 };
 
+/// Returns whether a column of a table is to be read; of `vertex` x stands for the points, and of `face`
+/// vertex_indices for the triangles. Empty: all are.
+using Wanted = std::function<bool(std::string_view table, std::string_view column)>;
+
 /// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
-/// Nothing may follow; where there may be `several`, as in a shard, another stream.
+/// Nothing may follow; where there may be `several`, as in a shard, another stream. Columns that are not
+/// `wanted` are left out, and not checked.
 /// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".
-Stream read_stream(Source& source, const std::string& where, bool several = false);
+Stream read_stream(Source& source, const std::string& where, bool several = false, const Wanted& wanted = {});
 Stream read_stream(std::string_view bytes, const std::string& where);
 
 /// Returns the stream in bytes: ascii with the shortest numbers that read back the same, or binary.

@@ -23,18 +23,18 @@ void check_shard(Io& io) {
 }
 
 void cut_into_shards(Io& io, const ShardFiles& to, int tile, int samples, const Contract& contract) {
-  const Surface reference = read_reference(io.stream);
+  Surface reference = read_reference(io.stream);
   expect_measurable(reference);
   const Surface& result = io.stream.surface;
   const bool small = (double)result.tris.size() <= 4.0 * tile;
   io.report["shards"] = 0;
   if (small || has_sheets(io.stream) || reference.face.has("curved")) {
     io.say(std::to_string(result.tris.size()) + " triangles are checked at once: no shards");
-    return write_as_it_is(io, io.stream);
+    return;
   }
   const double most = distance_to_know(io.stream, contract, reference);
-  write_as_it_is(io, io.stream);
-  io.stream.tables.clear();  // frees its memory now
+  io.stream.tables.clear();  // frees its memory now, as the next
+  for (const char* column : {"patch", "part"}) reference.face.erase(column);
   std::optional<ShardWriter> shards;
   cut_examination(result, reference, tile, samples, most, [&](CheckShare share, int number, int all) {
     if (!shards) shards.emplace(io, to, all);

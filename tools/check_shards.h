@@ -11,8 +11,7 @@ namespace meshpipe {
 /// Measures the shares of the shard that has been read, and writes what was found.
 void check_shard(Io& io);
 
-/// Cuts the check of the stream that has been read into shares of at most `tile` triangles, and writes the
-/// stream as it is.
+/// Cuts the check of the stream that has been read into shares of at most `tile` triangles.
 /// Small results, and those whose vertices are not on the reference's triangles, give no shards.
 void cut_into_shards(Io& io, const ShardFiles& shards, int tile, int samples, const Contract& contract);
 

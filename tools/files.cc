@@ -137,9 +137,18 @@ std::string_view InputFile::next(std::size_t n) {
   return {data_.get() + begin_, end_ - begin_};
 }
 
-Stream read_next(InputFile& file, const std::string& where, bool several) {
+void InputFile::skip(std::size_t n) {
+  const std::size_t held = std::min(n, end_ - begin_), far = n - held;
+  begin_ += held;
+  if (known_ && far <= unread_ && ::lseek(fd_, static_cast<off_t>(far), SEEK_CUR) >= 0)
+    unread_ -= far;
+  else
+    Source::skip(far);
+}
+
+Stream read_next(InputFile& file, const std::string& where, bool several, const Wanted& wanted) {
   constexpr std::size_t start = 200;  // bytes that show a stream
-  if (is_stream(file.next(start))) return read_stream(file, where, several);
+  if (is_stream(file.next(start))) return read_stream(file, where, several, wanted);
   const std::string_view bytes = file.rest();
   Stream stream = read_any(bytes, where);
   file.drop(bytes.size());

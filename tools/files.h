@@ -23,6 +23,7 @@ class InputFile : public Source {
   InputFile& operator=(const InputFile&) = delete;
   std::string_view next(std::size_t n) override;
   void drop(std::size_t n) override { begin_ += n; }
+  void skip(std::size_t n) override;
   std::size_t most_left() const override { return end_ - begin_ + unread_; }
   std::string_view rest() { return next(std::string_view::npos); }
 
@@ -40,8 +41,9 @@ class InputFile : public Source {
   bool any_ = false, ended_ = false;
 };
 
-/// Reads all of a file in any format, or one of the `several` streams of a shard. Throws: as read_any.
-Stream read_next(InputFile& file, const std::string& where, bool several = false);
+/// Reads all of a file in any format, or one of the `several` streams of a shard; see read_stream. Throws: as
+/// read_any.
+Stream read_next(InputFile& file, const std::string& where, bool several = false, const Wanted& wanted = {});
 
 /// Writes all bytes to an open file; `where` names it in messages. Throws CannotWrite.
 void write_all(int fd, std::string_view bytes, const std::string& where);

@@ -66,12 +66,12 @@ void write_output(const Io& io, bool text, const std::function<void(const Sink&)
 
 }  // namespace
 
-Stream& Io::read() {
+Stream& Io::read(const Wanted& wanted) {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
   if (takes_shards) {
     input_ = std::make_unique<InputFile>(input);
-    stream = accepted(*this, read_next(*input_, name_of(input), true));
+    stream = accepted(*this, read_next(*input_, name_of(input), true, wanted));
     if (input_->next(1).empty()) input_.reset();  // frees its memory now
   } else {
     stream = read(input);

@@ -19,7 +19,8 @@ class Io : public CommonOptions {
  public:
   /// Reads FILE or standard input, in any format, into `stream`, which outlives the body of the program.
   /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size.
-  Stream& read();
+  /// `wanted`: see read_stream.
+  Stream& read(const Wanted& wanted = {});
   /// Reads a second file of the user's, such as a reference.
   Stream read(const std::string& path) const;
   /// Returns the bytes of another file of the user's, or of standard input for "-".

@@ -56,7 +56,12 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
   if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
   if (!o.tsv.empty()) io.expect_report("--tsv", o.tsv);
-  Stream& stream = read(io, summary);
+  if (o.shards.count > 0) expect_only_shards(io);
+  // of the result a cut needs its shape only
+  Stream& stream = read(io, summary, [&](std::string_view table, std::string_view column) {
+    return o.shards.count == 0 || (table != "vertex" && table != "face") || column == "x" ||
+           column == "size" || column == "vertex_indices";
+  });
   if (!o.refine.empty() && !stream.surface.vertex.has("size"))
     throw NotAdmissible("--refine needs vertex data 'size' in the result, and there is none");
   if (is_check_share(stream)) return check_shard(io);

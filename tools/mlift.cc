@@ -48,12 +48,13 @@ int main(int argc, char** argv) {
     reference.face.erase("curved");
     if (o.curved) reference.face.set("curved", std::vector<std::uint8_t>(reference.tris.size(), 1));
     write_reference(stream, reference);
-    const std::string exceptions = write_on_reference(stream, mesh, reference, o.order == 2);
+    const std::string exceptions = write_on_reference(stream, std::move(mesh), reference, o.order == 2);
     if (!exceptions.empty()) io.say(exceptions);
-    io.say(std::to_string(mesh.points.size()) + " vertices, " + std::to_string(mesh.tris.size()) +
+    const Mesh& lifted = stream.surface;
+    io.say(std::to_string(lifted.points.size()) + " vertices, " + std::to_string(lifted.tris.size()) +
            " triangles");
-    io.report["vertices"] = mesh.points.size();
-    io.report["triangles"] = mesh.tris.size();
+    io.report["vertices"] = lifted.points.size();
+    io.report["triangles"] = lifted.tris.size();
     io.write(stream);
   };
   return run_tool(

@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
     io.report["triangles"] = triangles;
     if (!pictures.empty()) draw(pictures, charts, meshes);
     write_plane_meshes(stream, charts, meshes);
+    if (is_shard(stream)) keep_made(stream, {"line_vertex", "chart_point", "chart_face"});
     io.write(stream);
   };
   return run_tool(

@@ -135,6 +135,7 @@ int main(int argc, char** argv) {
 
     report_charts(io, options, charts, reports, n_before);
     if (!svg.empty()) Io::write_file(svg, charts_svg(charts, reports));
+    if (is_shard(stream)) keep_made(stream, {"chart_vertex"});
     io.write(stream);
   };
   return run_tool(

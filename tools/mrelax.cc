@@ -58,12 +58,13 @@ Task read_task(Io& io, Options& o) {
       task.kinds.push_back(l.kind);
       o.relax.keep_border = o.relax.keep_border || l.kept;
     }
-    task.corners = is_between_passes(stream) ? read_corners(stream) : line_corners(reference, lines);
+    o.relax.target_triangles = stream.asked_triangles;
     o.relax.sheets_meet = has_sheets(stream);
     if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
-    o.relax.target_triangles = stream.asked_triangles;
-    if (o.shards.count > 0 && !is_between_passes(stream)) write_as_it_is(io, stream);  // then it is cut
-    task.mesh = take_lifted(stream);
+    if (o.shards.count > 0) stream.tables = {};  // frees its memory now
+    if (!o.shards.from.empty()) return task;     // its tiles have the rest
+    task.corners = line_corners(reference, lines);
+    task.mesh = take_lifted(stream.surface, (int)reference.tris.size(), (int)task.kinds.size());
     return task;
   }
   clean(stream.surface);
@@ -97,30 +98,35 @@ int main(int argc, char** argv) {
     add_shard_options(app, o.shards, "of tiles", reference);
   };
   auto body = [&](Io& io) {
-    const bool in_shards = o.shards.count > 0 || !o.shards.from.empty();
-    Stream& stream = io.read();
+    const bool cuts = o.shards.count > 0, joins = !o.shards.from.empty();
+    if (cuts) expect_only_shards(io);
+    // where tiles come, the mesh is what they are joined to
+    Stream& stream = io.read([&](std::string_view table, std::string_view) {
+      return !joins || (table != "vertex" && table != "face");
+    });
     if (is_tile(stream)) {
-      if (in_shards || !o.reference.empty())
+      if (cuts || joins || !o.reference.empty())
         throw BadUsage("the input is a shard; expected the stream that shards are cut from");
       return relax_shard(io, o.relax.sweeps);
     }
     Task task = read_task(io, o);
-    LiftedMesh& mesh = task.mesh;
     const Surface& reference = task.reference;
-    bool second_order = stream.find("mid_vertex") != nullptr;
-    std::optional<RelaxReport> r;
-    if (in_shards || is_between_passes(stream)) {
-      r = relax_by_shards(io, mesh, {reference, task.kinds, task.corners, o.relax}, o.shards, second_order);
-      if (!r) return;
-    } else {
-      stream.surface = {};  // written anew later; frees its memory now
-      r = relax(mesh, reference, task.kinds, task.corners, o.relax);
-    }
-    const std::string exceptions = write_on_reference(stream, mesh, reference, second_order);
+    const bool second_order = stream.find("mid_vertex") != nullptr;
+    stream.surface = {};  // written anew later; frees its memory now
+    RelaxReport r;
+    if (joins)
+      r = join_shards(io, task.mesh, reference, o.relax, o.shards);
+    else if (cuts)
+      cut_into_shards(io, std::move(task.mesh), {reference, task.kinds, task.corners, o.relax}, o.shards);
+    else
+      r = relax(task.mesh, reference, task.kinds, task.corners, o.relax);
+    if (cuts) return;
+    const std::string exceptions = write_on_reference(stream, std::move(task.mesh), reference, second_order);
     if (!exceptions.empty()) io.say(exceptions);
-    for (const std::string& line : relax_lines(*r, mesh.tris.size(), stream.asked_triangles)) io.say(line);
-    io.report.update(relax_record(*r, mesh.tris.size()));
-    const std::string missed = left_over(*r, mesh);
+    const std::size_t triangles = stream.surface.tris.size();
+    for (const std::string& line : relax_lines(r, triangles, stream.asked_triangles)) io.say(line);
+    io.report.update(relax_record(r, triangles));
+    const std::string missed = left_over(r, stream.surface);
     if (!missed.empty() && !o.accept) throw GoalMissed(missed);
     if (!missed.empty()) io.say("accepted: " + missed);
     io.write(stream);

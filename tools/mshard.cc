@@ -8,9 +8,9 @@ using namespace meshpipe;
 
 namespace {
 
-/// Writes each shard into a directory, which is made if it is not there, as 1.ply, 2.ply, ... The stream
-/// itself stays as it is.
+/// Writes each shard into a directory, which is made if it is not there, as 1.ply, 2.ply, ...
 void cut(Io& io, int count, const std::string& directory) {
+  expect_only_shards(io);
   const Stream& whole = io.read();
   const std::vector<std::vector<int>> shares = share_out(whole, count);
   make_directory(directory);
@@ -30,7 +30,6 @@ void cut(Io& io, int count, const std::string& directory) {
          std::to_string(largest));
   io.report["shards"] = shares.size();
   io.report["largest"] = largest;
-  write_as_it_is(io, whole);
 }
 
 }  // namespace
@@ -52,9 +51,9 @@ int main(int argc, char** argv) {
       "Cut a stream into shards of whole parts, for mparam and mmesh2d as separate jobs; their --join puts "
       "the results together.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
-      "mshard --shards 2 --into in stages/08-lines.ply -o all.ply\n"
-      "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply -o all.ply && "
+      "mshard --shards 2 --into in stages/08-lines.ply\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply && "
       "mkdir out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && "
-      "mmesh2d --join out all.ply | mlift -o lifted.ply",
+      "mmesh2d --join out s/08-lines.ply | mlift -o lifted.ply",
       options, [&](Io& io) { cut(io, count, into); }, {.passes = true, .any_size = true});
 }

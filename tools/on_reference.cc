@@ -9,8 +9,7 @@
 
 namespace meshpipe {
 
-std::string write_on_reference(Stream& stream, LiftedMesh& mesh, const Surface& reference,
-                               bool second_order) {
+std::string write_on_reference(Stream& stream, LiftedMesh mesh, const Surface& reference, bool second_order) {
   std::string exceptions;
   auto report = [&](int n, const char* what) {
     if (n > 0) exceptions += (exceptions.empty() ? "" : "; ") + std::to_string(n) + what;
@@ -19,12 +18,13 @@ std::string write_on_reference(Stream& stream, LiftedMesh& mesh, const Surface& 
   if (reference.face.has("curved")) smooth.emplace(reference);
   if (smooth)
     report(raise_vertices(mesh, *smooth), " vertices stay on the input, where triangles would intersect");
-  write_lifted(stream, mesh);
+  std::optional<MidPoints> middle;
+  if (second_order) middle = mid_points(mesh, reference, smooth ? &*smooth : nullptr);
+  write_lifted(stream, std::move(mesh));
   update_volumes(stream);
-  if (second_order) {
-    const MidPoints middle = mid_points(mesh, reference, smooth ? &*smooth : nullptr);
-    report(middle.straight, " edges stay straight, where triangles of second order would fold");
-    write_mid_points(stream, middle.points);
+  if (middle) {
+    report(middle->straight, " edges stay straight, where triangles of second order would fold");
+    write_mid_points(stream, middle->points);
   }
   return exceptions;
 }

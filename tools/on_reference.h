@@ -11,6 +11,6 @@ namespace meshpipe {
 /// Raises the vertices of a mesh to the smooth surface above its reference, if that has face column `curved`,
 /// and puts the mesh into the stream, with the nodes of second order if asked. Returns: a description of what
 /// had to stay flat or straight; empty if nothing.
-std::string write_on_reference(Stream& stream, LiftedMesh& mesh, const Surface& reference, bool second_order);
+std::string write_on_reference(Stream& stream, LiftedMesh mesh, const Surface& reference, bool second_order);
 
 }  // namespace meshpipe

@@ -3,32 +3,27 @@
 
 #include <atomic>
 
-#include "formats/stream/lift_tables.h"
 #include "formats/stream/tile_tables.h"
 #include "lib/core/error.h"
 
 namespace meshpipe {
 namespace {
 
-int tiles_of(const TiledMesh& whole, const RelaxOptions& options) {
-  return ((int)whole.mesh.tris.size() + options.tile - 1) / options.tile;
-}
-
-/// Writes the tiles into a directory, neighbors in one shard.
-void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, bool repair, const ShardFiles& to) {
-  const int tiles = tiles_of(whole, relax.options);
-  const TilePass pass = relax.pass(whole, repair);
-  ShardWriter shards(io, to, tiles);
+/// Writes tiles into a directory, neighbors in one shard.
+void cut(Io& io, const TiledMesh& whole, const TiledRelax& relax, TilesOf of, const ShardFiles& to) {
+  of.vertices = (int)whole.mesh.points.size();
+  of.count = ((int)whole.mesh.tris.size() + relax.options.tile - 1) / relax.options.tile;
+  ShardWriter shards(io, to, of.count);
   int next = 0;
-  relax.cut(whole, pass, [&](Tile tile) {
-    Stream stream = stream_of({next++, relax.line_kind, pass, false, std::move(tile)});
+  relax.cut(whole, of.pass, [&](Tile tile) {
+    Stream stream = stream_of({next++, of, false, std::move(tile)});
     stream.history = io.stream.history;
     shards.add(stream);
   });
   io.say(std::to_string(shards.count()) + (shards.count() == 1 ? " shard of " : " shards of ") +
-         std::to_string(tiles) + " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
+         std::to_string(of.count) + " tiles, " + std::to_string(whole.mesh.tris.size()) + " triangles");
   io.report["shards"] = shards.count();
-  io.report["tiles"] = tiles;
+  io.report["tiles"] = of.count;
 }
 
 }  // namespace
@@ -38,9 +33,9 @@ void relax_shard(Io& io, int sweeps) {
   const int n = io.write_each([&](Stream stream) {
     TileJob job = take_tile(std::move(stream));
     if (job.relaxed) throw NotAdmissible("these tiles are relaxed; join them by mrelax --join");
-    if (job.pass.sweeps != sweeps)
-      throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(job.pass.sweeps));
-    relax_tile(job.tile, job.line_kind, job.pass);
+    if (job.of.pass.sweeps != sweeps)
+      throw NotAdmissible("the shards were cut for --sweeps " + std::to_string(job.of.pass.sweeps));
+    relax_tile(job.tile, job.of.line_kind, job.of.pass);
     job.relaxed = true;
     triangles += job.tile.mesh.tris.size();
     return stream_of(std::move(job));
@@ -50,41 +45,43 @@ void relax_shard(Io& io, int sweeps) {
   io.report["triangles"] = triangles.load();
 }
 
-std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
-                                           const ShardFiles& shards, bool& second_order) {
-  Stream& stream = io.stream;
-  BetweenPasses between{{}, second_order};
-  const bool optimized = is_between_passes(stream);
-  if (optimized && shards.from.empty())
-    throw NotAdmissible("the mesh is between two passes over its tiles; expected --join DIR");
-  if (!optimized && !uses_tiles(mesh, relax.options)) {
-    if (!shards.from.empty()) throw NotAdmissible("the mesh has no tiles; run mrelax without --join");
+void cut_into_shards(Io& io, LiftedMesh mesh, const TiledRelax& relax, const ShardFiles& to) {
+  if (!uses_tiles(mesh, relax.options)) {
     io.say(std::to_string(mesh.tris.size()) + " triangles are optimized at once: no shards");
     io.report["shards"] = 0;
-    return {};
+    return;
   }
-  TiledMesh whole = optimized ? take_tiled(stream, std::move(mesh), between) : as_tiled(std::move(mesh));
-  second_order = between.second_order;
-  if (shards.from.empty()) {
-    stream.surface = {}, stream.tables.clear();  // frees its memory now
-    cut(io, whole, relax, false, shards);
-    return {};
+  const TiledMesh whole = as_tiled(std::move(mesh));
+  TilesOf of{0, 0, relax.line_kind, {}, relax.pass(whole, false), {}};
+  for (int v = 0; v < (int)relax.corner.size(); ++v)
+    if (relax.corner[v]) of.corners.push_back(v);
+  cut(io, whole, relax, std::move(of), to);
+}
+
+RelaxReport join_shards(Io& io, LiftedMesh& mesh, const Surface& reference, const RelaxOptions& options,
+                        const ShardFiles& shards) {
+  JoinedTiles joined = join_tiles(io.stream, (int)reference.tris.size(), {io.program, "", io.arguments},
+                                  shards_in(shards.from), read_shard);
+  TilesOf& of = joined.of;
+  if (of.pass.repair && shards.count > 0) throw BadUsage("--shards: this is the last pass");
+  std::vector<char> corner(reference.points.size());
+  for (int v : of.corners) {
+    if (v < 0 || v >= (int)corner.size())
+      throw BadInput(shards.from + ": a corner is vertex " + std::to_string(v) +
+                     " of the reference, which has " + std::to_string(corner.size()));
+    corner[v] = 1;
   }
-  if (optimized && shards.count > 0) throw BadUsage("--shards: this is the last pass");
-  stream.surface = {};  // written anew later; frees its memory now
-  const TilePass pass = relax.pass(whole, optimized);
-  relax.join(whole,
-             join_tiles(whole, (int)relax.reference.tris.size(), tiles_of(whole, relax.options), pass,
-                        {io.program, "", io.arguments}, shards_in(shards.from), read_shard),
-             pass, between.counts);
+  const std::vector<int> line_kind = of.line_kind;
+  const TiledRelax relax{reference, line_kind, corner, options};
+  relax.relax_seams(joined.mesh, joined.seams, of.pass, joined.counts);
   if (shards.count > 0) {
-    cut(io, whole, relax, true, shards);
-    write_tiled(stream, whole, relax.corner, between);
-    write_as_it_is(io, stream);
+    of.pass = relax.pass(joined.mesh, true);
+    of.before = joined.counts;
+    cut(io, joined.mesh, relax, std::move(of), shards);
     return {};
   }
-  const RelaxReport report = relax.finish(whole, optimized ? 2 : 1, between.counts);
-  mesh = std::move(whole.mesh);
+  const RelaxReport report = relax.finish(joined.mesh, of.pass.repair ? 2 : 1, joined.counts);
+  mesh = std::move(joined.mesh.mesh);
   return report;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tiles of mrelax in shards, as separate jobs.
 #pragma once
-#include <optional>
-
 #include "lib/relax/relax.h"
 #include "tools/shard_files.h"
 
@@ -11,10 +9,12 @@ namespace meshpipe {
 /// Relaxes the tiles of the shard that has been read, and writes it. `sweeps`: those asked for.
 void relax_shard(Io& io, int sweeps);
 
-/// Joins and cuts as asked. Returns the report of the mesh when it is done; none if shards were cut, and the
-/// stream is written (of the first pass before). `second_order`: whether the stream had nodes of second
-/// order, also before the first pass.
-std::optional<RelaxReport> relax_by_shards(Io& io, LiftedMesh& mesh, const TiledRelax& relax,
-                                           const ShardFiles& shards, bool& second_order);
+/// Writes the tiles of the first pass into shards, if the mesh is large enough to have tiles.
+void cut_into_shards(Io& io, LiftedMesh mesh, const TiledRelax& relax, const ShardFiles& to);
+
+/// Joins the tiles of shards, and cuts those of the second pass if asked; then `mesh` stays empty, else it is
+/// the result. Returns its report. The stream needs no surface.
+RelaxReport join_shards(Io& io, LiftedMesh& mesh, const Surface& reference, const RelaxOptions& options,
+                        const ShardFiles& shards);
 
 }  // namespace meshpipe

@@ -31,10 +31,10 @@ void RoundFile::write() const {
   if (!file_.empty()) Io::write_file(file_, before_ + verdict_block(before_, outcome));
 }
 
-Stream& read(Io& io, Summary& summary) {
+Stream& read(Io& io, Summary& summary, const Wanted& wanted) {
   summary.output = io.output;
   try {
-    return io.read();
+    return io.read(wanted);
   } catch (const UpstreamFailed&) {
     summary.counts = true;
     throw;

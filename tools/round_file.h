@@ -31,7 +31,7 @@ class RoundFile {
 };
 
 /// Reads the result. A program before this one that has failed counts in the summary, too.
-Stream& read(Io& io, Summary& summary);
+Stream& read(Io& io, Summary& summary, const Wanted& wanted);
 
 /// Adds the line of a finished run to a table, if it counts. Returns the run's status, or 7 if a success
 /// cannot be added: then the result is removed.

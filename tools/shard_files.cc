@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shard_files.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "lib/core/error.h"
@@ -25,6 +23,10 @@ CLI::Option* add_join_option(CLI::App& app, std::string& from) {
   return app.add_option("--join", from, "join the results of the shards in this directory")
       ->type_name("DIR")
       ->group("Shards");
+}
+
+void expect_only_shards(const Io& io) {
+  if (io.output != "-") throw BadUsage("-o " + io.output + ": --shards writes shards only, to --into DIR");
 }
 
 void make_directory(const std::string& directory) {
@@ -66,15 +68,6 @@ void ShardWriter::add(const Stream& stream) {
   file_->finish();
   file_.reset();
   ++shard_;
-}
-
-void write_as_it_is(Io& io, const Stream& stream) {
-  io.ascii |= stream.ascii && !io.binary;
-  if (io.output == "-" && !io.ascii && ::isatty(STDOUT_FILENO))
-    throw BadUsage("the stream is binary and standard output is a terminal; use -o FILE, a pipe or --ascii");
-  io.wrote_to_stdout = io.output == "-";
-  io.write_to(io.output, stream);
-  if (io.output != "-") io.finished_file = io.output;
 }
 
 }  // namespace meshpipe

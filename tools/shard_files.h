@@ -20,6 +20,9 @@ void add_shard_options(CLI::App& app, ShardFiles& shards, const std::string& wha
 /// Adds --join DIR.
 CLI::Option* add_join_option(CLI::App& app, std::string& from);
 
+/// Throws: BadUsage for -o FILE, which a program that cuts does not write.
+void expect_only_shards(const Io& io);
+
 /// Makes a directory if it is not there. Throws: CannotWrite.
 void make_directory(const std::string& directory);
 
@@ -45,8 +48,5 @@ class ShardWriter {
   int streams_, count_, next_ = 0, shard_ = 0;
   std::optional<AtomicFile> file_;
 };
-
-/// Writes the stream as other programs have made it: the history stays.
-void write_as_it_is(Io& io, const Stream& stream);
 
 }  // namespace meshpipe

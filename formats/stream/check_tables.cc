@@ -57,19 +57,19 @@ Stream stream_of(CheckJob job) {
   Table table{"check_share", 0, {}};
   set_value(table, "number", job.number);
   set_value(table, "of", job.all);
-  set_value(table, "of_result", static_cast<int>(s.of_result));
   set_value(table, "own", s.own);
-  set_value(table, "samples", s.samples);
-  set_value(table, "budget", s.budget);
+  set_value(table, "other_own", s.other_own);
   set_value(table, "diagonal", s.diagonal);
   set_value(table, "most", s.most);
   stream.set(std::move(table));
   stream.surface = surface_of(std::move(s.mesh));
   stream.set(point_table("other_vertex", s.other));
   stream.set(triangle_table("other_face", s.other));
-  Table vertices{"check_vertex", 0, {}}, triangles{"check_face", 0, {}};
+  Table vertices{"check_vertex", 0, {}}, triangles{"check_face", 0, {}}, sides{"check_side", 0, {}};
+  sides.set("samples", std::vector<int>(s.samples.begin(), s.samples.end()));
+  sides.set("budget", std::vector<int>(s.budget.begin(), s.budget.end()));
+  stream.set(std::move(sides));
   vertices.set("row", std::move(s.vertices));
-  s.allowed.resize(s.triangles.size());  // none of those that are only next to the share
   triangles.set("row", std::move(s.triangles));
   triangles.set("allowed", std::move(s.allowed));
   stream.set(std::move(vertices));
@@ -81,9 +81,10 @@ CheckJob take_share(Stream stream) {
   const Table& table = need_row(stream, "check_share", writer);
   CheckJob job{table.get<int>("number")[0], table.get<int>("of")[0], {}};
   CheckShare& s = job.share;
-  s.of_result = table.get<int>("of_result")[0] != 0;
-  s.own = table.get<int>("own")[0];
-  s.samples = table.get<int>("samples")[0], s.budget = table.get<int>("budget")[0];
+  s.own = table.get<int>("own")[0], s.other_own = table.get<int>("other_own")[0];
+  const Table& sides = need_rows(stream, "check_side", writer, 2);
+  for (int side : {0, 1})
+    s.samples[side] = sides.get<int>("samples")[side], s.budget[side] = sides.get<int>("budget")[side];
   s.diagonal = table.get<double>("diagonal")[0], s.most = table.get<double>("most")[0];
   s.mesh = std::move(static_cast<Mesh&>(stream.surface));
   s.other = mesh_from(stream.need("other_vertex", writer), stream.need("other_face", writer));
@@ -92,14 +93,22 @@ CheckJob take_share(Stream stream) {
   s.triangles = triangles.get<int>("row");
   s.allowed = triangles.get<double>("allowed");
   const std::string name = "share " + std::to_string(job.number);
-  if (s.own < 1 || s.own > static_cast<int>(s.mesh.tris.size()) || s.samples < 1 || !(s.diagonal > 0))
-    throw BadInput(name + " has " + std::to_string(s.own) + " of " + std::to_string(s.mesh.tris.size()) +
-                   " triangles and " + std::to_string(s.samples) + " samples");
-  if (s.vertices.size() != (s.of_result ? s.mesh.points.size() : 0) ||
-      s.triangles.size() != (s.of_result ? s.mesh : s.other).tris.size())
-    throw BadInput(name + " has " + std::to_string(s.vertices.size()) + " rows of vertices and " +
-                   std::to_string(s.triangles.size()) + " of triangles, others than it has in its meshes");
-  if (s.of_result) s.allowed.resize(s.own);
+  const auto expect = [&](bool right, int found, std::size_t of, const char* what) {
+    if (!right)
+      throw BadInput(name + " has " + std::to_string(found) + ' ' + what + ", and a mesh of " +
+                     std::to_string(of));
+  };
+  const auto outside = [](int own, const Mesh& mesh) {
+    return own < 0 || own > static_cast<int>(mesh.tris.size());
+  };
+  expect(!outside(s.own, s.mesh), s.own, s.mesh.tris.size(), "own triangles");
+  expect(!outside(s.other_own, s.other), s.other_own, s.other.tris.size(), "own triangles of the reference");
+  expect(s.vertices.size() == s.mesh.points.size(), static_cast<int>(s.vertices.size()), s.mesh.points.size(),
+         "rows of vertices");
+  expect(s.triangles.size() == s.mesh.tris.size(), static_cast<int>(s.triangles.size()), s.mesh.tris.size(),
+         "rows of triangles");
+  if (s.samples[0] < 1 || s.samples[1] < 1 || !(s.diagonal > 0))
+    throw BadInput(name + " has no samples or no size");
   for (double a : s.allowed)
     if (!(a > 0)) throw BadInput(name + " allows no distance at a triangle");
   return job;
@@ -110,17 +119,19 @@ Stream stream_of(int number, int all, ShareFindings f) {
   Table table{"checked", 0, {}};
   set_value(table, "number", number);
   set_value(table, "of", all);
-  set_value(table, "of_result", static_cast<int>(f.of_result));
-  set_value(table, "area", f.area);
-  const OneWay& d = f.distance;
-  for (const auto& [name, length] : lengths) set_value(table, name, d.*length);
-  set_value(table, "worst", d.deviation.worst);
-  set_value(table, "triangle", d.deviation.triangle);
-  for (const auto& [name, axis] : axes) {
-    set_value(table, name, d.place.*axis);
-    set_value(table, "worst_" + std::string(name), d.deviation.place.*axis);
-  }
   stream.set(std::move(table));
+  const OneWay &a = f.distance[0], &b = f.distance[1];
+  Table sides{"checked_side", 0, {}};
+  sides.set("area", std::vector<double>{f.area[0], f.area[1]});
+  for (const auto& [name, length] : lengths) sides.set(name, std::vector<double>{a.*length, b.*length});
+  sides.set("worst", std::vector<double>{a.deviation.worst, b.deviation.worst});
+  sides.set("triangle", std::vector<int>{a.deviation.triangle, b.deviation.triangle});
+  for (const auto& [name, axis] : axes) {
+    sides.set(name, std::vector<double>{a.place.*axis, b.place.*axis});
+    sides.set("worst_" + std::string(name),
+              std::vector<double>{a.deviation.place.*axis, b.deviation.place.*axis});
+  }
+  stream.set(std::move(sides));
   stream.set(pair_table("checked_ratio", "triangle", "ratio", f.ratios));
   stream.set(pair_table("checked_vertex", "vertex", "distance", f.off));
   stream.set(pair_table("checked_crossing", "a", "b", f.crossings));
@@ -138,16 +149,19 @@ std::pair<int, ShareFindings> read_findings(const Stream& stream, const Surface&
   ShareFindings f;
   all = table.get<int>("of")[0];
   const auto n_tris = static_cast<long long>(result.tris.size());
-  f.of_result = table.get<int>("of_result")[0] != 0;
-  f.area = table.get<double>("area")[0];
-  for (const auto& [name, length] : lengths) f.distance.*length = table.get<double>(name)[0];
-  Deviation& d = f.distance.deviation;
-  d.worst = table.get<double>("worst")[0];
-  d.triangle = table.get<int>("triangle")[0];
-  if (d.triangle != -1) expect_row(d.triangle, n_tris, "triangle");
-  for (const auto& [name, axis] : axes) {
-    f.distance.place.*axis = table.get<double>(name)[0];
-    d.place.*axis = table.get<double>("worst_" + std::string(name))[0];
+  const Table& sides = need_rows(stream, "checked_side", "mcheck", 2);
+  for (int side : {0, 1}) {
+    OneWay& way = f.distance[side];
+    f.area[side] = sides.get<double>("area")[side];
+    for (const auto& [name, length] : lengths) way.*length = sides.get<double>(name)[side];
+    Deviation& d = way.deviation;
+    d.worst = sides.get<double>("worst")[side];
+    d.triangle = sides.get<int>("triangle")[side];
+    if (d.triangle != -1) expect_row(d.triangle, n_tris, "triangle");
+    for (const auto& [name, axis] : axes) {
+      way.place.*axis = sides.get<double>(name)[side];
+      d.place.*axis = sides.get<double>("worst_" + std::string(name))[side];
+    }
   }
   f.ratios = pairs_of<int, double>(stream, "checked_ratio", "triangle", "ratio");
   f.off = pairs_of<int, double>(stream, "checked_vertex", "vertex", "distance");
@@ -166,19 +180,11 @@ std::vector<ShareFindings> join_checks(const Stream& whole, const Provenance& by
                                        const std::vector<std::string>& names, const ReadShard& read) {
   std::vector<ShareFindings> all;
   std::vector<const std::string*> from;
-  auto text = [](const Provenance& p) {  // --accept changes only what becomes of a failure
-    std::string words = p.program + (p.arguments.empty() ? "" : ' ' + p.arguments) + ' ';
-    if (const std::size_t at = words.find(" --accept "); at != words.npos) words.erase(at, 9);
-    return words;
-  };
   const long long most = 2 + static_cast<long long>(whole.surface.tris.size()) +
                          static_cast<long long>(whole.need("ref_face", "mlift").rows);
   auto take = [&](const std::string& name, const Stream& stream) {
     if (is_check_share(stream)) throw BadInput("its shares are not measured yet");
-    const auto &made = stream.history, &known = whole.history;
-    bool same = made.size() == known.size() + 1 && text(made.back()) == text(by);
-    for (std::size_t i = 0; same && i < known.size(); ++i) same = text(made[i]) == text(known[i]);
-    if (!same) throw BadInput("it was made of another result, or with other options");
+    expect_made_of(whole, stream.history, by);
     int shares = 0;
     auto [number, found] = read_findings(stream, whole.surface, shares);
     if (all.empty() && shares > 0 && shares <= most) all.resize(shares), from.resize(shares);

@@ -37,20 +37,20 @@ struct Home {
   int shard = -1, part = -1;
 };
 
-/// Throws: BadInput if the shard is not what the numbers cut out of the whole.
+/// Throws: BadInput if the shard has other parts or lines than the numbers cut out of the whole.
 void expect_cut_from(const Stream& whole, const Stream& shard, const ShardNumbers& n) {
-  const Mesh &all = whole.surface, &some = shard.surface;
-  auto same = [&] {
-    if (some.tris.size() != n.faces.size() || some.points.size() != n.vertices.size()) return false;
-    for (std::size_t v = 0; v < some.points.size(); ++v)
-      if (norm(some.points[v] - all.points[n.vertices[v]]) != 0) return false;
-    for (std::size_t t = 0; t < some.tris.size(); ++t)
-      for (int i = 0; i < 3; ++i)
-        if (n.vertices[some.tris[t][i]] != all.tris[n.faces[t]][i]) return false;
-    const Table* points = shard.find("line_vertex");
-    return (points ? points->rows : 0) == n.line_points.size();
+  const Table &all = whole.need("part", "mpartition"), &some = shard.need("part", "mpartition");
+  auto same = [&]<class T>(const char* column) {
+    if (!all.has(column)) return true;
+    const auto &a = all.get<T>(column), &b = some.get<T>(column);
+    for (std::size_t i = 0; i < b.size(); ++i)
+      if (b[i] != a[n.parts[i]]) return false;
+    return true;
   };
-  if (!same()) throw BadInput("the surface or the lines are not those of these parts of the whole");
+  const Table* points = shard.find("line_vertex");
+  if (!same.operator()<int>("faces") || !same.operator()<double>("area") ||
+      (points && points->rows != n.line_points.size()))
+    throw BadInput("the surface or the lines are not those of these parts of the whole");
 }
 
 /// Checks a shard, and takes the tables that its program has made.
@@ -68,11 +68,7 @@ Taken take_shard(const Stream& whole, const std::string& name, Stream shard, con
   if (const std::size_t rows = shard.need("part", "mpartition").rows; rows != parts.size())
     throw BadInput("there are " + std::to_string(rows) + " parts, but " + std::to_string(parts.size()) +
                    " were cut out of the whole");
-  if (shard.history.size() <= whole.history.size()) throw BadInput("no program has run on the shard");
-  const Provenance& made = shard.history.back();
-  auto text = [](const Provenance& p) { return p.program + (p.arguments.empty() ? "" : ' ' + p.arguments); };
-  if (text(made) != text(by))
-    throw BadInput("it was made by '" + text(made) + "', not by '" + text(by) + "'");
+  expect_made_of(whole, shard.history, by);
   Taken taken{name, number_shard(whole, parts), {}};
   expect_cut_from(whole, shard, taken.numbers);
   if (shard.find("chart_point")) shard.need("line_vertex", "mlines");  // which its rows point to
@@ -132,10 +128,15 @@ class Merged {
     const ShardNumbers& n = taken_[homes_[part].shard].numbers;
     if (column == "part") return part;
     if (row < 0) return row;
-    if (column == "vertex") return n.vertices[row];
-    if (column == "face") return n.faces[row];
-    if (column == "line_vertex") return n.line_points[row];
-    return points ? points->number(part, row) : row;
+    const auto* of = column == "vertex"        ? &n.vertices
+                     : column == "face"        ? &n.faces
+                     : column == "line_vertex" ? &n.line_points
+                                               : nullptr;
+    if (!of) return points ? points->number(part, row) : row;
+    if (row >= static_cast<int>(of->size()))
+      throw BadInput(taken_[homes_[part].shard].name + ": " + name_ + " has " + column + ' ' +
+                     std::to_string(row) + ", but its parts have " + std::to_string(of->size()));
+    return (*of)[row];
   }
   const char* name_;
   const std::vector<Taken>& taken_;
@@ -162,6 +163,30 @@ Table joined_parts(const std::vector<Taken>& taken, std::size_t n_parts) {
 }
 
 }  // namespace
+
+void expect_made_of(const Stream& whole, const std::vector<Provenance>& made, const Provenance& by) {
+  auto text = [](const Provenance& p) {  // --accept changes only what becomes of a failure
+    std::string words = p.program + (p.arguments.empty() ? "" : ' ' + p.arguments) + ' ';
+    if (const std::size_t at = words.find(" --accept "); at != words.npos) words.erase(at, 9);
+    words.pop_back();
+    return words;
+  };
+  const std::vector<Provenance>& known = whole.history;
+  if (made.size() <= known.size()) throw BadInput("no program has run on the shard");
+  if (text(made.back()) != text(by))
+    throw BadInput("it was made by '" + text(made.back()) + "', not by '" + text(by) + "'");
+  if (!std::equal(known.begin(), known.end(), made.begin(), made.end() - 1,
+                  [&](const Provenance& a, const Provenance& b) { return text(a) == text(b); }))
+    throw BadInput("it was made of another stream");
+}
+
+void keep_made(Stream& shard, std::initializer_list<std::string_view> tables) {
+  shard.surface = {};
+  std::erase_if(shard.tables, [&](const Table& t) {
+    return t.name != "shard" && t.name != "part" &&
+           std::find(tables.begin(), tables.end(), t.name) == tables.end();
+  });
+}
 
 void of_shard(const std::string& name, const std::function<void()>& take) {
   try {

@@ -47,12 +47,6 @@ void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& verte
 
 }  // namespace
 
-LiftedMesh take_lifted(Stream& stream) {
-  const int n_faces = static_cast<int>(stream.need("ref_face", "mlift").rows);
-  const int n_lines = static_cast<int>(stream.need("line", "mlines").rows);
-  return take_lifted(stream.surface, n_faces, n_lines);
-}
-
 LiftedMesh take_lifted(Surface& s, int n_faces, int n_lines) {
   if (!s.vertex.has("ref_face"))
     throw NotAdmissible("the vertices have no place on a reference; run mlift first");
@@ -61,7 +55,6 @@ LiftedMesh take_lifted(Surface& s, int n_faces, int n_lines) {
   mesh.tris = std::move(s.tris);
   const auto& face = s.vertex.get<int>("ref_face");
   const auto &b1 = s.vertex.get<double>("b1"), &b2 = s.vertex.get<double>("b2");
-  const std::vector<double>* b0 = s.vertex.has("b0") ? &s.vertex.get<double>("b0") : nullptr;
   mesh.kind = std::move(s.vertex.get<int>("kind"));
   mesh.line = std::move(s.vertex.get<int>("line"));
   mesh.size = std::move(s.vertex.get<double>("size"));
@@ -79,7 +72,7 @@ LiftedMesh take_lifted(Surface& s, int n_faces, int n_lines) {
     if (mesh.line[v] < -1 || mesh.line[v] >= n_lines)
       bad("is on line " + std::to_string(mesh.line[v]) + ", but there are " + std::to_string(n_lines));
     if (!(mesh.size[v] > 0)) bad("has size " + std::to_string(mesh.size[v]) + ", but sizes are positive");
-    mesh.place.push_back({face[v], b0 ? (*b0)[v] : 1 - b1[v] - b2[v], b1[v], b2[v]});
+    mesh.place.push_back({face[v], 1 - b1[v] - b2[v], b1[v], b2[v]});
   }
   mesh.patch = std::move(s.face.get<int>("patch"));
   mesh.part = std::move(s.face.get<int>("part"));
@@ -110,10 +103,11 @@ Surface surface_from(LiftedMesh mesh) {
   return s;
 }
 
-void write_lifted(Stream& stream, const LiftedMesh& mesh) {
-  Surface s = surface_from(mesh);
-  interpolate_data(stream, mesh, s.vertex);
-  stream.surface = std::move(s);
+void write_lifted(Stream& stream, LiftedMesh mesh) {
+  Table data{"vertex", 0, {}};
+  interpolate_data(stream, mesh, data);
+  stream.surface = surface_from(std::move(mesh));
+  for (Column& c : data.columns) stream.surface.vertex.columns.push_back(std::move(c));
   stream.erase("mid_vertex");
 }
 

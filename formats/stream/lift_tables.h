@@ -6,20 +6,16 @@
 
 namespace meshpipe {
 
-/// Takes the mesh in `vertex` and `face`, with each vertex's place on the reference, out of the stream: what
-/// it has the surface has no longer.
-/// Throws: NotAdmissible if mlift has not run; BadInput with the row of a wrong index or weight.
-LiftedMesh take_lifted(Stream& stream);
-
-/// The same from a surface that has its columns, on a reference of `faces` triangles, with `lines` lines.
-/// Throws: BadInput with the row of a wrong index or weight.
+/// Takes a mesh with each vertex's place on the reference, of `faces` triangles and with `lines` lines, out
+/// of a surface: what it has the surface has no longer. Throws: NotAdmissible if mlift has not run; BadInput
+/// with the row of a wrong index or weight.
 LiftedMesh take_lifted(Surface& surface, int faces, int lines);
 /// The mesh as a surface with its columns.
 Surface surface_from(LiftedMesh mesh);
 
 /// Replaces `vertex` and `face` by the mesh and drops table mid_vertex. Vertex data of the input is
 /// interpolated from the reference. Requires write_reference before.
-void write_lifted(Stream& stream, const LiftedMesh& mesh);
+void write_lifted(Stream& stream, LiftedMesh mesh);
 
 /// Reads the surface that the mesh was lifted to, with face columns patch, part, origin and model, and
 /// `curved` if vertices lie on the smooth surface above it. Throws NotAdmissible if mlift has not run.

@@ -178,8 +178,9 @@ std::size_t place(const Stream& stream, const Element& e, long long row) {
 class Rows {
  public:
   /// `at` and `line`: where the rows begin.
-  Rows(Source& source, const std::string& where, Stream& stream, std::size_t at, std::size_t line)
-      : source_(source), where_(where), stream_(stream), at_(at), line_(line) {}
+  Rows(Source& source, const std::string& where, const Wanted& wanted, Stream& stream, std::size_t at,
+       std::size_t line)
+      : source_(source), where_(where), wanted_(wanted), stream_(stream), at_(at), line_(line) {}
 
   void read(std::vector<Element>& elements) {
     constexpr auto all = std::string_view::npos;
@@ -189,6 +190,7 @@ class Rows {
         read_ascii(e);
       else
         read_binary(e);
+      if (!stream_.tables.empty() && stream_.tables.back().columns.empty()) stream_.tables.pop_back();
     }
     if (stream_.ascii) source_.drop(at_);
   }
@@ -206,28 +208,32 @@ class Rows {
     fail_at(where_, stream_.ascii ? line_ : at_, what);
   }
 
-  /// Gives every property of an element its column, except those that the mesh itself holds.
+  /// Gives every wanted property of an element its column, except those that the mesh itself holds.
   void declare(const Element& e, Table& table) {
     constexpr long long most = 1 << 26;  // a damaged header does not ask for more
     const std::size_t rows = std::min(e.rows, most);
     table.name = e.name;
-    table.rows = e.rows;
-    for (const Property& p : e.properties) {
+    offsets_.clear();
+    std::size_t offset = e.has_list ? 13 : 0;
+    for (std::size_t i = 0; i < e.properties.size(); offset += type_sizes[(int)e.properties[i++].type]) {
+      const Property& p = e.properties[i];
+      if ((e.name == "vertex" && i < 3) || !(stream_.ascii || is_wanted(e, p.name))) continue;
       Column& c = table.columns.emplace_back(Column{p.name, {}});
       if (p.type == Type::uchar) c.data = std::vector<std::uint8_t>();
       if (p.type == Type::integer) c.data = std::vector<int>();
       if (p.type == Type::real) c.data = std::vector<double>();
+      std::visit([&](auto& v) { v.reserve(rows); }, c.data);
+      offsets_.push_back(offset);
     }
-    if (e.name == "vertex") {
-      table.columns.erase(table.columns.begin(), table.columns.begin() + 3);
-      stream_.surface.points.reserve(rows);
-    }
-    if (e.name == "face") stream_.surface.tris.reserve(rows);
-    for (Column& c : table.columns) std::visit([&](auto& v) { v.reserve(rows); }, c.data);
+    has_points_ = e.name == "vertex" && (stream_.ascii || is_wanted(e, "x"));
+    has_tris_ = e.has_list && (stream_.ascii || is_wanted(e, "vertex_indices"));
+    if (has_points_) stream_.surface.points.reserve(rows);
+    if (has_tris_) stream_.surface.tris.reserve(rows);
+    if (has_points_ || has_tris_ || !table.columns.empty()) table.rows = e.rows;
   }
-  void resize(const Element& e, Table& table, std::size_t rows) {
-    if (e.name == "vertex") stream_.surface.points.resize(rows);
-    if (e.name == "face") stream_.surface.tris.resize(rows);
+  void resize(Table& table, std::size_t rows) {
+    if (has_points_) stream_.surface.points.resize(rows);
+    if (has_tris_) stream_.surface.tris.resize(rows);
     for (Column& c : table.columns) std::visit([&](auto& v) { v.resize(rows); }, c.data);
   }
 
@@ -242,7 +248,8 @@ class Rows {
     e.first = at_;
     Table& table = table_for(e);
     declare(e, table);
-    for (long long first = 0, end; first < e.rows; first = end) {
+    if (table.rows == 0) source_.skip(e.rows * e.stride);
+    for (long long first = 0, end; first < (long long)table.rows; first = end) {
       const long long wanted = std::min<long long>(e.rows - first, block / e.stride + 1);
       const std::string_view bytes = source_.next(wanted * e.stride);
       end = first + std::min<long long>(e.rows - first, bytes.size() / e.stride);
@@ -251,7 +258,7 @@ class Rows {
              std::to_string(e.stride) + " bytes, but only " +
              std::to_string(first * e.stride + bytes.size()) + " bytes are left");
       end = std::min(end, first + wanted);
-      resize(e, table, end);
+      resize(table, end);
       take_rows(e, table, bytes.data(), first, end);
       source_.drop((end - first) * e.stride);
     }
@@ -260,15 +267,13 @@ class Rows {
 
   /// Takes rows of which the first is at `base`.
   void take_rows(const Element& e, Table& table, const char* base, long long first, long long end) {
-    std::size_t offset = 0;
-    if (e.name == "vertex") {
+    if (has_points_) {
       for (long long i = first; i < end; ++i) {
         Vec3& p = stream_.surface.points[i];
         std::memcpy(&p, base + (i - first) * e.stride, 24);
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) not_finite(e, i);
       }
-      offset = 24;
-    } else if (e.has_list) {
+    } else if (has_tris_) {
       for (long long i = first; i < end; ++i) {
         const char* row = base + (i - first) * e.stride;
         std::memcpy(stream_.surface.tris[i].data(), row + 1, 12);
@@ -277,19 +282,17 @@ class Rows {
                   "face " + std::to_string(i) + " has " + std::to_string((unsigned char)*row) +
                       " corners, not 3");
       }
-      offset = 13;
     }
-    for (Column& c : table.columns)
+    for (std::size_t k = 0; k < offsets_.size(); ++k)
       std::visit(
           [&]<class T>(std::vector<T>& v) {
             for (long long i = first; i < end; ++i) {
-              std::memcpy(&v[i], base + (i - first) * e.stride + offset, sizeof(T));
+              std::memcpy(&v[i], base + (i - first) * e.stride + offsets_[k], sizeof(T));
               if constexpr (std::is_same_v<T, double>)
                 if (!std::isfinite(v[i])) not_finite(e, i);
             }
-            offset += sizeof(T);
           },
-          c.data);
+          table.columns[k].data);
   }
 
   [[noreturn]] void not_finite(const Element& e, long long row) const {
@@ -333,7 +336,7 @@ class Rows {
     e.first = line_;
     Table& table = table_for(e);
     declare(e, table);
-    resize(e, table, e.rows);
+    resize(table, e.rows);
     for (long long r = 0; r < e.rows; ++r, ++line_) {
       if (e.name == "vertex") {
         Vec3& p = stream_.surface.points[r];
@@ -355,11 +358,21 @@ class Rows {
         fail("row " + std::to_string(r) + " of '" + e.name + "' has more values than its columns");
       ++at_;
     }
+    std::erase_if(table.columns, [&](const Column& c) { return !is_wanted(e, c.name); });
+    if (has_points_ && !is_wanted(e, "x")) stream_.surface.points = {};
+    if (has_tris_ && !is_wanted(e, "vertex_indices")) stream_.surface.tris = {};
+  }
+
+  bool is_wanted(const Element& e, std::string_view column) const {
+    return !wanted_ || wanted_(e.name, column);
   }
 
   Source& source_;
   const std::string& where_;
+  const Wanted& wanted_;
   Stream& stream_;
+  std::vector<std::size_t> offsets_;  // of the element's columns in a row
+  bool has_points_ = false, has_tris_ = false;
   std::string_view bytes_;  // of an ascii stream: all after the header
   std::size_t at_, line_;
 };
@@ -403,12 +416,12 @@ IndexCheck::Values IndexCheck::values(const char* table, const char* name) const
   const Element* e = find(table);
   if (!e) return {};
   const Surface& s = stream_.surface;
-  const Table& t = e->name == "vertex" ? s.vertex : e->name == "face" ? s.face : *stream_.find(table);
-  const Column* column = t.find(name);
+  const Table* t = e->name == "vertex" ? &s.vertex : e->name == "face" ? &s.face : stream_.find(table);
+  const Column* column = t ? t->find(name) : nullptr;
   if (!column) return {};
   if (!std::holds_alternative<std::vector<int>>(column->data))
     fail(*e, 0, std::string("column '") + name + "' of '" + table + "' is not of type int");
-  return {e, &t.get<int>(name)};
+  return {e, &t->get<int>(name)};
 }
 
 void IndexCheck::corners() const {
@@ -461,6 +474,8 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
   // from mlift on, lines and charts index the surface that is kept as ref_*
   const bool lifted = stream.find("ref_vertex") != nullptr;
   const char *vertex = lifted ? "ref_vertex" : "vertex", *face = lifted ? "ref_face" : "face";
+  // what was made of a shard is checked when it is joined to the surface
+  if (stream.find("shard") && stream.surface.points.empty()) vertex = face = "";
   check.corners();
   for (const char* table : {"face", "chart_vertex", "line_use", "chart_point", "chart_face", "ref_face"})
     check.column(table, "part", "part");
@@ -482,12 +497,12 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
   check.row_numbers("ref_face", "origin");
   // without parts it may be data of a foreign file
   if (stream.find("part")) check.row_numbers("face", "origin");
-  if (!lifted) check.parts_have_faces();
+  if (!lifted && !stream.surface.tris.empty()) check.parts_have_faces();
 }
 
 }  // namespace
 
-Stream read_stream(Source& source, const std::string& where, bool several) {
+Stream read_stream(Source& source, const std::string& where, bool several, const Wanted& wanted) {
   if (const std::string_view bytes = source.next(200); bytes.starts_with("mply-failed ")) {
     auto w = words(bytes.substr(0, std::min(bytes.find('\n'), bytes.size())));
     int status = 1;
@@ -500,7 +515,7 @@ Stream read_stream(Source& source, const std::string& where, bool several) {
   Header header(source, where, stream);
   header.read();
   source.drop(header.bytes());
-  Rows rows(source, where, stream, header.bytes(), header.lines());
+  Rows rows(source, where, wanted, stream, header.bytes(), header.lines());
   rows.read(header.elements);
   rows.expect_end(header.elements.back(), several);
   check_indices(stream, header.elements, where);

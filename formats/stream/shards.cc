@@ -74,10 +74,11 @@ const std::vector<int>& part_of_faces(const Stream& whole) {
 
 }  // namespace
 
-const Table& need_row(const Stream& stream, const char* name, const char* writer) {
+const Table& need_rows(const Stream& stream, const char* name, const char* writer, std::size_t rows) {
   const Table& table = stream.need(name, writer);
-  if (table.rows != 1)
-    throw BadInput(std::string("table '") + name + "' has " + std::to_string(table.rows) + " rows, not 1");
+  if (table.rows != rows)
+    throw BadInput(std::string("table '") + name + "' has " + std::to_string(table.rows) + " rows, not " +
+                   std::to_string(rows));
   return table;
 }
 

@@ -33,11 +33,21 @@ ShardNumbers number_shard(const Stream& whole, std::vector<int> parts);
 /// `kept`: kept_vertices of the whole; empty if sizes are not known yet.
 Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::vector<char>& kept);
 
+/// Drops what join_shards takes from the whole: the surface, and tables other than `shard`, `part` and these.
+void keep_made(Stream& shard, std::initializer_list<std::string_view> tables);
+
 /// Reads the file of this name, and hands the streams in it over one by one.
 using ReadShard = std::function<void(const std::string&, const std::function<void(Stream)>&)>;
 
-/// Returns a table that has one row. Throws: BadInput if it has others; as Stream::need.
-const Table& need_row(const Stream& stream, const char* table, const char* writer);
+/// Returns a table that has this number of rows. Throws: BadInput if it has others; as Stream::need.
+const Table& need_rows(const Stream& stream, const char* table, const char* writer, std::size_t rows);
+inline const Table& need_row(const Stream& stream, const char* table, const char* writer) {
+  return need_rows(stream, table, writer, 1);
+}
+
+/// Throws: BadInput if a shard with history `made` is not what `by`, in any version, has made of one of the
+/// whole.
+void expect_made_of(const Stream& whole, const std::vector<Provenance>& made, const Provenance& by);
 
 /// Calls `take`, whose errors get the name of a shard in front. Throws: BadInput.
 void of_shard(const std::string& name, const std::function<void()>& take);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles of a mesh as streams, on which mrelax works as separate jobs, and the mesh between two passes.
+// Tiles of a mesh as streams, on which mrelax works as separate jobs.
 #pragma once
 
 #include "formats/stream/shards.h"
@@ -7,13 +7,22 @@
 
 namespace meshpipe {
 
+/// What the tiles of a mesh have in common.
+struct TilesOf {
+  int count = 0;
+  int vertices = 0;            ///< of the mesh
+  std::vector<int> line_kind;  ///< of all lines
+  std::vector<int> corners;    ///< vertices of the reference, see relax
+  TilePass pass;
+  RelaxCounts before;  ///< what passes before this one have done
+};
+
 /// A tile, and what it takes to relax it.
 struct TileJob {
-  int number = 0;              ///< of the tile in the whole
-  std::vector<int> line_kind;  ///< of all lines of the whole
-  TilePass pass;
+  int number = 0;
+  TilesOf of;
   bool relaxed = false;  ///< has it been done?
-  Tile tile;             ///< without `triangles`
+  Tile tile;
 };
 
 /// Returns whether the stream is a tile: table `tile`.
@@ -24,26 +33,18 @@ Stream stream_of(TileJob job);
 /// Takes a tile out of its stream. Throws: BadInput, NotAdmissible for another one.
 TileJob take_tile(Stream stream);
 
-/// Returns the tiles from all shards in their order, relaxed.
-/// Throws: BadInput, with a shard's name, for one that is none of this mesh and pass, tiles that are missing,
-/// doubled or not relaxed, and shards that were not made by `by`.
-std::vector<Tile> join_tiles(const TiledMesh& whole, int reference_faces, int tiles, const TilePass& pass,
-                             const Provenance& by, const std::vector<std::string>& names,
-                             const ReadShard& read);
-
-/// What a stream knows of its mesh between two passes.
-struct BetweenPasses {
-  RelaxCounts counts;
-  bool second_order = false;
+/// The mesh that relaxed tiles were joined to.
+struct JoinedTiles {
+  TiledMesh mesh;
+  TilesOf of;
+  RelaxCounts counts;      ///< of the tiles, and before them
+  std::vector<int> seams;  ///< see append_tile
 };
-/// Returns whether the stream is between two passes: table `relaxing`.
-inline bool is_between_passes(const Stream& stream) { return stream.find("relaxing") != nullptr; }
-/// Requires write_reference before. `corner`: see relax.
-void write_tiled(Stream& stream, const TiledMesh& mesh, const std::vector<char>& corner,
-                 const BetweenPasses& between);
-/// Returns the mesh that has been read from the stream with what it remembers, and forgets the table.
-TiledMesh take_tiled(Stream& stream, LiftedMesh mesh, BetweenPasses& between);
-/// Returns the corners of such a stream's reference.
-std::vector<char> read_corners(const Stream& stream);
+/// Joins the tiles from all shards of a stream, of which only the history is needed, with a reference of
+/// `faces` triangles.
+/// Throws: BadInput, with a shard's name, for one that is none of this stream, tiles that are missing,
+/// doubled or not relaxed, and shards that were not made by `by`.
+JoinedTiles join_tiles(const Stream& whole, int faces, const Provenance& by,
+                       const std::vector<std::string>& names, const ReadShard& read);
 
 }  // namespace meshpipe

@@ -74,14 +74,10 @@ struct Allowed {
 /// One direction: the distances of one surface's points from the other.
 class OneSided : public OneWay {
  public:
-  OneSided(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
+  /// `order`: the triangles to measure from, neighbors close together.
+  OneSided(const Mesh& from, std::span<const int> order, const Connectivity& to, const Bvh& to_tree,
            double diagonal, const Allowed& allowed)
-      : from_(from),
-        from_tree_(from_tree),
-        to_(to),
-        to_tree_(to_tree),
-        diagonal_(diagonal),
-        allowed_(allowed) {
+      : from_(from), order_(order), to_(to), to_tree_(to_tree), diagonal_(diagonal), allowed_(allowed) {
     deviation.ratio.assign(allowed.at.size(), 0);
   }
 
@@ -126,7 +122,7 @@ class OneSided : public OneWay {
   double farthest_corner(const Piece& piece, int face) const;
 
   const Mesh& from_;
-  const Bvh& from_tree_;
+  const std::span<const int> order_;
   const Connectivity& to_;
   const Bvh& to_tree_;
   const double diagonal_;
@@ -134,7 +130,7 @@ class OneSided : public OneWay {
 };
 
 void OneSided::sample(int samples) {
-  const auto& order = from_tree_.order();
+  const auto order = order_;
   const int n = (int)order.size();
   std::vector<double> area(n);
   double total = 0;
@@ -176,7 +172,7 @@ void OneSided::sample(int samples) {
 
 /// Returns the triangles that bounding balls of groups of neighbors do not prove to be near enough.
 std::vector<int> OneSided::doubtful_triangles() {
-  const auto& order = from_tree_.order();
+  const auto order = order_;
   const int n = (int)order.size();
   const double most = std::min(limit(), allowed_.least);
   std::vector<int> groups, split;  // where in the order they start
@@ -323,10 +319,10 @@ void OneSided::bound(int budget) {
 
 }  // namespace
 
-OneWay distance_from(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
-                     const OneWayOptions& options, std::span<const double> allowed) {
+OneWay distance_from(const Mesh& from, std::span<const int> triangles, const Connectivity& to,
+                     const Bvh& to_tree, const OneWayOptions& options, std::span<const double> allowed) {
   const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
-  OneSided side(from, from_tree, to, to_tree, options.diagonal,
+  OneSided side(from, triangles, to, to_tree, options.diagonal,
                 {allowed, options.allowed_of_from, least, options.most > 0 ? options.most : infinity});
   side.sample(options.samples);
   side.bound(options.budget);
@@ -340,8 +336,9 @@ Distance distance_between(const Connectivity& reference, const Bvh& reference_tr
   const long long enough = ((long long)reference.n_tris() + mesh.n_tris()) / 4 + 500;
   const int n = (int)std::min<long long>(samples, enough);
   const double least = allowed.empty() ? infinity : *std::min_element(allowed.begin(), allowed.end());
-  OneSided there(mesh.mesh, mesh_tree, reference, reference_tree, d, {allowed, true, least, most * unit}),
-      back(reference.mesh, reference_tree, mesh, mesh_tree, d, {allowed, false, least, most * unit});
+  OneSided there(mesh.mesh, mesh_tree.order(), reference, reference_tree, d,
+                 {allowed, true, least, most * unit}),
+      back(reference.mesh, reference_tree.order(), mesh, mesh_tree, d, {allowed, false, least, most * unit});
   for (OneSided* side : {&there, &back}) side->sample(n);
   there.known = back.largest;
   const int budget = (most < infinity ? 64 : 8) * samples;
@@ -365,9 +362,9 @@ Distance distance_between(const Connectivity& reference, const Bvh& reference_tr
   return r;
 }
 
-std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Connectivity& surface,
-                                     const Bvh& tree) {
-  const std::vector<int> vertices = vertices_of(mesh, mesh_tree.order());
+std::vector<double> vertex_distances(const Mesh& mesh, std::span<const int> triangles,
+                                     const Connectivity& surface, const Bvh& tree) {
+  const std::vector<int> vertices = vertices_of(mesh, triangles);
   std::vector<double> distances(mesh.points.size(), 0);
   const int n = (int)vertices.size();
 #pragma omp parallel for schedule(dynamic) if (n > chunk)

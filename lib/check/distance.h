@@ -43,9 +43,10 @@ struct OneWayOptions {
   double most;           ///< a length: a distance below it is bounded by it; 0: none
   bool allowed_of_from;  ///< is `allowed` per triangle of the surface that is measured from?
 };
-/// Measures how far a surface is from another one. Requires: both have triangles.
-OneWay distance_from(const Mesh& from, const Bvh& from_tree, const Connectivity& to, const Bvh& to_tree,
-                     const OneWayOptions& options, std::span<const double> allowed);
+/// Measures how far some triangles of a surface are from another one. Requires: neighbors in space are close
+/// together among them; they are some, and `to` has some.
+OneWay distance_from(const Mesh& from, std::span<const int> triangles, const Connectivity& to,
+                     const Bvh& to_tree, const OneWayOptions& options, std::span<const double> allowed);
 
 /// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
 /// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
@@ -56,10 +57,10 @@ Distance distance_between(const Connectivity& reference, const Bvh& reference_tr
                           const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {},
                           double most = std::numeric_limits<double>::infinity());
 
-/// Returns the distance of each vertex of the mesh from a surface (0 for unused vertices). `mesh_tree` is the
-/// mesh's, `tree` the surface's.
-std::vector<double> vertex_distances(const Mesh& mesh, const Bvh& mesh_tree, const Connectivity& surface,
-                                     const Bvh& tree);
+/// Returns the distance of each vertex of these triangles from a surface (0 for others), of which `tree` is.
+/// Neighbors in space should be close together among them, as in Bvh::order.
+std::vector<double> vertex_distances(const Mesh& mesh, std::span<const int> triangles,
+                                     const Connectivity& surface, const Bvh& tree);
 
 /// Returns for each triangle of the mesh how far the surfaces are apart there, a length: the largest distance
 /// of its seven sample points (corners, edge midpoints, center) from the reference, and of those of the

@@ -187,9 +187,9 @@ void find_chords(Findings& f, const Connectivity& result, const Surface& given) 
 }
 
 /// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
-/// case. `mesh_tree`: null if they are `measured`.
+/// case. Trees: null if they are `measured`.
 void find_intersections(Findings& f, const Mesh& mesh, const Bvh* mesh_tree, const Mesh& given,
-                        const Bvh& reference_tree, bool sheets_meet, const Measured* measured) {
+                        const Bvh* given_tree, bool sheets_meet, const Measured* measured) {
   Mesh joined[2];
   auto find = [&](Mesh& copy, const Mesh& surface, const Bvh& tree) {
     if (!sheets_meet) return self_intersections(surface, tree);
@@ -198,7 +198,7 @@ void find_intersections(Findings& f, const Mesh& mesh, const Bvh* mesh_tree, con
   };
   f.intersections = measured ? measured->intersections : find(joined[0], mesh, *mesh_tree);
   if (f.intersections.empty() && !sheets_meet) return;
-  const auto before = find(joined[1], given, reference_tree);
+  const auto before = given_tree ? find(joined[1], given, *given_tree) : self_intersections(given);
   const Mesh& reference = sheets_meet ? joined[1] : given;
   f.reference_intersections = (int)before.size();
   f.reference_crossings = (int)std::count_if(before.begin(), before.end(), [&](const auto& pair) {
@@ -239,9 +239,9 @@ std::vector<double> sizes_or(const Surface& result, const std::vector<double>& o
   return result.vertex.has("size") ? result.vertex.get<double>("size") : otherwise;
 }
 
-/// Measures distances, of vertices over their mean edges. `mesh_tree`: null if they are `measured`.
+/// Measures distances, of vertices over their mean edges. Trees: null if they are `measured`.
 void measure_distances(Findings& f, const Surface& result, const Surface& given, const Connectivity& mesh,
-                       const Bvh* mesh_tree, const Connectivity& before, const Bvh& reference_tree,
+                       const Bvh* mesh_tree, const Connectivity& before, const Bvh* reference_tree,
                        int samples, double most, double least_size, std::optional<Measured>& measured) {
   const std::vector<double> edges = mean_edges(result);
   f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
@@ -250,12 +250,12 @@ void measure_distances(Findings& f, const Surface& result, const Surface& given,
     f.off = std::move(measured->off);
     f.distance = std::move(measured->distance);
   } else {
-    f.off = vertex_distances(result, *mesh_tree, before, reference_tree);
+    f.off = vertex_distances(result, mesh_tree->order(), before, *reference_tree);
     std::vector<double> smooth_off = f.off;
     if (given.face.has("curved") && result.vertex.has("ref_face")) lower_to_curved(result, given, f.off);
     for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
     f.distance = distance_between(
-        before, reference_tree, mesh, *mesh_tree, samples,
+        before, *reference_tree, mesh, *mesh_tree, samples,
         allowed_distances(result, size, smooth_off, std::max(least_size, f.mean_size)), most);
   }
   for (std::size_t v = 0; v < f.off.size(); ++v)
@@ -304,17 +304,18 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.reference_quality = quality_of(before, {});
 
   add_progress(0.2);
-  const Bvh reference_tree(reference);
-  const std::unique_ptr<const Bvh> mesh_tree(shares ? nullptr : new Bvh(result));
+  std::optional<Bvh> reference_tree, mesh_tree;
+  if (!shares) reference_tree.emplace(reference), mesh_tree.emplace(result);
+  auto tree = [](const std::optional<Bvh>& built) { return built ? &*built : nullptr; };
   std::optional<Measured> measured;
   if (shares)
     measured = join_findings(*shares, result, diagonal(reference), allowed_on_triangles(result, least_size));
-  find_intersections(f, result, mesh_tree.get(), reference, reference_tree, sheets_meet,
+  find_intersections(f, result, tree(mesh_tree), reference, tree(reference_tree), sheets_meet,
                      measured ? &*measured : nullptr);
   find_chords(f, mesh, given);
   add_progress(0.3);
-  f.folds = measured ? measured->folds : find_folds(mesh, reference, reference_tree);
-  measure_distances(f, result, given, mesh, mesh_tree.get(), before, reference_tree, samples, most,
+  f.folds = measured ? measured->folds : find_folds(mesh, reference, *reference_tree);
+  measure_distances(f, result, given, mesh, tree(mesh_tree), before, tree(reference_tree), samples, most,
                     least_size, measured);
   add_progress(0.4);
   measure_curves(f, mesh, reference, given);
@@ -322,7 +323,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   f.kappa_off_corners = f.quality.kappa_min;
   f.worst_off_corners = f.quality.worst;
   if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);
-  if (f.mesh.sound()) f.reversed = reversed_components(mesh, reference, reference_tree);
+  if (f.mesh.sound()) f.reversed = reversed_components(mesh, reference, tree(reference_tree));
   if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
     f.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));
     if (!f.unmarked_borders.empty()) {

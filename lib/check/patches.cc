@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 
+#include "lib/core/boxes.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 
@@ -110,19 +112,26 @@ double towards_nearest(const Mesh& mesh, int t, const Mesh& reference, const Bvh
 
 }  // namespace
 
-std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh& tree) {
-  std::vector<int> component, reversed;
+std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree) {
+  std::vector<int> component, reversed, voters;
   constexpr double majority = 0.5;  // less is undecided: between sheets closer than the result is rough
+  constexpr double around = 2;      // edges: a voter farther from the reference is far off anyway
   const int n = components(result.opposite, component), faces = (int)component.size();
   std::vector<int> count(n, 0), first(n, -1), seen(n, 0);
   for (int t = faces; t-- > 0;) ++count[component[t]], first[component[t]] = t;
-  const int voters = std::max(9, 2000 / std::max(1, n));  // of a component
+  const int most = std::max(9, (tree ? 2000 : 200) / std::max(1, n));  // voters of a component
+  for (int t = 0; t < faces; ++t)
+    if (seen[component[t]]++ % (1 + count[component[t]] / most) == 0) voters.push_back(t);
+  Mesh near;
+  if (!tree) near = part_of(reference, around_tiles(result.mesh, {voters}, around, &reference).row);
+  const Mesh& surface = tree ? reference : near;
+  std::optional<Bvh> own;
+  if (surface.tris.empty()) return {};
+  if (!tree) tree = &own.emplace(surface);
   std::vector<double> vote(n, 0), all(n, 0);
-  for (int t = 0; t < faces; ++t) {
-    const int c = component[t];
-    if (seen[c]++ % (1 + count[c] / voters)) continue;
-    vote[c] += towards_nearest(result.mesh, t, reference, tree);
-    all[c] += norm(result.area_vector(t));
+  for (int t : voters) {
+    vote[component[t]] += towards_nearest(result.mesh, t, surface, *tree);
+    all[component[t]] += norm(result.area_vector(t));
   }
   for (int c = 0; c < n; ++c)
     if (vote[c] < -majority * all[c]) reversed.push_back(first[c]);

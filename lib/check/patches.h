@@ -35,7 +35,8 @@ std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
 std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector<int>& patch);
 
 /// Returns a triangle of each component that is inconsistently oriented with the nearest part of the
-/// reference, by the vote of evenly spread triangles and their areas.
-std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh& tree);
+/// reference, by the vote of evenly spread triangles and their areas. `tree`: of the reference; null: one of
+/// what is around these triangles is enough.
+std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree);
 
 }  // namespace meshpipe

@@ -2,6 +2,10 @@
 #include "lib/check/shares.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "lib/check/check.h"
 #include "lib/core/boxes.h"
@@ -12,39 +16,18 @@
 namespace meshpipe {
 namespace {
 
-constexpr double reach = 2;                     // edges: farther away, a distance is more than is allowed
-constexpr double longest = 4;                   // edges: longer triangles of the reference are halved
-constexpr double small_ratio = 0.5;             // of the allowed distance: sizes stay where it is no more
-constexpr int bounded_effort = 64, effort = 8;  // points per sample, as in distance_between
+constexpr double reach = 2;          // edges: farther away, a distance is more than is allowed
+constexpr double longest = 4;        // edges: longer triangles of the reference are halved
+constexpr double small_ratio = 0.5;  // of the allowed distance: sizes stay where it is no more
+constexpr int bounded_effort = 64, free_effort = 8;  // points per sample, as in distance_between
 
-/// Appends triangles of a mesh to a part, whose vertices have these rows in the mesh.
-void append_part(const Mesh& mesh, const int* first, const int* last, std::vector<int>& number, Mesh& part,
-                 std::vector<int>& rows) {
-  part.tris.reserve(part.tris.size() + (last - first));
-  for (; first != last; ++first) {
-    Tri& t = part.tris.emplace_back(mesh.tris[*first]);
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = (int)rows.size();
-        rows.push_back(v);
-        part.points.push_back(mesh.points[v]);
-      }
-      v = number[v];
-    }
-  }
-}
-
-/// Forgets the numbers of these rows.
-void forget(const std::vector<int>& rows, std::vector<int>& number) {
-  for (int row : rows) number[row] = -1;
-}
-
-/// Returns the mesh with triangles halved until no edge is longer than `most`; halves have new vertices.
-Mesh halved(const Mesh& mesh, double most) {
-  Mesh out{mesh.points, {}};
+/// Appends a mesh with triangles halved until no edge is longer than `most`; halves have new vertices.
+void append_halved(const Mesh& mesh, double most, Mesh& out) {
+  const int first = (int)out.points.size();
+  out.points.insert(out.points.end(), mesh.points.begin(), mesh.points.end());
   std::vector<Tri> left;
-  for (const Tri& tri : mesh.tris) {
-    left.push_back(tri);
+  for (const auto& [x, y, z] : mesh.tris) {
+    left.push_back({x + first, y + first, z + first});
     while (!left.empty()) {
       const Tri t = left.back();
       left.pop_back();
@@ -63,127 +46,114 @@ Mesh halved(const Mesh& mesh, double most) {
       left.push_back({a, m, c});
     }
   }
-  return out;
-}
-
-std::vector<int> all_rows(const Mesh& mesh) {
-  std::vector<int> all(mesh.tris.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
-/// Whose triangles the shares have, and the other surface.
-struct Side {
-  const Mesh &mesh, &other;
-  bool of_result;
-};
-
-/// Cuts the shares of one side; `common`: what all have.
-void cut_side(const Side& side, const std::vector<double>& allowed, int triangles, double edge,
-              const CheckShare& common, const std::function<void(CheckShare)>& take) {
-  const auto boxes = split_into_boxes(side.mesh, all_rows(side.mesh), triangles);
-  const double area = total_area(side.mesh);
-  const double own_edge = size_for_count(area, (double)side.mesh.tris.size());
-  const double edges = reach * std::max(1.0, edge / own_edge);
-  const Lists others = around_tiles(side.mesh, boxes, edges, &side.other);
-  const Lists next = side.of_result ? around_tiles(side.mesh, boxes, 1, nullptr) : Lists();
-  std::vector<int> number(side.mesh.points.size(), -1), other_number(side.other.points.size(), -1);
-  for (int i = 0; i < (int)boxes.size(); ++i) {
-    CheckShare share = common;
-    share.of_result = side.of_result;
-    share.own = (int)boxes[i].size();
-    std::vector<int> rows, other_rows;
-    append_part(side.mesh, boxes[i].data(), boxes[i].data() + boxes[i].size(), number, share.mesh, rows);
-    const double part = area > 0 ? total_area(share.mesh) / area : 1;
-    share.samples = std::max(1, (int)(common.samples * part));
-    share.budget = std::max(1000, (int)(common.budget * part));
-    const int *first = others.row.data() + others.start[i], *last = others.row.data() + others.start[i + 1];
-    append_part(side.other, first, last, other_number, share.other, other_rows);
-    share.triangles = side.of_result ? boxes[i] : std::vector<int>(first, last);
-    for (int t : share.triangles) share.allowed.push_back(allowed[t]);
-    if (side.of_result) {
-      const int *from = next.row.data() + next.start[i], *to = next.row.data() + next.start[i + 1];
-      append_part(side.mesh, from, to, number, share.mesh, rows);
-      share.triangles.insert(share.triangles.end(), from, to);
-      share.vertices = rows;
-    }
-    forget(rows, number), forget(other_rows, other_number);
-    take(std::move(share));
-  }
 }
 
 }  // namespace
 
 void cut_check(const Mesh& result, const Mesh& reference, const std::vector<double>& allowed, int triangles,
                int samples, double most, const TakeShare& take) {
-  CheckShare common;
-  const double d = diagonal(reference);
-  common.diagonal = d > 0 ? d : 1;
-  common.most = most;
-  const long long enough = ((long long)reference.tris.size() + (long long)result.tris.size()) / 4 + 500;
-  common.samples = (int)std::min<long long>(samples, enough);
-  common.budget = (most > 0 ? bounded_effort : effort) * samples;
-  const double edge = size_for_count(total_area(result), (double)result.tris.size());
-  const Mesh pieces = halved(reference, longest * edge);
-  auto shares_of = [&](const Mesh& mesh) { return ((int)mesh.tris.size() + triangles - 1) / triangles; };
-  const int all = shares_of(result) + shares_of(pieces);
-  int number = 0;
-  const auto number_it = [&](CheckShare share) { take(std::move(share), number++, all); };
-  cut_side({result, reference, true}, allowed, triangles, edge, common, number_it);
-  cut_side({pieces, result, false}, allowed, triangles, edge, common, number_it);
+  const double d = diagonal(reference), area[2] = {total_area(reference), total_area(result)};
+  const int n = (int)result.tris.size();
+  const double edge = size_for_count(area[1], n);
+  Mesh both = result;
+  append_halved(reference, longest * edge, both);
+  std::vector<int> all(both.tris.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto boxes = split_into_boxes(both, all, 2 * triangles);
+  const Lists around = around_tiles(both, boxes, reach, nullptr, reach * edge);
+  const long long enough = ((long long)reference.tris.size() + n) / 4 + 500;
+  const int effort = (most > 0 ? bounded_effort : free_effort) * samples;
+  samples = (int)std::min<long long>(samples, enough);
+  for (int i = 0; i < (int)boxes.size(); ++i) {
+    CheckShare share;
+    share.diagonal = d > 0 ? d : 1, share.most = most;
+    std::vector<int> others;
+    std::array<double, 2> part{0, 0};
+    for (int t : boxes[i]) part[t < n] += triangle_area(both, t);
+    for (const std::span<const int> rows : {std::span<const int>(boxes[i]), around[i]}) {
+      const auto middle = std::lower_bound(rows.begin(), rows.end(), n);
+      share.triangles.insert(share.triangles.end(), rows.begin(), middle);
+      others.insert(others.end(), middle, rows.end());
+      if (rows.data() == boxes[i].data())
+        share.own = (int)share.triangles.size(), share.other_own = (int)others.size();
+    }
+    share.mesh = part_of(both, share.triangles, &share.vertices), share.other = part_of(both, others);
+    for (int t : share.triangles) share.allowed.push_back(allowed[t]);
+    for (int side : {0, 1}) {
+      const double of = area[side] > 0 ? part[side] / area[side] : 1;
+      share.samples[side] = std::max(1, (int)(samples * of));
+      share.budget[side] = std::max(1000, (int)(effort * of));
+    }
+    take(std::move(share), i, (int)boxes.size());
+  }
 }
 
 namespace {
 
-/// Measures distances where there is nothing within reach: as far as can be.
-void measure_far(const CheckShare& share, const Mesh& own, OneWay& d, std::vector<double>& off) {
+/// A surface with what searches need, which there is only if it has triangles.
+struct Side {
+  Side(const Mesh& mesh, int first) : surface{mesh, opposite} {
+    if (mesh.tris.empty()) return;
+    opposite = opposite_halfedges(mesh), tree.emplace(mesh);
+    std::copy_if(tree->order().begin(), tree->order().end(), std::back_inserter(own),
+                 [&](int t) { return t < first; });
+  }
+  std::vector<int> opposite, own;  ///< own: the first triangles, neighbors close together
+  Connectivity surface;
+  std::optional<Bvh> tree;
+};
+
+/// What is measured where there is nothing within reach: as far as can be.
+OneWay far_away(const CheckShare& share, Vec3 place) {
+  OneWay d;
   d.largest = d.upper = d.mean = d.rms = share.diagonal;
-  d.place = d.deviation.place = own.points[own.tris[0][0]];
+  d.place = d.deviation.place = place;
   d.deviation.worst = reach / most_deviation;  // at least
-  off.assign(own.points.size(), share.diagonal);
+  return d;
 }
 
-/// Measures distances and folds where there is.
-void measure_near(const CheckShare& share, const Mesh& own, const Bvh& own_tree, ShareFindings& f,
-                  std::vector<double>& off) {
-  const Bvh other_tree(share.other);
-  const std::vector<int> opposite = opposite_halfedges(share.other);
-  const Connectivity other{share.other, opposite};
-  OneWay& d = f.distance;
-  d = distance_from(own, own_tree, other, other_tree,
-                    {share.samples, share.budget, share.diagonal, share.most, share.of_result},
+/// Measures from one side, 0: the reference, to the other.
+void measure_from(const CheckShare& share, int side, const Side& from, const Side& to, ShareFindings& f) {
+  const Mesh& mesh = from.surface.mesh;
+  for (int t : from.own) f.area[side] += triangle_area(mesh, t);
+  if (from.own.empty()) return;
+  OneWay& d = f.distance[side];
+  if (!to.tree) return void(d = far_away(share, mesh.points[mesh.tris[from.own[0]][0]]));
+  d = distance_from(mesh, from.own, to.surface, *to.tree,
+                    {share.samples[side], share.budget[side], share.diagonal, share.most, side == 1},
                     share.allowed);
   for (std::size_t t = 0; t < d.deviation.ratio.size(); ++t)
     if (d.deviation.ratio[t] > small_ratio) f.ratios.push_back({share.triangles[t], d.deviation.ratio[t]});
   d.deviation.ratio = {};
   if (d.deviation.triangle >= 0) d.deviation.triangle = share.triangles[d.deviation.triangle];
-  if (!share.of_result) return;
-  off = vertex_distances(own, own_tree, other, other_tree);
-  const std::vector<int> next = opposite_halfedges(share.mesh);
-  auto whole = [&](int h) { return 3 * share.triangles[h / 3] + h % 3; };
-  for (int h : find_folds({share.mesh, next}, share.other, other_tree))
-    if (h / 3 < share.own) f.folds.push_back(std::min(whole(h), whole(next[h])));
+}
+
+/// Finds folds between own triangles and others, and the distances of vertices of own ones.
+void measure_result(const CheckShare& share, const Side& result, const Side& reference, ShareFindings& f) {
+  std::vector<double> off(share.mesh.points.size(), share.diagonal);
+  if (reference.tree) {
+    off = vertex_distances(share.mesh, result.own, reference.surface, *reference.tree);
+    auto whole = [&](int h) { return 3 * share.triangles[h / 3] + h % 3; };
+    for (int h : find_folds(result.surface, share.other, *reference.tree))
+      if (const int g = result.surface.opposite[h]; std::min(h, g) / 3 < share.own)
+        f.folds.push_back(std::min(whole(h), whole(g)));
+  }
+  std::vector<char> used(off.size());
+  for (int t : result.own)
+    for (int v : share.mesh.tris[t])
+      if (!std::exchange(used[v], 1)) f.off.push_back({share.vertices[v], off[v]});
+  for (const auto& [s, t] : self_intersections(share.mesh, *result.tree, share.own))
+    f.crossings.push_back(std::minmax(share.triangles[s], share.triangles[t]));
 }
 
 }  // namespace
 
 ShareFindings measure(const CheckShare& share) {
+  const Side reference(share.other, share.other_own), result(share.mesh, share.own);
   ShareFindings f;
-  f.of_result = share.of_result;
-  const Mesh own{share.mesh.points, {share.mesh.tris.begin(), share.mesh.tris.begin() + share.own}};
-  f.area = total_area(own);
-  const Bvh own_tree(own);
-  std::vector<double> off;
-  if (share.other.tris.empty())
-    measure_far(share, own, f.distance, off);
-  else
-    measure_near(share, own, own_tree, f, off);
-  if (!share.of_result) return f;
-  const std::vector<char> used = used_points(own);
-  for (std::size_t v = 0; v < off.size(); ++v)
-    if (used[v]) f.off.push_back({share.vertices[v], off[v]});
-  for (const auto& [s, t] : self_intersections(share.mesh, own_tree))
-    f.crossings.push_back(std::minmax(share.triangles[s], share.triangles[t]));
+  measure_from(share, 0, reference, result, f);
+  measure_from(share, 1, result, reference, f);
+  if (share.own > 0) measure_result(share, result, reference, f);
   return f;
 }
 
@@ -196,16 +166,18 @@ Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& res
   deviation.ratio.assign(result.tris.size(), 0);
   double largest[2] = {0, 0}, upper = 0, area[2] = {0, 0}, mean[2] = {0, 0}, squares[2] = {0, 0};
   for (const ShareFindings& f : shares) {
-    const OneWay& d = f.distance;
-    const int side = f.of_result;
-    if (d.largest >= std::max(largest[0], largest[1])) m.distance.place = d.place;
-    largest[side] = std::max(largest[side], d.largest);
-    upper = std::max(upper, d.upper);
-    area[side] += f.area, mean[side] += f.area * d.mean, squares[side] += f.area * d.rms * d.rms;
+    for (int side : {1, 0}) {
+      const OneWay& d = f.distance[side];
+      if (d.largest >= std::max(largest[0], largest[1])) m.distance.place = d.place;
+      largest[side] = std::max(largest[side], d.largest);
+      upper = std::max(upper, d.upper);
+      area[side] += f.area[side], mean[side] += f.area[side] * d.mean;
+      squares[side] += f.area[side] * d.rms * d.rms;
+      if (d.deviation.worst > deviation.worst)
+        deviation.worst = d.deviation.worst, deviation.triangle = d.deviation.triangle,
+        deviation.place = d.deviation.place;
+    }
     for (const auto& [t, ratio] : f.ratios) deviation.ratio[t] = std::max(deviation.ratio[t], ratio);
-    if (d.deviation.worst > deviation.worst)
-      deviation.worst = d.deviation.worst, deviation.triangle = d.deviation.triangle,
-      deviation.place = d.deviation.place;
     for (const auto& [v, off] : f.off) m.off[v] = std::min(m.off[v], off);
     m.intersections.insert(m.intersections.end(), f.crossings.begin(), f.crossings.end());
     m.folds.insert(m.folds.end(), f.folds.begin(), f.folds.end());

@@ -2,16 +2,20 @@
 #include "lib/core/boxes.h"
 
 #include <algorithm>
+#include <array>
 
 #include "lib/core/bvh.h"
+#include "lib/core/connectivity.h"
 #include "lib/core/parallel.h"
+#include "lib/core/spatial_order.h"
 #include "lib/core/triangle_count.h"
 
 namespace meshpipe {
 namespace {
 
+/// In half the memory that doubles take.
 struct Item {
-  Vec3 middle;  ///< three times
+  std::array<float, 3> middle;
   int triangle;
 };
 
@@ -24,13 +28,15 @@ void split(std::vector<Item>::iterator first, std::vector<Item>::iterator last, 
     std::sort(box.begin(), box.end());
     return;
   }
-  Box extent{first->middle, first->middle};
-  for (auto i = first; i != last; ++i) extent = join(extent, {i->middle, i->middle});
-  const Vec3 d = extent.hi - extent.lo;
-  double Vec3::*axis = d.x >= d.y && d.x >= d.z ? &Vec3::x : d.y >= d.z ? &Vec3::y : &Vec3::z;
+  std::array<float, 3> lo = first->middle, hi = lo;
+  for (auto i = first; i != last; ++i)
+    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], i->middle[k]), hi[k] = std::max(hi[k], i->middle[k]);
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (hi[k] - lo[k] > hi[axis] - lo[axis]) axis = k;
   const auto middle = first + n * (count / 2) / count;
-  std::nth_element(first, middle, last, [&](const Item& a, const Item& b) {
-    return std::pair(a.middle.*axis, a.triangle) < std::pair(b.middle.*axis, b.triangle);
+  std::nth_element(first, middle, last, [axis](const Item& a, const Item& b) {
+    return std::pair(a.middle[axis], a.triangle) < std::pair(b.middle[axis], b.triangle);
   });
   split(first, middle, most, boxes);
   split(middle, last, most, boxes);
@@ -113,8 +119,8 @@ std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vect
   std::vector<Item> items;
   items.reserve(triangles.size());
   for (int t : triangles) {
-    const auto [a, b, c] = mesh.tris[t];
-    items.push_back({mesh.points[a] + mesh.points[b] + mesh.points[c], t});
+    const Vec3 m = centroid(mesh, t) - centroid(mesh, triangles[0]);  // floats have seven digits
+    items.push_back({{(float)m.x, (float)m.y, (float)m.z}, t});
   }
   std::vector<std::vector<int>> boxes;
   if (!items.empty()) split(items.begin(), items.end(), most, boxes);
@@ -122,7 +128,7 @@ std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vect
 }
 
 Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
-                   const Mesh* reference) {
+                   const Mesh* reference, double least) {
   constexpr double edges_per_cube = 4;
   const int tiles = (int)boxes.size(), n = (int)mesh.tris.size();
   const Grid grid(mesh, edges_per_cube * size_for_count(total_area(mesh), n), std::max(1000.0, 0.5 * n));
@@ -133,7 +139,8 @@ Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
     for (int t : boxes[i]) {
       own[t] = i;
       Box box = box_of(mesh, t);
-      const double r = reach * std::max({box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z});
+      const Vec3 d = box.hi - box.lo;
+      const double r = std::max(least, reach * std::max({d.x, d.y, d.z}));
       box.lo = box.lo - Vec3{r, r, r}, box.hi = box.hi + Vec3{r, r, r};
       grid.for_cubes(box, [&](int cube) {
         if (!seen[cube]) seen[cube] = 1, cubes[i].push_back(cube);
@@ -146,6 +153,16 @@ Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
   });
   return reference ? triangles_in_cubes(*reference, grid, tiles_at, tiles, {})
                    : triangles_in_cubes(mesh, grid, tiles_at, tiles, own);
+}
+
+Mesh part_of(const Mesh& mesh, std::span<const int> triangles, std::vector<int>* vertices) {
+  Mesh part;
+  part.tris.reserve(triangles.size());
+  for (int t : triangles) part.tris.push_back(mesh.tris[t]);
+  std::vector<int> rows = number_by_first_use(part.tris, mesh.points.size());
+  part.points = rearranged(mesh.points, rows);
+  if (vertices) *vertices = std::move(rows);
+  return part;
 }
 
 }  // namespace meshpipe

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boxes of triangles of a large surface, and what is around each of them.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "lib/core/lists.h"
@@ -13,8 +14,12 @@ namespace meshpipe {
 std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vector<int>& triangles, int most);
 
 /// Returns for each of several tiles the triangles of the reference that are no farther from it than `reach`
-/// of its edges, and some others; where `reference` is null, triangles of the mesh that are not in the tile.
+/// of its edges, or the length `least`, and some others; where `reference` is null, triangles of the mesh
+/// that are not in the tile.
 Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
-                   const Mesh* reference);
+                   const Mesh* reference, double least = 0);
+
+/// Returns these triangles as a mesh of their own. `vertices`, if given, receives the rows of its vertices.
+Mesh part_of(const Mesh& mesh, std::span<const int> triangles, std::vector<int>* vertices = nullptr);
 
 }  // namespace meshpipe

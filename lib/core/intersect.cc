@@ -193,8 +193,8 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {
   return self_intersections(mesh, Bvh(mesh));
 }
 
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh) {
-  const int n = (int)mesh.tris.size(), own = (int)bvh.order().size();
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh, int own) {
+  const int n = (int)mesh.tris.size();
   // a few triangles that are neighbors in the tree look for partners together
   constexpr int group = 4, chunk = 2048;
   const int chunks = (n + chunk - 1) / chunk;
@@ -202,14 +202,15 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (int c = 0; c < chunks; ++c)
     for (int first = c * chunk, size; first < std::min(n, (c + 1) * chunk); first += size) {
-      size = first < own ? std::min({group, own - first, (c + 1) * chunk - first}) : 1;
-      const int* members = first < own ? &bvh.order()[first] : &first;
+      size = std::min({group, n - first, (c + 1) * chunk - first});
+      const int* members = &bvh.order()[first];
+      if (std::all_of(members, members + size, [&](int t) { return t >= own; })) continue;
       Box boxes[group], all = box_of(mesh, members[0]);
       for (int i = 0; i < size; ++i) all = join(all, boxes[i] = box_of(mesh, members[i]));
       bvh.overlapping(all, [&](int t) {
         const Box box = box_of(mesh, t);
         for (int i = 0; i < size; ++i)
-          if ((members[i] < t || first >= own) && overlap(boxes[i], box) &&
+          if (members[i] < std::min(t, own) && overlap(boxes[i], box) &&
               triangles_intersect(mesh, members[i], t))
             found[c].push_back(std::minmax(members[i], t));
       });

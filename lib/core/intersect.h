@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Self-intersections of a mesh, exactly.
 #pragma once
+#include <limits>
 #include <utility>
 
 #include "lib/core/bvh.h"
@@ -19,8 +20,9 @@ bool has_area(const Mesh& mesh, int t);
 /// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
 /// plane.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
-/// The same with a tree at hand, of the mesh or of its first triangles: then one of each pair is of these.
-std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh);
+/// The same with a tree at hand; one of each pair is among the first `own` triangles.
+std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh,
+                                                    int own = std::numeric_limits<int>::max());
 
 /// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
 /// plane, the polygon that they share.

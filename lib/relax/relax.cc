@@ -252,25 +252,21 @@ void keep_own(const State& s, const Mesh& others, double size, Samples& samples)
 
 /// Moves what has become of a tile back to it.
 void finish_tile(State& s, const Ordered& ordered, Tile& tile) {
-  std::vector<int> vertices;
+  std::vector<int> number(ordered.mesh.vertices.size());  // of what is frozen, by that in the tile as it was
   tile.hold.clear(), tile.refinement.clear();
   for (int v = 0; v < (int)s.mesh.out.size(); ++v) {
     if (s.mesh.out[v] < 0) continue;
-    vertices.push_back(s.hold[v] == frozen ? tile.vertices[ordered.mesh.vertices[v]] : -1);
+    if (s.hold[v] == frozen) number[ordered.mesh.vertices[v]] = (int)tile.hold.size();
     tile.hold.push_back(s.hold[v] == slides ? loose : s.hold[v]);
     tile.refinement.push_back(s.refinement[v]);
   }
-  tile.vertices = std::move(vertices);
+  for (int& v : tile.rim.vertex) v = number[v];
   finish(s, tile.mesh);
-  for (Place& p : tile.mesh.place) p.face = tile.faces[ordered.reference.tris[p.face]];
+  // the first weight as a stream has it, which holds two: so shards are the same to the bit
+  for (Place& p : tile.mesh.place)
+    p = {tile.faces[ordered.reference.tris[p.face]], 1 - p.b1 - p.b2, p.b1, p.b2};
   tile.others = {};  // frees memory now: other tiles are still at work
-  tile.faces = {}, tile.excess = {}, tile.corner = {};
-}
-
-void add(RelaxCounts& sum, const RelaxCounts& r) {
-  sum.splits += r.splits, sum.collapses += r.collapses, sum.flips += r.flips, sum.moves += r.moves;
-  sum.corners_merged += r.corners_merged;
-  sum.tries = std::max(sum.tries, r.tries);
+  tile.faces = {}, tile.rim.excess = {}, tile.corner = {};
 }
 
 std::vector<int> all_triangles(const Mesh& mesh) {
@@ -316,8 +312,15 @@ void relax_region(const TiledRelax& by, TiledMesh& whole, std::vector<int> regio
         relax_tile(relaxed[i], by.line_kind, pass);
       });
     }
-    for (const Tile& tile : relaxed) add(counts, tile.counts);
-    const std::vector<int> seams = replace_tiles(whole, std::move(relaxed));
+    std::vector<int> number = remove_region(whole, region), seams;
+    std::size_t points = whole.hold.size(), triangles = whole.mesh.tris.size();
+    for (const Tile& tile : relaxed) points += tile.hold.size(), triangles += tile.mesh.tris.size();
+    reserve(whole, points, triangles);
+    for (Tile& tile : relaxed) {
+      add(counts, tile.counts);
+      append_tile(whole, tile, number, seams);
+      tile = {};  // frees its memory now
+    }
     region = triangles_near(whole.mesh, seams, rules::seam_rings);
   }
 }
@@ -346,6 +349,12 @@ Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& co
 
 }  // namespace
 
+void add(RelaxCounts& sum, const RelaxCounts& r) {
+  sum.splits += r.splits, sum.collapses += r.collapses, sum.flips += r.flips, sum.moves += r.moves;
+  sum.corners_merged += r.corners_merged;
+  sum.tries = std::max(sum.tries, r.tries);
+}
+
 void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& pass) {
   const double goal = pass.goal * (double)tile.mesh.tris.size();
   const Ordered ordered(tile.mesh, tile.slice);
@@ -355,9 +364,11 @@ void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& p
   s.whole.mean_size = pass.mean_size;
   s.whole.share = pass.share;
   s.whole.rim_excess.resize(s.points.size());
+  std::vector<int> excess(s.points.size());
+  for (std::size_t i = 0; i < tile.rim.vertex.size(); ++i) excess[tile.rim.vertex[i]] = tile.rim.excess[i];
   for (int v = 0; v < (int)s.points.size(); ++v) {
     const int row = ordered.mesh.vertices[v];
-    s.whole.rim_excess[v] = tile.excess[row] - s.mesh.valence(v);
+    s.whole.rim_excess[v] = excess[row] - s.mesh.valence(v);
     if (tile.hold[row] != loose) s.hold[v] = tile.hold[row];
     if (tile.hold[row] == frozen && s.labels.line[v] >= 0) s.normal[v] = {};  // perhaps a model edge
     s.refinement[v] = tile.refinement[row];
@@ -389,6 +400,7 @@ bool uses_tiles(const LiftedMesh& mesh, const RelaxOptions& options) {
 TiledMesh as_tiled(LiftedMesh mesh) {
   const std::size_t n = mesh.points.size();
   TiledMesh whole{std::move(mesh), std::vector<Hold>(n), std::vector<double>(n, 1)};
+  for (Place& p : whole.mesh.place) p.b0 = 1 - p.b1 - p.b2;  // as in finish_tile
   const std::vector<int> opposite = opposite_halfedges(whole.mesh.tris, (int)n);
   std::vector<char> on_border(n);
   for (int h = 0; h < (int)opposite.size(); ++h)
@@ -418,10 +430,8 @@ void TiledRelax::cut(const TiledMesh& whole, const TilePass& pass,
   for (int i = 0; i < tiles.size(); ++i) take(tiles.cut(i));
 }
 
-void TiledRelax::join(TiledMesh& whole, std::vector<Tile> tiles, TilePass pass, RelaxCounts& counts) const {
-  for (const Tile& tile : tiles) add(counts, tile.counts);
-  tiles.at(0).triangles = all_triangles(whole.mesh);  // which they replace together
-  const std::vector<int> seams = replace_tiles(whole, std::move(tiles));
+void TiledRelax::relax_seams(TiledMesh& whole, const std::vector<int>& seams, const TilePass& pass,
+                             RelaxCounts& counts) const {
   relax_region(*this, whole, triangles_near(whole.mesh, seams, rules::seam_rings), pass, 1, counts);
 }
 

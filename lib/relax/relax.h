@@ -66,11 +66,16 @@ struct TiledMesh {
   std::vector<double> refinement;  ///< factor on the size, below 1 where triangles intersected
 };
 
-/// Triangles of a mesh as a mesh of its own. Vertices that other triangles have, too, are frozen.
+/// The vertices of a tile that other triangles of the whole have, too, as they are there; no triangles.
+struct Rim : TiledMesh {
+  std::vector<int> vertex, row;  ///< their rows in the tile and in the whole
+  std::vector<int> excess;       ///< in the whole: see excess
+};
+
+/// Triangles of a mesh as a mesh of its own, whose rim is frozen.
 struct Tile : TiledMesh {
-  std::vector<int> triangles, vertices;        ///< their rows in the whole; -1: a new vertex
-  std::vector<int> excess;                     ///< of each frozen vertex, in the whole: see excess
-  std::vector<std::pair<int, int>> model_rim;  ///< model edges between frozen vertices, rows of the whole
+  Rim rim;
+  std::vector<std::pair<int, int>> model_rim;  ///< model edges between vertices of the rim, rows of the whole
   Mesh others;                                 ///< triangles of the whole around it
   Surface slice;                               ///< of the reference
   std::vector<int> faces;                      ///< its rows in the reference
@@ -101,8 +106,9 @@ struct TiledRelax {
   TilePass pass(const TiledMesh& whole, bool repair) const;
   /// Calls `take` for each tile of the mesh, in their order.
   void cut(const TiledMesh& whole, const TilePass& pass, const std::function<void(Tile)>& take) const;
-  /// Replaces the mesh by its tiles, relaxed and in their order, and makes the same pass over their seams.
-  void join(TiledMesh& whole, std::vector<Tile> tiles, TilePass pass, RelaxCounts& counts) const;
+  /// Makes a pass over the seams of the tiles that a mesh was joined of: vertices on their rims.
+  void relax_seams(TiledMesh& whole, const std::vector<int>& seams, const TilePass& pass,
+                   RelaxCounts& counts) const;
   /// Makes the passes that are left of two, after so far `passes`, and repairs where tiles intersect.
   RelaxReport finish(TiledMesh& whole, int passes, const RelaxCounts& counts) const;
 };
@@ -111,5 +117,16 @@ TiledMesh as_tiled(LiftedMesh mesh);
 /// Optimizes or repairs a tile. Afterwards its places are rows of the whole reference, and its slice is
 /// empty.
 void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& pass);
+void add(RelaxCounts& sum, const RelaxCounts& counts);
+
+/// Removes triangles from a mesh, and the vertices that no others have. Returns the new row of each vertex,
+/// or -1.
+std::vector<int> remove_region(TiledMesh& whole, const std::vector<int>& region);
+/// Makes room for that many rows in all.
+void reserve(TiledMesh& whole, std::size_t points, std::size_t triangles);
+/// Appends a tile, relaxed. `number`: the row of each vertex of the mesh that it was cut from, -1: none yet.
+/// `seams` gets the vertices that are added for its rim: they were frozen only since other tiles have them.
+/// Throws: BadInput if its rim is not that of other tiles.
+void append_tile(TiledMesh& whole, const Tile& tile, std::vector<int>& number, std::vector<int>& seams);
 
 }  // namespace meshpipe

@@ -15,17 +15,11 @@ Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& ref
               const std::vector<char>& corner, const std::vector<std::vector<int>>& boxes, const Lists& faces,
               const Lists& others, int tile);
 
-/// Replaces the triangles of tiles by what has become of them: `mesh`, `hold` and `refinement` of each, with
-/// `vertices`, the row in the whole of each frozen vertex, -1 of the others, and places on the reference.
-/// Vertices outside of tiles come first, then those of each tile.
-/// Returns the vertices that were frozen only since they are on the rims of several tiles, ascending.
-std::vector<int> replace_tiles(TiledMesh& whole, std::vector<Tile> tiles);
-
 /// Returns the pairs of triangles that intersect and may be in different boxes, sorted.
 std::vector<std::pair<int, int>> crossings_of_boxes(const Mesh& mesh,
                                                     const std::vector<std::vector<int>>& boxes, double reach);
 
 /// Returns the triangles that are up to `rings` vertices away from one of these, ascending.
-std::vector<int> triangles_near(const Mesh& mesh, std::vector<int> vertices, int rings);
+std::vector<int> triangles_near(const Mesh& mesh, const std::vector<int>& vertices, int rings);
 
 }  // namespace meshpipe

@@ -50,13 +50,13 @@ class Steps:
         else:
             self.other = max(self.other, megabytes)
 
-    def work(self, cut, program, result):
-        """Cuts by the command `cut`, whose stream goes to `result`, and runs the program on each shard; returns where to."""
+    def work(self, cut, program):
+        """Cuts by the command `cut`, and runs the program on each shard; returns where to."""
         into, out = self.path("in"), self.path("out")
         for folder in (into, out):
             shutil.rmtree(folder, ignore_errors=True)
         os.mkdir(out)
-        self.call(*cut, "--into", into, "-o", result)
+        self.call(*cut, "--into", into)
         shards = sorted(os.listdir(into)) if os.path.isdir(into) else []
         for shard in shards:
             self.call(*program, os.path.join(into, shard), "-o", os.path.join(out, shard), job=True)
@@ -67,21 +67,19 @@ class Steps:
         """Runs a program in shards."""
         count = ["--shards", str(shards)]
         if program in ("mparam", "mmesh2d"):
-            out = self.work(["mshard", source, *count], [program], "/dev/null")
+            out = self.work(["mshard", source, *count], [program])
             self.call(program, "--join", out, source, "-o", result)
             return
         command = [program, "--tile", tile]
-        out = self.work([*command, source, *count], command, "/dev/null")
+        out = self.work([*command, source, *count], command)
         if out is None:
             raise SystemExit(f"{program}: too few triangles for tiles of {tile}")
         if program == "mrelax":
             first = self.path("first")
             shutil.rmtree(first, ignore_errors=True)
             os.rename(out, first)
-            half = self.path("half.ply")
-            out = self.work([*command, "--join", first, source, *count], command, half)
+            out = self.work([*command, "--join", first, source, *count], command)
             shutil.rmtree(first)
-            source = half
         self.call(*command, "--join", out, source, "-o", result)
 
 

@@ -55,11 +55,11 @@ class Steps:
     def chain(self, *stages):
         call("mremesh", "-q", *self.options, "--keep", self.stages, *stages, "--", self.surface)
 
-    def cut(self, kind, command, source, result="/dev/null"):
+    def cut(self, kind, command, source):
         for folder in (kind, kind + "-done"):
             shutil.rmtree(os.path.join(self.folder, folder), ignore_errors=True)
             os.makedirs(os.path.join(self.folder, folder))
-        call(*command, "--shards", str(self.shards), "--into", os.path.join(self.folder, kind), source, "-o", result)
+        call(*command, "--shards", str(self.shards), "--into", os.path.join(self.folder, kind), source)
 
     def has_tiles(self):
         return os.path.exists(os.path.join(self.folder, "relax", "1.ply"))
@@ -69,10 +69,6 @@ class Steps:
         checked = os.path.join(self.folder, "check-done")
         return ["--keep", self.stages, "--from", "check" if self.has_tiles() else "relax",
                 *(["--checked", checked] if os.path.exists(os.path.join(checked, "1.ply")) else [])]
-
-    def half(self):
-        """Returns the file of the mesh between the two passes over its tiles."""
-        return os.path.join(self.folder, "repair", "half.ply")
 
     def join(self, stage, kind, program):
         command, result = self.program(program)
@@ -105,10 +101,10 @@ class Steps:
             self.work(kind, "mrelax", number)
         elif step == "seams" and self.has_tiles():
             command = [*self.program("mrelax")[0], "--join", os.path.join(self.folder, "relax-done")]
-            self.cut("repair", command, self.stage("lift"), self.half())
+            self.cut("repair", command, self.stage("lift"))
         elif step == "relaxed" and self.has_tiles():
             command, result = self.program("mrelax")
-            call(*command, "--accept", "--join", os.path.join(self.folder, "repair-done"), self.half(), "-o", result)
+            call(*command, "--accept", "--join", os.path.join(self.folder, "repair-done"), self.stage("lift"), "-o", result)
             tile = command[command.index("--tile"):][:2] if "--tile" in command else []
             self.cut("check", [*self.program("mcheck")[0], *tile], result)
         elif kind == "check":

@@ -39,7 +39,7 @@ nlohmann::ordered_json relax_record(const RelaxReport& r, std::size_t triangles)
   return record;
 }
 
-std::string left_over(const RelaxReport& r, const LiftedMesh& mesh) {
+std::string left_over(const RelaxReport& r, const Mesh& mesh) {
   if (r.intersections.empty()) return "";
   const auto [s, t] = r.intersections.front();
   const Vec3 p = mesh.points[mesh.tris[s][0]];

@@ -15,6 +15,6 @@ std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles
 nlohmann::ordered_json relax_record(const RelaxReport& r, std::size_t triangles);
 
 /// Describes the pairs of the result that intersect where the reference does not; empty if there are none.
-std::string left_over(const RelaxReport& r, const LiftedMesh& mesh);
+std::string left_over(const RelaxReport& r, const Mesh& mesh);
 
 }  // namespace meshpipe

@@ -102,6 +102,28 @@ TEST(Mply, BinaryRowsAreChecked) {
   EXPECT_PRED1(names_a_place, failure(good + '\n', read_stream));
 }
 
+TEST(Mply, LeavesOutWhatIsNotWanted) {
+  const Stream all = read_stream(contents(fs::path(SOURCE_DIR) / "formats/passed/lifted.ply"), "in");
+  const Wanted shape = [](std::string_view table, std::string_view column) {
+    return table == "vertex" ? column == "x" || column == "size" : column == "vertex_indices";
+  };
+  const Wanted reference = [](std::string_view table, std::string_view) { return table.starts_with("ref_"); };
+  for (bool ascii : {false, true}) {
+    const std::string bytes = write_stream(all, ascii);
+    MemorySource first(bytes), second(bytes);
+    const Stream some = read_stream(first, "in", false, shape),
+                 tables = read_stream(second, "in", false, reference);
+    EXPECT_EQ(some.surface.points, all.surface.points);
+    EXPECT_EQ(some.surface.tris, all.surface.tris);
+    EXPECT_EQ(some.surface.vertex.columns.size(), 1u);
+    EXPECT_EQ(some.surface.vertex.get<double>("size"), all.surface.vertex.get<double>("size"));
+    EXPECT_TRUE(some.surface.face.columns.empty() && some.tables.empty());
+    EXPECT_TRUE(tables.surface.points.empty() && tables.surface.tris.empty());
+    ASSERT_EQ(tables.tables.size(), 2u);
+    EXPECT_EQ(tables.need("ref_vertex", "").get<double>("x"), all.need("ref_vertex", "").get<double>("x"));
+  }
+}
+
 TEST(Mply, IsReadPieceByPiece) {
   /// Has no more in memory than it was asked for.
   struct Pieces : Source {

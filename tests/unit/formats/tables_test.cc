@@ -120,7 +120,7 @@ TEST(LiftTables, ReadWhatTheyWrote) {
   write_lifted(stream, mesh);
   stream = read_stream(write_stream(stream, false), "test");
   Stream copy = stream;
-  const LiftedMesh back = take_lifted(copy);
+  const LiftedMesh back = take_lifted(copy.surface, 2, 1);
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.tris, mesh.tris);
   EXPECT_EQ(back.place[2].b2, 0.75);
@@ -133,7 +133,7 @@ TEST(LiftTables, ReadWhatTheyWrote) {
   EXPECT_EQ(read_lines(stream).points.size(), 3u);  // they index the reference now
 
   stream.surface.vertex.get<double>("b1")[1] = 0.75;
-  EXPECT_THROW(take_lifted(stream), BadInput);
+  EXPECT_THROW(take_lifted(stream.surface, 2, 1), BadInput);
 }
 
 namespace {

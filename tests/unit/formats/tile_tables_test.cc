@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lib/core/error.h"
+#include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/lift/lift.h"
 #include "lib/shape/shape.h"
@@ -37,14 +38,18 @@ struct Example {
     std::vector<Stream> streams;
     relax.cut(whole, pass, [&](Tile tile) {
       if (relaxed) relax_tile(tile, kinds, pass);
-      streams.push_back(stream_of({(int)streams.size(), kinds, pass, relaxed, std::move(tile)}));
+      streams.push_back(stream_of({(int)streams.size(),
+                                   {5, (int)whole.mesh.points.size(), kinds, {1}, pass, {}},
+                                   relaxed,
+                                   std::move(tile)}));
       streams.back().history = {{"mrelax", "1", ""}};
     });
     return streams;
   }
-  std::vector<Tile> join(const std::vector<std::vector<Stream>>& shards) const {
+  JoinedTiles join(const std::vector<std::vector<Stream>>& shards) const {
     const std::vector<std::string> names{"a", "b"};
-    return join_tiles(whole, (int)reference.tris.size(), 5, pass, {"mrelax", "", ""},
+    Stream stream;
+    return join_tiles(stream, (int)reference.tris.size(), {"mrelax", "", ""},
                       {names.begin(), names.begin() + (long)shards.size()},
                       [&](const std::string& name, const auto& take) {
                         for (const Stream& s : shards[name == "b"]) take(s);
@@ -66,8 +71,12 @@ TEST(TileTables, HoldTilesToTheBit) {
     EXPECT_EQ(read.mesh.points, tile.mesh.points);
     EXPECT_EQ(read.mesh.tris, tile.mesh.tris);
     EXPECT_EQ(read.hold, tile.hold);
-    EXPECT_EQ(read.vertices, tile.vertices);
-    EXPECT_EQ(read.excess, tile.excess);
+    EXPECT_EQ(read.refinement, tile.refinement);
+    EXPECT_EQ(read.rim.vertex, tile.rim.vertex);
+    EXPECT_EQ(read.rim.row, tile.rim.row);
+    EXPECT_EQ(read.rim.excess, tile.rim.excess);
+    EXPECT_EQ(read.rim.hold, tile.rim.hold);
+    EXPECT_EQ(read.rim.mesh.points, tile.rim.mesh.points);
     EXPECT_EQ(read.faces, tile.faces);
     EXPECT_EQ(read.corner, tile.corner);
     EXPECT_EQ(read.slice.points, tile.slice.points);
@@ -85,17 +94,26 @@ TEST(TileTables, HoldTilesToTheBit) {
 TEST(TileTables, AreJoinedOnlyIfTheyFit) {
   const Example e;
   const std::vector<Stream> good = e.tiles(true);
-  EXPECT_EQ(e.join({good}).size(), 5u);
-  EXPECT_EQ(e.join({{good.begin() + 2, good.end()}, {good.begin(), good.begin() + 2}}).size(), 5u);
+  const JoinedTiles joined = e.join({good});
+  EXPECT_NO_THROW(opposite_halfedges(joined.mesh.mesh));
+  EXPECT_FALSE(joined.seams.empty());
+  const JoinedTiles again = e.join({{good.begin() + 2, good.end()}, {good.begin(), good.begin() + 2}});
+  EXPECT_EQ(again.mesh.mesh.points, joined.mesh.mesh.points);
+  EXPECT_EQ(again.mesh.mesh.tris, joined.mesh.mesh.tris);
   EXPECT_THROW(e.join({{good.begin(), good.end() - 1}}), BadInput);  // one is missing
   EXPECT_THROW(e.join({good, good}), BadInput);                      // doubled
   EXPECT_THROW(e.join({e.tiles(false)}), BadInput);                  // not relaxed
   std::vector<Stream> other = good;
   other.back().history.back().arguments = "--sweeps=1";
   EXPECT_THROW(e.join({other}), BadInput);
+  other = good;
+  other.back().history.insert(other.back().history.begin(), {"mlift", "1", ""});
+  EXPECT_THROW(e.join({other}), BadInput);  // made of another stream
   Example moved;
   for (Vec3& p : moved.whole.mesh.points) p.x += 1;
-  EXPECT_THROW(moved.join({good}), BadInput);
+  other = good;
+  other.back() = moved.tiles(true).back();
+  EXPECT_THROW(e.join({other}), BadInput);
 }
 
 // several streams one after the other are read where that is allowed, binary and as text

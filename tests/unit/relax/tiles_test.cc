@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <set>
 
+#include "lib/core/error.h"
 #include "lib/core/topology.h"
 #include "lib/lift/lift.h"
 #include "lib/shape/shape.h"
@@ -44,11 +46,14 @@ std::vector<Tile> cut_all(const TiledMesh& whole, const Surface& reference, int 
   return tiles;
 }
 
-/// Moves the places of a tile back to the reference, as a pass does.
-void give_back(Tile& tile) {
-  for (Place& p : tile.mesh.place) p.face = tile.faces[p.face];
-  for (std::size_t v = 0; v < tile.hold.size(); ++v)
-    if (tile.hold[v] != frozen) tile.vertices[v] = -1;
+/// Puts tiles in the place of the mesh that they were cut from. Returns the vertices on seams.
+std::vector<int> put_back(TiledMesh& whole, std::vector<Tile> tiles) {
+  std::vector<int> number = remove_region(whole, all_triangles(whole.mesh)), seams;
+  for (Tile& tile : tiles) {
+    for (Place& p : tile.mesh.place) p.face = tile.faces[p.face];  // as a pass does
+    append_tile(whole, tile, number, seams);
+  }
+  return seams;
 }
 
 TEST(Tiles, BoxesCoverEachTriangleOnce) {
@@ -68,13 +73,22 @@ TEST(Tiles, BoxesCoverEachTriangleOnce) {
 TEST(Tiles, TheRimIsFrozenAndNothingElse) {
   const Surface s = sized(torus(0.4, 3000), 3000);
   const TiledMesh whole = tiled(s);
-  std::vector<int> tiles_at(s.points.size(), 0);
+  std::map<std::array<double, 3>, int> tiles_at;
+  const auto at = [](Vec3 p) { return std::array{p.x, p.y, p.z}; };
   const std::vector<Tile> tiles = cut_all(whole, s, 500);
   for (const Tile& tile : tiles)
-    for (int v : tile.vertices) ++tiles_at[v];
-  for (const Tile& tile : tiles)
-    for (std::size_t i = 0; i < tile.vertices.size(); ++i)
-      EXPECT_EQ(tile.hold[i] == frozen, tiles_at[tile.vertices[i]] > 1);
+    for (Vec3 p : tile.mesh.points) ++tiles_at[at(p)];
+  EXPECT_EQ(tiles_at.size(), s.points.size());
+  for (const Tile& tile : tiles) {
+    const Rim& rim = tile.rim;
+    for (std::size_t i = 0; i < tile.hold.size(); ++i)
+      EXPECT_EQ(tile.hold[i] == frozen, tiles_at[at(tile.mesh.points[i])] > 1);
+    EXPECT_EQ(std::count(tile.hold.begin(), tile.hold.end(), frozen), (std::ptrdiff_t)rim.vertex.size());
+    for (std::size_t i = 0; i < rim.vertex.size(); ++i) {
+      EXPECT_EQ(tile.mesh.points[rim.vertex[i]], s.points[rim.row[i]]);
+      EXPECT_EQ(rim.hold[i], loose);
+    }
+  }
 }
 
 TEST(Tiles, RimsKnowTheirValenceInTheWhole) {
@@ -84,8 +98,8 @@ TEST(Tiles, RimsKnowTheirValenceInTheWhole) {
   for (const Tri& t : s.tris)
     for (int v : t) ++valence[v];  // closed
   for (const Tile& tile : cut_all(whole, s, 500))
-    for (std::size_t i = 0; i < tile.vertices.size(); ++i)
-      EXPECT_EQ(tile.excess[i], tile.hold[i] == frozen ? valence[tile.vertices[i]] - 6 : 0);
+    for (std::size_t i = 0; i < tile.rim.row.size(); ++i)
+      EXPECT_EQ(tile.rim.excess[i], valence[tile.rim.row[i]] - 6);
 }
 
 TEST(Tiles, EachHasTheReferenceAndTheOthersAroundIt) {
@@ -95,7 +109,7 @@ TEST(Tiles, EachHasTheReferenceAndTheOthersAroundIt) {
   whole.hold.resize(whole.mesh.points.size()), whole.refinement.resize(whole.mesh.points.size(), 1);
   std::set<int> faces;
   for (const Tile& tile : cut_all(whole, reference, 250)) {
-    for (std::size_t i = 0; i < tile.vertices.size(); ++i) {
+    for (std::size_t i = 0; i < tile.hold.size(); ++i) {
       const Place& p = tile.mesh.place[i];
       const Tri& t = tile.slice.tris[p.face];
       const Vec3 x =
@@ -108,7 +122,7 @@ TEST(Tiles, EachHasTheReferenceAndTheOthersAroundIt) {
     // vertices of the rim have triangles on both sides
     std::set<std::array<double, 3>> beyond;
     for (Vec3 p : tile.others.points) beyond.insert({p.x, p.y, p.z});
-    for (std::size_t i = 0; i < tile.vertices.size(); ++i) {
+    for (std::size_t i = 0; i < tile.hold.size(); ++i) {
       const Vec3 p = tile.mesh.points[i];
       EXPECT_TRUE(tile.hold[i] != frozen || beyond.count({p.x, p.y, p.z}));
     }
@@ -161,12 +175,8 @@ TEST(Tiles, PutBackTheyAreTheMeshAgain) {
   const auto before = corners(whole.mesh);
   std::vector<Tile> tiles = cut_all(whole, s, 100);
   std::set<int> shared;
-  for (Tile& tile : tiles) {
-    for (std::size_t i = 0; i < tile.vertices.size(); ++i)
-      if (tile.hold[i] == frozen) shared.insert(tile.vertices[i]);
-    give_back(tile);
-  }
-  EXPECT_EQ(replace_tiles(whole, tiles).size(), shared.size());
+  for (const Tile& tile : tiles) shared.insert(tile.rim.row.begin(), tile.rim.row.end());
+  EXPECT_EQ(put_back(whole, tiles).size(), shared.size());
   EXPECT_EQ(corners(whole.mesh), before);
   EXPECT_EQ(whole.mesh.points.size(), s.points.size());
   EXPECT_EQ(whole.hold.size(), s.points.size());
@@ -175,6 +185,30 @@ TEST(Tiles, PutBackTheyAreTheMeshAgain) {
               s.points[s.tris[whole.mesh.place[v].face][whole.mesh.place[v].b0 == 1   ? 0
                                                         : whole.mesh.place[v].b1 == 1 ? 1
                                                                                       : 2]]);
+}
+
+TEST(Tiles, OfAnotherMeshAreRefused) {
+  const Surface s = sized(torus(0.4, 3000), 3000);
+  TiledMesh whole = tiled(s);
+  std::vector<Tile> tiles = cut_all(whole, s, 500);
+  for (Vec3& p : tiles.back().rim.mesh.points) p.x += 1;
+  EXPECT_THROW(put_back(whole, tiles), BadInput);
+}
+
+// the rest of the mesh stays what it is
+TEST(Tiles, ReplaceARegion) {
+  const Surface s = sized(torus(0.4, 3000), 3000);
+  TiledMesh whole = tiled(s);
+  const std::vector<int> region = triangles_near(s, {7}, 3);
+  const Lists at_vertex = triangles_at_vertices(s), faces{{0, (int)s.tris.size()}, all_triangles(s)};
+  const Tile tile = cut_tile(whole, at_vertex, s, {}, {region}, faces, {}, 0);
+  std::vector<int> number = remove_region(whole, region), seams;
+  EXPECT_EQ(whole.mesh.tris.size(), s.tris.size() - region.size());
+  append_tile(whole, tile, number, seams);
+  EXPECT_TRUE(seams.empty());
+  EXPECT_EQ(whole.mesh.points.size(), s.points.size());
+  EXPECT_NEAR(total_area(whole.mesh), total_area(s), 1e-9);
+  EXPECT_NO_THROW(opposite_halfedges(whole.mesh));
 }
 
 TEST(Tiles, ModelEdgesOfRimsStay) {
@@ -195,9 +229,8 @@ TEST(Tiles, ModelEdgesOfRimsStay) {
     const std::vector<int> beyond = opposite_halfedges(tile.mesh.tris, (int)tile.mesh.points.size());
     for (int h = 0; h < (int)beyond.size(); ++h)
       if (beyond[h] < 0) tile.mesh.model[h / 3] &= ~(1 << h % 3);  // a border while the tile is by itself
-    give_back(tile);
   }
-  replace_tiles(whole, tiles);
+  put_back(whole, tiles);
   EXPECT_EQ(edges(whole.mesh), before);
 }
 
