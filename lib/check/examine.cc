@@ -31,14 +31,9 @@ Mesh before_cuts(const Surface& reference) {
 std::vector<double> mean_edges(const Mesh& mesh) {
   std::vector<double> length(mesh.points.size(), 0);
   std::vector<int> count(mesh.points.size(), 0);
-  for (const Tri& t : mesh.tris)
-    for (int i = 0; i < 3; ++i) {
-      const int a = t[i], b = t[(i + 1) % 3];
-      const double l = norm(mesh.points[a] - mesh.points[b]);
-      for (int v : {a, b}) length[v] += l, ++count[v];
-    }
-  for (std::size_t v = 0; v < length.size(); ++v)
-    if (count[v]) length[v] /= count[v];
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h)
+    for (int v : {origin(mesh.tris, h), target(mesh.tris, h)}) length[v] += edge_length(mesh, h), ++count[v];
+  for (std::size_t v = 0; v < length.size(); ++v) length[v] /= std::max(1, count[v]);
   return length;
 }
 
@@ -169,47 +164,37 @@ std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
   return pairs;
 }
 
-/// Adds the chords to the intersections, and to the new ones unless the reference has some there.
-void find_chords(Findings& f, const Connectivity& result, const Surface& given) {
-  auto add = [](const auto& more, auto& pairs) {
-    pairs.insert(pairs.end(), more.begin(), more.end());
-    sort_unique(pairs);
-  };
-  const auto found = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
-  if (found.empty()) return;
-  add(found, f.intersections);
-  Mesh known;
-  if (f.reference.sound()) {
-    const std::vector<int> opposite = opposite_halfedges(given);
-    known = contacts(given, chord_pairs({given, opposite, model_of(given)}));
-  }
-  add(new_intersections(result.mesh, found, known), f.new_intersections);
-}
-
-/// Finds intersections. Where sheets meet, their borders are joined, and the reference's are found in any
-/// case. Trees: null if they are `measured`.
-void find_intersections(Findings& f, const Mesh& mesh, const Bvh* mesh_tree, const Mesh& given,
-                        const Bvh* given_tree, bool sheets_meet, const Measured* measured) {
+/// Finds intersections and chords, new ones where the reference has neither. Where sheets meet, their borders
+/// are joined, and the reference's are found in any case. Trees: null if they are `measured`.
+void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh_tree, const Mesh& before,
+                        const Surface& given, const Bvh* before_tree, bool sheets_meet,
+                        const Measured* measured) {
   Mesh joined[2];
   auto find = [&](Mesh& copy, const Mesh& surface, const Bvh& tree) {
     if (!sheets_meet) return self_intersections(surface, tree);
     copy = surface;
     return sheet_intersections(copy, tree);
   };
-  f.intersections = measured ? measured->intersections : find(joined[0], mesh, *mesh_tree);
-  if (f.intersections.empty() && !sheets_meet) return;
-  const auto before = given_tree ? find(joined[1], given, *given_tree) : self_intersections(given);
-  const Mesh& reference = sheets_meet ? joined[1] : given;
-  f.reference_intersections = (int)before.size();
-  f.reference_crossings = (int)std::count_if(before.begin(), before.end(), [&](const auto& pair) {
+  f.intersections = measured ? measured->intersections : find(joined[0], result.mesh, *mesh_tree);
+  const auto chords = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
+  if (f.intersections.empty() && chords.empty() && !sheets_meet) return;
+  const auto old = before_tree ? find(joined[1], before, *before_tree) : self_intersections(before);
+  const Mesh& reference = sheets_meet ? joined[1] : before;
+  f.reference_intersections = (int)old.size();
+  f.reference_crossings = (int)std::count_if(old.begin(), old.end(), [&](const auto& pair) {
     const Tri &a = reference.tris[pair.first], &b = reference.tris[pair.second];
     return std::none_of(a.begin(), a.end(), [&](int v) {
       return std::any_of(b.begin(), b.end(),
                          [&](int w) { return reference.points[v] == reference.points[w]; });
     });
   });
-  f.new_intersections =
-      new_intersections(sheets_meet ? joined[0] : mesh, f.intersections, contacts(reference, before));
+  const Mesh& mesh = sheets_meet ? joined[0] : result.mesh;
+  f.intersections.insert(f.intersections.end(), chords.begin(), chords.end());
+  sort_unique(f.intersections);
+  f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, old));
+  if (chords.empty() || f.new_intersections.empty() || !f.reference.sound()) return;
+  const auto theirs = chord_pairs({given, opposite_halfedges(given), model_of(given)});
+  f.new_intersections = new_intersections(mesh, f.new_intersections, contacts(given, theirs));
 }
 
 /// Measures the distances of borders, and of borders and model edges where both surfaces know theirs.
@@ -310,9 +295,8 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   std::optional<Measured> measured;
   if (shares)
     measured = join_findings(*shares, result, diagonal(reference), allowed_on_triangles(result, least_size));
-  find_intersections(f, result, tree(mesh_tree), reference, tree(reference_tree), sheets_meet,
+  find_intersections(f, mesh, tree(mesh_tree), reference, given, tree(reference_tree), sheets_meet,
                      measured ? &*measured : nullptr);
-  find_chords(f, mesh, given);
   add_progress(0.3);
   f.folds = measured ? measured->folds : find_folds(mesh, reference, *reference_tree);
   measure_distances(f, result, given, mesh, tree(mesh_tree), before, tree(reference_tree), samples, most,

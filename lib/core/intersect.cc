@@ -5,6 +5,7 @@
 #include <span>
 
 #include "lib/core/bvh.h"
+#include "lib/core/connectivity.h"
 #include "lib/core/predicates.h"
 
 namespace meshpipe {
@@ -247,10 +248,8 @@ std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
   std::vector<std::pair<int, int>> found;
   for (auto [s, t] : pairs) {
     double longest = 0;
-    for (int u : {s, t})
-      for (int i = 0; i < 3; ++i)
-        longest =
-            std::max(longest, norm(mesh.points[mesh.tris[u][(i + 1) % 3]] - mesh.points[mesh.tris[u][i]]));
+    for (int h : {3 * s, 3 * s + 1, 3 * s + 2, 3 * t, 3 * t + 1, 3 * t + 2})
+      longest = std::max(longest, edge_length(mesh, h));
     std::vector<Vec3> places = contact(mesh, s, t);
     places.push_back(lerp(places[0], places[places.size() / 2], 0.5));
     const double near = 2 * longest;

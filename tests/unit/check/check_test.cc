@@ -106,6 +106,14 @@ TEST(check, chords_of_a_rim_intersect_its_cap) {
   EXPECT_TRUE(self_intersections(result).empty());
   EXPECT_GT(examine(result, reference, nullptr, 10).new_intersections.size(), 0u);
   EXPECT_EQ(examine(result, result, nullptr, 10).new_intersections.size(), 0u);
+  // a triangle through the rim: the reference intersects itself there, too
+  for (Vec3 p : {Vec3{-1, -1, -1}, Vec3{1, 1, -1}, Vec3{0, 0, 1}}) reference.points.push_back(p);
+  reference.tris.push_back({8, 9, 10});
+  reference.vertex.rows = reference.points.size(), reference.face.rows = reference.tris.size();
+  reference.face.set("model", std::vector<std::uint8_t>{5, 3, 1, 1, 0, 0, 0, 4, 4, 0, 0});
+  const Findings f = examine(result, reference, nullptr, 10);
+  EXPECT_GT(f.intersections.size(), 0u);
+  EXPECT_EQ(f.new_intersections.size(), 0u);
 }
 
 TEST(check, cuts_are_undone) {
