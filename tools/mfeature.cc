@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <numbers>
 
 #include "formats/foreign/patch_groups.h"
 #include "formats/stream/model_edges.h"
@@ -72,7 +71,6 @@ void relabel(const Io& io, Stream& stream, const PatchMerge& merge, const std::v
 
 /// Merges patches as the options ask.
 PatchMerge merge_patches(const Io& io, Stream& stream, const Options& o, double length) {
-  constexpr double tangent = 20 * std::numbers::pi / 180;  // patches that meet at less are tangent
   PatchMerge merge = no_merge(stream.surface);
   if (!stream.surface.face.has("patch") || !(o.merge_auto || !o.group_file.empty())) return merge;
   std::vector<PatchGroup> groups;
@@ -80,7 +78,7 @@ PatchMerge merge_patches(const Io& io, Stream& stream, const Options& o, double 
   std::vector<std::vector<int>> members;
   for (const PatchGroup& g : groups) members.push_back(g.patches);
   merge_groups(merge, members);
-  if (o.merge_auto) merge_automatically(merge, stream.surface, length, tangent);
+  if (o.merge_auto) merge_automatically(merge, stream.surface, length);
   relabel(io, stream, merge, groups);
   io.say(std::to_string(merge.patch.size()) + " patches merged to " + std::to_string(merge.count()));
   return merge;

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
     const Lines lines =
-        make_lines(stream.surface, read_charts(stream), corner_turn, &tag, keep_boundary, has_sheets(stream));
+        make_lines(stream.surface, read_charts(stream), &tag, keep_boundary, has_sheets(stream));
     drop_downstream(stream, Stage::lines);
     write_lines(stream, lines);
     int lines_of[3] = {0, 0, 0}, segments = 0;

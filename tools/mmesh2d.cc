@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
     refuse_more_triangles(stream.surface, size, most_triangles());
 
     const std::clock_t start = std::clock();
-    const int n = static_cast<int>(charts.size());
+    const int n = (int)charts.size();
     std::vector<PlaneMesh> meshes(n);
     const PartLines parts(lines, n);
     const std::vector<char> keep = kept_vertices(stream);

@@ -153,8 +153,7 @@ struct Bounds {
   void cover(Vec3 p) {
     if (is_empty) low = high = p;
     is_empty = false;
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p), high = upper(high, p);
   }
 };
 

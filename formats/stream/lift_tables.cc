@@ -37,7 +37,7 @@ void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& verte
             if constexpr (std::is_same_v<T, double>)
               to.push_back(p.b0 * from[corner[0]] + p.b1 * from[corner[1]] + p.b2 * from[corner[2]]);
             else
-              to.push_back(from[corner[p.b0 >= p.b1 && p.b0 >= p.b2 ? 0 : p.b1 >= p.b2 ? 1 : 2]]);
+              to.push_back(from[corner[nearest_corner(p)]]);
           }
           vertex.set(column.name, std::move(to));
         },
@@ -122,7 +122,7 @@ Surface read_reference(const Stream& stream) {
   s.tris.reserve(face.rows);
   for (std::size_t t = 0; t < face.rows; ++t) {
     for (int v : {a[t], b[t], c[t]})
-      if (v < 0 || v >= static_cast<int>(vertex.rows))
+      if (v < 0 || v >= (int)vertex.rows)
         throw BadInput("ref_face " + std::to_string(t) + " uses vertex " + std::to_string(v) +
                        ", but there are " + std::to_string(vertex.rows));
     s.tris.push_back({a[t], b[t], c[t]});

@@ -2,10 +2,10 @@
 #include "lib/cap/cap.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "lib/cap/steps.h"
 #include "lib/core/largest_patch.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -40,7 +40,7 @@ bool is_plane(const Mesh& mesh, const End& end) { return end.planarity <= 1e-3 *
 /// too many vertices.
 std::vector<double> kinds_of_cap(const Mesh& mesh, const End& end) {
   std::vector<double> kinds;
-  if (has_membrane(end)) kinds.assign(std::begin(bulges), std::end(bulges));
+  if (fits_membrane(end)) kinds.assign(std::begin(bulges), std::end(bulges));
   if (!crossing_of(mesh, end)) kinds.insert(is_plane(mesh, end) ? kinds.begin() : kinds.end(), projected);
   return kinds;
 }
@@ -267,13 +267,11 @@ struct Treatment {
 
   /// Gives columns to all that was added, new patches, and model edges around them.
   void finish() {
-    std::vector<int> rows(surface.vertex.rows);
-    std::iota(rows.begin(), rows.end(), 0);
+    std::vector<int> rows = identity(surface.vertex.rows);
     rows.insert(rows.end(), growth.vertex_like.begin(), growth.vertex_like.end());
     take_rows(surface.vertex, rows);
     const std::size_t before = surface.face.rows;
-    rows.resize(before);
-    std::iota(rows.begin(), rows.end(), 0);
+    rows = identity(before);
     for (std::size_t t = before; t < surface.tris.size(); ++t) rows.push_back(like[owner[t]]);
     take_rows(surface.face, rows);
     if (!surface.face.has("model")) surface.face.set("model", std::vector<std::uint8_t>(surface.tris.size()));

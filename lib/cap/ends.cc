@@ -123,7 +123,7 @@ bool orient_outward(Surface& surface) {
   const Vec3 origin = surface.points[surface.tris[0][0]];
   auto corner = [&](int v) { return surface.points[v] - origin; };
   double volume = 0;
-  for (const auto& [a, b, c] : surface.tris) volume += dot(corner(a), cross(corner(b), corner(c)));
+  for (int t = 0; t < (int)surface.tris.size(); ++t) volume += volume6(surface, t, origin);
   for (const End& end : find_ends(surface))
     for (const std::vector<int>& rim : end.rims)
       for (std::size_t i = 0; i < rim.size(); ++i)

@@ -37,28 +37,27 @@ void refine(Surface& cap, double length) {
 
 /// Moves the vertices from `rim` on to a membrane under pressure, which bulges by `height` if it is round.
 void inflate(Surface& cap, int rim, double height) {
-  const Neighbors neighbors(cap);
+  const Lists neighbors = neighbors_of(cap);
   const double pressure = height * std::numbers::pi / total_area(cap);
   std::vector<double> force(cap.points.size(), 0);  // for edges as they are at first: otherwise it may grow
   for (int v = rim; v < (int)cap.points.size(); ++v)
-    for (int k = neighbors.start[v]; k < neighbors.start[v + 1]; ++k) {
-      const Vec3 way = cap.points[neighbors.vertex[k]] - cap.points[v];
+    for (int w : neighbors[v]) {
+      const Vec3 way = cap.points[w] - cap.points[v];
       force[v] += pressure * dot(way, way);
     }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const std::vector<Vec3> normals = vertex_normals(cap);
     for (int v = rim; v < (int)cap.points.size(); ++v) {
       Vec3 sum = force[v] * normals[v];
-      for (int k = neighbors.start[v]; k < neighbors.start[v + 1]; ++k)
-        sum = sum + (cap.points[neighbors.vertex[k]] - cap.points[v]);
-      cap.points[v] = cap.points[v] + (1.0 / (neighbors.start[v + 1] - neighbors.start[v])) * sum;
+      for (int w : neighbors[v]) sum = sum + (cap.points[w] - cap.points[v]);
+      cap.points[v] = cap.points[v] + (1.0 / (double)neighbors[v].size()) * sum;
     }
   }
 }
 
 }  // namespace
 
-bool has_membrane(const End& end) { return end.rims.size() == 1 && end.rims[0].size() <= most_corners; }
+bool fits_membrane(const End& end) { return end.rims.size() == 1 && end.rims[0].size() <= most_corners; }
 
 int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth) {
   const std::vector<int>& rim = end.rims[0];

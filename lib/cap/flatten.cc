@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <limits>
 
 #include "lib/cap/steps.h"
 #include "lib/core/bvh.h"
@@ -42,9 +41,9 @@ class Flattener {
         planes_(planes),
         before_(mesh.points),
         source_(mesh.points.size()),
-        distance_(mesh.points.size(), std::numeric_limits<double>::infinity()),
+        distance_(mesh.points.size(), infinity),
         height_(ends.size(), 0),
-        gap_(ends.size(), std::numeric_limits<double>::infinity()) {
+        gap_(ends.size(), infinity) {
     for (std::size_t i = 0; i < ends.size(); ++i)
       if (planes[i])
         for (const std::vector<int>& rim : ends[i].rims)
@@ -88,14 +87,13 @@ class Flattener {
           sources.push_back(v);
         }
     }
-    const Neighbors neighbors(mesh_);
+    const Lists neighbors = neighbors_of(mesh_);
     members_.resize(ends_.size());
     shortest_paths(sources, distance_, [&](int v, auto step) {
       const int i = source_[v].end;
       if (distance_[v] > farthest) return false;
       members_[i].push_back(v);
-      for (int k = neighbors.start[v]; k < neighbors.start[v + 1]; ++k) {
-        const int w = neighbors.vertex[k];
+      for (int w : neighbors[v]) {
         if (step(w, distance_[v] + norm(before_[w] - before_[v])))
           source_[w] = source_[v];
         else if (source_[w].end >= 0 && source_[w].end != i)
@@ -111,7 +109,7 @@ class Flattener {
     const Plane& plane = *planes_[near.end];
     const std::vector<int>& rim = ends_[near.end].rims[near.rim];
     const int n = (int)rim.size();
-    double best = std::numeric_limits<double>::infinity(), height = 0;
+    double best = infinity, height = 0;
     const int reach = std::min(window, n / 2);
     for (int k = -reach; k < reach; ++k) {
       const Vec3 a = before_[rim[((near.at + k) % n + n) % n]],

@@ -33,9 +33,10 @@ std::vector<std::vector<int>> rims_of(const Connectivity& c);
 void refuse_all(const std::vector<End>& ends, const std::vector<std::string>& why, const std::string& advice,
                 const std::vector<char>* kept = nullptr);
 
-/// Returns where the rims of an end cross themselves or each other as seen along its normal, if they do.
+/// Returns the middle of an edge of an end's rims that crosses another one as seen along its normal; none if
+/// they are simple as seen so.
 std::optional<Vec3> crossing_of(const Mesh& mesh, const End& end);
-/// Says so; empty if they do not.
+/// Returns that as a clause, "its rim crosses itself, seen along its normal, near (x y z)"; else "".
 std::string crossing_at(const Mesh& mesh, const End& end);
 
 /// A triangle of interest that meets another one, and where.
@@ -93,8 +94,8 @@ int extend_end(Mesh& mesh, End& end, double length, Growth& growth);
 /// Closes an end by triangles that lie over its projected rims, which must be simple (crossing_of). Returns
 /// their number.
 int projected_cap(Mesh& mesh, const End& end, Growth& growth);
-/// Returns whether an end has one rim, of not too many vertices for a membrane.
-bool has_membrane(const End& end);
+/// Returns whether fair_cap applies: to an end of one rim, of at most 600 vertices.
+bool fits_membrane(const End& end);
 /// Closes such an end by a membrane that bulges outward by about `bulge` radii, of the connectivity of the
 /// triangulation of least area. Returns the number of triangles.
 int fair_cap(Mesh& mesh, const End& end, double bulge, Growth& growth);

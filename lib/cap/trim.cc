@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <limits>
 
 #include "lib/cap/steps.h"
 #include "lib/core/cut.h"
 #include "lib/core/eigenvectors.h"
+#include "lib/core/lists.h"
+#include "lib/core/neighborhood.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
-#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -38,7 +38,10 @@ struct Wall {
 class WallFinder {
  public:
   WallFinder(const Connectivity& c)
-      : c_(c), neighbors_(c.mesh), distance_(c.n_vertices(), far_), spoke_(c.n_vertices(), -1) {
+      : c_(c),
+        neighbors_(neighbors_of(c.mesh)),
+        distance_(c.n_vertices(), infinity),
+        spoke_(c.n_vertices(), -1) {
     for (int h = c.n_half_edges() - 1; h >= 0; --h) spoke_[c.from(h)] = h;
   }
 
@@ -49,8 +52,7 @@ class WallFinder {
     shortest_paths(sources, distance_, [&](int v, auto step) {
       seen.push_back(v);
       if (distance_[v] > reach) return false;
-      for (int k = neighbors_.start[v]; k < neighbors_.start[v + 1]; ++k) {
-        const int w = neighbors_.vertex[k];
+      for (int w : neighbors_[v]) {
         if (step(w, distance_[v] + norm(c_.point(w) - c_.point(v)))) reached_.push_back(w);
       }
       return true;
@@ -61,21 +63,20 @@ class WallFinder {
         const int t = h / 3;
         double sum = 0;
         for (int corner : c_.mesh.tris[t]) sum += distance_[corner];
-        if (c_.mesh.tris[t][0] == v && sum < far_) {
+        if (c_.mesh.tris[t][0] == v && sum < infinity) {
           wall.triangle.push_back(t);
           wall.distance.push_back(sum / 3);
         }
       });
-    for (int v : sources) distance_[v] = far_;
-    for (int v : reached_) distance_[v] = far_;
+    for (int v : sources) distance_[v] = infinity;
+    for (int v : reached_) distance_[v] = infinity;
     reached_.clear();
     return wall;
   }
 
  private:
-  static constexpr double far_ = std::numeric_limits<double>::infinity();
   const Connectivity c_;
-  const Neighbors neighbors_;
+  const Lists neighbors_;
   std::vector<double> distance_;
   std::vector<int> spoke_, reached_;
 };
@@ -121,7 +122,7 @@ Vec3 axis_by_normals(const Mesh& mesh, const Wall& wall, double ring, double rea
       for (int s = 0; s < 3; ++s) m[r][s] += weight * x[r] * x[s];
   }
   Vec3 best = rough;
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (const Vec3& e : eigenvectors(m)) {
     const double x[3] = {e.x, e.y, e.z};
     double value = 0;
@@ -161,8 +162,7 @@ std::string flood(const Connectivity& c, const std::vector<End>& ends, int i, co
   for (const std::vector<int>& rim : ends[i].rims)
     for (int v : rim) take(border_at[v] / 3);
   while (!stack.empty()) {
-    const int t = stack.back();
-    stack.pop_back();
+    const int t = take_last(stack);
     for (int h = 3 * t; h < 3 * t + 3; ++h)
       if (!c.is_border(h) && (above(c.from(h)) || above(c.to(h)))) take(c.opposite[h] / 3);
   }
@@ -188,32 +188,6 @@ std::vector<Piece> pieces_cut_off(const Mesh& mesh, const std::vector<int>& owne
                  (int)boundary_loops(opposite).size()};
   }
   return pieces;
-}
-
-/// Drops triangles, and vertices that no others use. Returns the new numbers of vertices, -1: dropped.
-std::vector<int> drop_triangles(Surface& s, const std::vector<char>& gone) {
-  std::vector<int> rows, vertices, number(s.points.size(), -1);
-  for (int t = 0; t < (int)s.tris.size(); ++t) {
-    if (gone[t]) continue;
-    rows.push_back(t);
-    for (int v : s.tris[t]) number[v] = 0;
-  }
-  for (int v = 0; v < (int)number.size(); ++v)
-    if (number[v] == 0) {
-      number[v] = (int)vertices.size();
-      vertices.push_back(v);
-    }
-  std::vector<Vec3> points;
-  for (int v : vertices) points.push_back(s.points[v]);
-  std::vector<Tri> tris;
-  for (int t : rows) {
-    const Tri& v = s.tris[t];
-    tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
-  }
-  s.points = std::move(points), s.tris = std::move(tris);
-  take_rows(s.vertex, vertices);
-  take_rows(s.face, rows);
-  return number;
 }
 
 }  // namespace
@@ -292,11 +266,11 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
                     : "has " + std::to_string(pieces[i].loops) + " borders, not " + std::to_string(2 * rims));
   if (!possible()) return why;
   std::vector<int> near(surface.points.size(), -1);  // which end a vertex of the cut belongs to
-  std::vector<char> gone(surface.tris.size(), 0);
-  for (std::size_t t = 0; t < gone.size(); ++t) {
-    gone[t] = owner[t] >= 0;
-    if (gone[t])
-      for (int v : surface.tris[t]) near[v] = owner[t];
+  std::vector<int> left;                             // triangles
+  for (int t = 0; t < (int)owner.size(); ++t) {
+    if (owner[t] < 0) left.push_back(t);
+    for (int v : surface.tris[t])
+      if (owner[t] >= 0) near[v] = owner[t];
   }
   for (int i = 0; i < n; ++i)
     for (const std::vector<int>& rim : ends[i].rims)
@@ -304,10 +278,13 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
         if (const int by = near[v]; by >= 0 && by != i)
           why[by] = "cutting at " + shown(planes[by]->point) + " would remove " + title_of(ends, i);
   if (!possible()) return why;
-  const std::vector<int> number = drop_triangles(surface, gone);
-  std::vector<int> near_new(surface.points.size(), -1);
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] >= 0) near_new[number[v]] = near[v];
+  SurfacePart rest = take_faces(surface, std::move(left));
+  std::vector<int> number(surface.points.size(), -1), near_new;
+  for (int v : rest.vertex) {
+    number[v] = (int)near_new.size();
+    near_new.push_back(near[v]);
+  }
+  surface = std::move(rest.surface);
   for (int i = 0; i < n; ++i)
     for (std::vector<int>& rim : ends[i].rims)
       for (int& v : rim) v = number[v];

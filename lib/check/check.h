@@ -38,11 +38,13 @@ struct Findings {
   int worst_unforced = -1;       ///< the triangle with the smallest kappa of those that are not forced
   double kappa_off_corners = 0;  ///< see needles.h; kappa_min if no model edges are known
   int worst_off_corners = -1;
-  std::optional<double> kappa_by_cuts, kappa_elsewhere;  ///< see kappa_by_lines
-  std::vector<std::string> patch_faults;                 ///< see compare_patches
-  std::vector<int> unmarked_borders;    ///< half-edges, where the reference's patches end at model edges
-  std::vector<int> reversed;            ///< a triangle of each component
-  std::optional<SheetFindings> sheets;  ///< where they meet; see compare_sheets
+  /// Mean kappa of triangles within one edge length of an interface line, and of all others, without those at
+  /// borders and model edges; none where there are none. Equal where the result shows no trace of the cuts.
+  std::optional<double> kappa_by_cuts, kappa_elsewhere;
+  std::vector<std::string> patch_faults;  ///< see compare_patches
+  std::vector<int> unmarked_borders;      ///< half-edges, where the reference's patches end at model edges
+  std::vector<int> reversed;              ///< a triangle of each component
+  std::optional<SheetFindings> sheets;    ///< where they meet; see compare_sheets
 };
 
 /// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component
@@ -57,24 +59,16 @@ constexpr double most_deviation = 0.5;
 /// `sheets_meet`: border vertices at the same place are one. No size counts as smaller than `least_size`.
 /// `shares`: what was measured in shares, or null.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
-                 double most = std::numeric_limits<double>::infinity(), bool sheets_meet = false,
-                 double least_size = 0, const std::vector<ShareFindings>* shares = nullptr);
+                 double most = infinity, bool sheets_meet = false, double least_size = 0,
+                 const std::vector<ShareFindings>* shares = nullptr);
 
 /// Cuts the measurements of examine that take most time and memory into shares of at most `triangles`, which
-/// may be jobs of their own, and calls `take` for each: what `measure` returns for them is for examine.
+/// may be separate jobs, and calls `take` for each: what `measure` returns for them is for examine.
 void cut_examination(const Surface& result, const Surface& reference, int triangles, int samples, double most,
                      const TakeShare& take);
 
 /// Finds the half-edges, one of each edge, at which the result is folded: see lib/core/fold.h.
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
-
-/// Returns the mean kappa of triangles within one edge length of an interface line, and of all others; none
-/// where there are no such triangles. Triangles at borders and model edges count in neither. The means are
-/// equal where a result shows no trace of the cuts. The lines lie on `surface`.
-std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
-                                                                       const Quality& quality,
-                                                                       const Lines& lines,
-                                                                       const Mesh& surface);
 
 /// One figure of the report; NaN where a mesh has none.
 struct Figure {
@@ -129,12 +123,9 @@ enum Offense {
 /// uchar `fault` (bits of Offense). Vertices stay, some unused.
 Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
-/// Returns per triangle the factor by which its size is too large for a sound mesh, as `errors` of
-/// refined_size with limit 1; 0 where no triangle at its vertices is offending.
-std::vector<double> severity_of(const Surface& offending, const Mesh& mesh);
-
-/// Returns the result's sizes, smaller where it is too far from the reference and where triangles offend; the
-/// same where the reference has more crossings than triangles. Requires: vertex column `size`.
+/// Returns the result's sizes per vertex, reduced where it is farther from the reference than the contract
+/// allows, and next to offending faces. Returns them unchanged if the reference has more pairs of crossing
+/// triangles than triangles: smaller sizes do not help then. Requires: vertex column `size`.
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 

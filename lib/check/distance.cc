@@ -2,7 +2,6 @@
 #include "lib/check/distance.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -14,7 +13,6 @@ namespace meshpipe {
 namespace {
 
 constexpr int chunk = 256;  // points that one thread takes on: each search starts where the last ended
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double relative = 0.05, absolute = 1e-4;  // of the Hausdorff distance, of the diagonal
 
 /// A point's distance to the other surface, and the nearest triangle.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances between two surfaces.
 #pragma once
-#include <limits>
 #include <span>
 
 #include "lib/core/bvh.h"
@@ -54,8 +53,7 @@ OneWay distance_from(const Mesh& from, std::span<const int> triangles, const Con
 /// `most`, over the diagonal: a distance below it is bounded by it, with up to 64 `samples`.
 /// Deterministic at any thread count. Requires: both have triangles.
 Distance distance_between(const Connectivity& reference, const Bvh& reference_tree, const Connectivity& mesh,
-                          const Bvh& mesh_tree, int samples = 10000, std::span<const double> allowed = {},
-                          double most = std::numeric_limits<double>::infinity());
+                          const Bvh& mesh_tree, int samples, std::span<const double> allowed, double most);
 
 /// Returns the distance of each vertex of these triangles from a surface (0 for others), of which `tree` is.
 /// Neighbors in space should be close together among them, as in Bvh::order.

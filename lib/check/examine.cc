@@ -97,6 +97,9 @@ std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, c
   return folds;
 }
 
+namespace {
+
+/// Returns the means kappa_by_cuts and kappa_elsewhere. The lines lie on `surface`.
 std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Connectivity& result,
                                                                        const Quality& quality,
                                                                        const Lines& lines,
@@ -143,8 +146,6 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
   auto mean = [&](int i) { return count[i] ? std::optional(sum[i] / count[i]) : std::nullopt; };
   return {mean(1), mean(0)};
 }
-
-namespace {
 
 /// Returns the pairs of triangles of which one has a chord for an edge and the other lies along it, sorted.
 std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
@@ -263,7 +264,7 @@ void cut_examination(const Surface& result, const Surface& reference, int triang
                      const TakeShare& take) {
   Soundness soundness;
   const Mesh before = compared_reference(reference, soundness);
-  const double bounded = most < std::numeric_limits<double>::infinity() ? most * diagonal(before) : 0;
+  const double bounded = most < infinity ? most * diagonal(before) : 0;
   cut_check(result, before, allowed_on_triangles(result, 0), triangles, samples, bounded, take);
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "lib/core/bvh.h"
@@ -84,7 +83,7 @@ std::vector<double> angles_of_corners(const Connectivity& result, const std::vec
   const Mesh points = corner_points(reference, corners);
   const Bvh tree(points);
   std::vector<int> nearest(sectors.size(), -1);
-  std::vector<double> least(corners.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> least(corners.size(), infinity);
   for (std::size_t i = 0; i < sectors.size(); ++i) {
     if (sectors[i].whole != whole) continue;
     const auto hit = tree.nearest(result.point(result.from(sectors[i].first)));

@@ -2,12 +2,10 @@
 #include "lib/check/overlay.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace meshpipe {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double gap = 1e-8;  // of the area: what rounding may leave uncovered is no wider than its root
 
 /// A triangle in its own plane, and the coordinates of points there: x and y, and z above it.

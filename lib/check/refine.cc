@@ -4,26 +4,31 @@
 #include "lib/check/check.h"
 
 namespace meshpipe {
+namespace {
 
 /// Pairs of triangles that cross, and do not only touch, for each triangle: a reference with more is a tangle
 /// that no size unravels.
 constexpr double most_crossings = 1;
 
-std::vector<double> severity_of(const Surface& offending, const Mesh& mesh) {
-  constexpr double crowded = 2, crossing = 1.7;  // sizes of three tenths, and a little more
-  std::vector<double> at(mesh.points.size(), 0), severity(mesh.tris.size(), 0);
+/// Returns per triangle an error for refined_size with limit 1, at and next to offending faces, else 0.
+/// Deviation does not count.
+std::vector<double> errors_at_faults(const Surface& offending, const Mesh& mesh) {
+  constexpr double of_kappa = 2, of_others = 1.7;  // sizes of 0.3 and of 0.35
+  std::vector<double> at(mesh.points.size(), 0), error(mesh.tris.size(), 0);
   const auto& triangle = offending.face.get<int>("triangle");
   const auto& fault = offending.face.get<std::uint8_t>("fault");
   for (std::size_t i = 0; i < triangle.size(); ++i) {
     if (fault[i] == offends_deviation) continue;  // its size follows from the distance
     for (int v : mesh.tris[triangle[i]])
-      at[v] = std::max(at[v], fault[i] & offends_kappa ? crowded : crossing);
+      at[v] = std::max(at[v], fault[i] & offends_kappa ? of_kappa : of_others);
   }
   // the next mesh has other triangles there: include the neighbors
-  for (std::size_t t = 0; t < severity.size(); ++t)
-    for (int v : mesh.tris[t]) severity[t] = std::max(severity[t], at[v]);
-  return severity;
+  for (std::size_t t = 0; t < error.size(); ++t)
+    for (int v : mesh.tris[t]) error[t] = std::max(error[t], at[v]);
+  return error;
 }
+
+}  // namespace
 
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference) {
@@ -40,7 +45,7 @@ std::vector<double> smaller_sizes(const Contract& contract, const Findings& find
       deviation[t] *= most_deviation / findings.distance.deviation.allowed[t];
     size = refined_size(result, size, deviation, r.limit);
   }
-  return refined_size(result, size, severity_of(offending_faces(contract, findings, result), result), 1);
+  return refined_size(result, size, errors_at_faults(offending_faces(contract, findings, result), result), 1);
 }
 
 }  // namespace meshpipe

@@ -10,6 +10,7 @@
 #include "lib/check/check.h"
 #include "lib/core/boxes.h"
 #include "lib/core/intersect.h"
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 
@@ -29,8 +30,7 @@ void append_halved(const Mesh& mesh, double most, Mesh& out) {
   for (const auto& [x, y, z] : mesh.tris) {
     left.push_back({x + first, y + first, z + first});
     while (!left.empty()) {
-      const Tri t = left.back();
-      left.pop_back();
+      const Tri t = take_last(left);
       int edge = 0;
       double length = -1;
       for (int i = 0; i < 3; ++i)
@@ -161,7 +161,7 @@ Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& res
                        std::vector<double> allowed) {
   Measured m;
   const double unit = diagonal > 0 ? diagonal : 1;
-  m.off.assign(result.points.size(), std::numeric_limits<double>::infinity());
+  m.off.assign(result.points.size(), infinity);
   Deviation& deviation = m.distance.deviation;
   deviation.ratio.assign(result.tris.size(), 0);
   double largest[2] = {0, 0}, upper = 0, area[2] = {0, 0}, mean[2] = {0, 0}, squares[2] = {0, 0};
@@ -184,7 +184,7 @@ Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& res
   }
   deviation.allowed = std::move(allowed);
   for (double& off : m.off)
-    if (!(off < std::numeric_limits<double>::infinity())) off = 0;  // of unused vertices
+    if (!(off < infinity)) off = 0;  // of unused vertices
   sort_unique(m.intersections);
   sort_unique(m.folds);
   m.distance.to_reference = largest[1] / unit, m.distance.to_mesh = largest[0] / unit;

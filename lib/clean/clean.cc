@@ -2,12 +2,12 @@
 #include "lib/clean/clean.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "lib/clean/repair.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
 #include "lib/core/largest_patch.h"
+#include "lib/core/lists.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -24,8 +24,7 @@ bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanRep
   if (n <= keep) return false;
   std::vector<double> area(n, 0);
   for (int t = 0; t < (int)r.tris.size(); ++t) area[component[t]] += norm(area_vector(r, points, t));
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = identity(n);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area[a] > area[b]; });
   std::vector<char> small(n, 0), gone(r.tris.size(), 0);
   for (int i = keep; i < n; ++i) small[order[i]] = 1;

@@ -88,14 +88,13 @@ struct CleanReport {
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
-/// Repairs a surface: welds vertices, drops degenerate and duplicate triangles, orients every component or
-/// cuts it open where that cannot be done, splits non-manifold edges and vertices, removes triangles of zero
-/// area, drops small components and fills holes. A sound surface stays bit for bit as it is, copies of
-/// vertices that keep fans apart included; a repaired one loses face column `model` and numbers its vertices
-/// by first use if some had to go. Sheets that are kept stay non-manifold, with model edges between them and
-/// a patch each. Self-intersections are resolved when all that is done, and then connectivity is repaired
-/// once more. Throws: NotAdmissible if no triangle is left; the report then holds the offending faces, and
-/// the surface is as it was.
+/// Repairs a surface in this order: welds vertices; drops degenerate and duplicate triangles; orients each
+/// component, or cuts it open where that is impossible; splits non-manifold edges and vertices; removes
+/// triangles of zero area; drops small components; fills holes. With `resolve`, self-intersections come next
+/// (`outer` tries them first, after welding), then the repair again. A sound surface stays bit for bit the
+/// same; a repaired one loses face column `model`; kept sheets share vertices, with a patch each. Throws:
+/// NotAdmissible, with the surface unchanged, if its coordinates are too large or small, if no triangle is
+/// left (the report has the offending faces), or as resolve does.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
 

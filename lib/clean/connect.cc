@@ -7,6 +7,7 @@
 
 #include "lib/clean/repair.h"
 #include "lib/core/edges.h"
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -90,8 +91,7 @@ double shorten(const Repair& r, const std::vector<Vec3>& points, const std::vect
     return norm(point(r, points, origin(r.tris, h)) - point(r, points, target(r.tris, h)));
   };
   for (std::vector<int> todo = members; !todo.empty();) {
-    const int t = todo.back();
-    todo.pop_back();
+    const int t = take_last(todo);
     double gain = 0, around = 0;
     for (int h = 3 * t; h < 3 * t + 3; ++h)
       if (r.opposite[h] >= 0) gain += agree(r, side, h) ? -length(h) : length(h), around += length(h);

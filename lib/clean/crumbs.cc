@@ -38,8 +38,7 @@ std::vector<char> find_crumbs(const Mesh& mesh, const Mesh& input, int& n_crumbs
     const int c = component[t];
     const auto& [i, j, k] = mesh.tris[t];
     if (seed[c] < 0) seed[c] = i;
-    const Vec3 o = mesh.points[seed[c]];  // near, for the digits
-    volume[c] += dot(mesh.points[i] - o, cross(mesh.points[j] - o, mesh.points[k] - o));
+    volume[c] += volume6(mesh, t, mesh.points[seed[c]]);  // from near, for the digits
     cut[c] |= is_new[i] | is_new[j] | is_new[k];
     for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= opposite[h] < 0;
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <numeric>
 #include <queue>
 #include <tuple>
 
 #include "lib/clean/repair.h"
 #include "lib/core/least_area.h"
+#include "lib/core/lists.h"
 #include "lib/core/predicates.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
@@ -74,8 +74,7 @@ class EarCutter {
       previous_.push_back((i + n - 1) % n);
       next_.push_back((i + 1) % n);
     }
-    by_x_.resize(n);
-    std::iota(by_x_.begin(), by_x_.end(), 0);
+    by_x_ = identity(n);
     std::sort(by_x_.begin(), by_x_.end(),
               [&](int a, int b) { return std::pair(flat_[a].x, a) < std::pair(flat_[b].x, b); });
   }
@@ -160,8 +159,7 @@ class HoleFiller {
   std::vector<Tri> triangles() const {
     const int n = (int)corners_.size();
     std::vector<Tri> tris;
-    std::vector<int> kept(n);
-    std::iota(kept.begin(), kept.end(), 0);
+    std::vector<int> kept = identity(n);
     if (n > most_corners) {
       auto joined = [&](int i, int j) {
         bool is = false;

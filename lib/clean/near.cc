@@ -2,7 +2,6 @@
 // Vertices that only rounding separates.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "lib/clean/repair.h"
 #include "lib/core/weld.h"
@@ -48,7 +47,7 @@ int merge_noise(const Mesh& mesh, const std::vector<char>& candidates, double to
                 std::vector<int>& same) {
   std::vector<int> merged = same;
   if (candidates.empty() || merge_near(mesh.points, candidates, tolerance, merged) == 0) return 0;
-  std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> shortest(mesh.points.size(), infinity);
   for (const Tri& t : mesh.tris)
     for (int i = 0; i < 3; ++i) {
       const int a = merged[t[i]], b = merged[t[(i + 1) % 3]];

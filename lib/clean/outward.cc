@@ -10,19 +10,6 @@
 namespace meshpipe {
 namespace {
 
-/// Whether the ray from p in direction x crosses the triangle. `touches`: p lies on it.
-bool crossed(Vec3 p, Vec3 a, Vec3 b, Vec3 c, bool& touches) {
-  if (!line_passes(p, a, b, c)) return false;
-  double side = orient3d(a, b, c, p);
-  if (side == 0) {
-    touches = true;
-    return false;
-  }
-  // of a point far out in direction x
-  const double turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});
-  return (side > 0) == (turn > 0);
-}
-
 /// Returns the components that contain each closed component: all its sample vertices lie inside, except
 /// those that lie on the container. A component with all samples on another is flagged in `unclear`.
 std::vector<std::vector<int>> containers(const Repair& r, const std::vector<Vec3>& points,
@@ -54,10 +41,11 @@ std::vector<std::vector<int>> containers(const Repair& r, const std::vector<Vec3
       hits.clear();
       tree.overlapping({p, {end, p.y, p.z}}, [&](int t) {
         if (of[t] == c) return;
-        bool touches = false;
-        const Tri& v = mesh.tris[t];
-        if (crossed(p, points[v[0]], points[v[1]], points[v[2]], touches)) hits.push_back(of[t]);
-        if (touches) touched.push_back(of[t] * samples + i);
+        const Vec3 x = points[mesh.tris[t][0]], y = points[mesh.tris[t][1]], z = points[mesh.tris[t][2]];
+        if (ray_crossing(p, x, y, z) != 0)
+          hits.push_back(of[t]);
+        else if (line_passes(p, x, y, z) && orient3d(x, y, z, p) == 0)
+          touched.push_back(of[t] * samples + i);
       });
       std::sort(hits.begin(), hits.end());
       for (std::size_t j = 0; j < hits.size();) {

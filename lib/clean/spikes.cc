@@ -2,11 +2,10 @@
 // Single points far out of their surface, as scanners and broken files have them.
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <map>
-#include <numeric>
 
 #include "lib/clean/clean.h"
+#include "lib/core/lists.h"
 #include "lib/core/weld.h"
 
 namespace meshpipe {
@@ -15,13 +14,12 @@ namespace {
 /// What the edges at a vertex lead to.
 struct Rim {
   Vec3 low, high, sum;
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = infinity;
   int count = 0;
 
   void add(Vec3 at, double distance) {
     if (count == 0) low = high = at;
-    low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
-    high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    low = lower(low, at), high = upper(high, at);
     sum = sum + at;
     nearest = std::min(nearest, distance);
     ++count;
@@ -82,8 +80,7 @@ int Spikes::parse(const std::string& remark) {
 Spikes find_spikes(const Surface& s) {
   constexpr double extents = 5;   // of their neighbors; edges of sound triangles are no longer than that
   constexpr double most = 0.001;  // of the vertices: more are what the surface consists of
-  std::vector<int> same(s.points.size());
-  std::iota(same.begin(), same.end(), 0);
+  std::vector<int> same = identity(s.points.size());
   Spikes found;
   double longest = 0;
   for (const auto& [v, rim] : rims_of(s, same, apexes(s, extents))) {

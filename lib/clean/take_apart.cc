@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <numeric>
 
 #include "lib/clean/clean.h"
 #include "lib/core/edges.h"
+#include "lib/core/lists.h"
 #include "lib/core/split_edges.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
@@ -27,8 +27,8 @@ std::vector<int> open_slits(Surface& s) {
       if (closes) first[half_edge(e)] = half_edge(uses[0]);
   });
   std::vector<char> mark;
-  std::vector<int> number(n);  // of a vertex, those in the middle of half-edges included, which are one
-  std::iota(number.begin(), number.end(), 0);
+  std::vector<int> number =
+      identity(n);  // of a vertex, those in the middle of half-edges included, which are one
   std::vector<int> rows = number;
   for (int h = 0; h < (int)first.size(); ++h) {
     mark.push_back(first[h] >= 0);
@@ -82,8 +82,7 @@ RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given)
   Solids solids{std::vector<std::array<int, 2>>(surface.tris.size(), {0, 0})};
   if (meet || !flips) solids = find_solids(surface);
   report.volume = solids.volume;
-  report.label.resize(solids.volume.size());
-  std::iota(report.label.begin(), report.label.end(), 0);
+  report.label = identity(solids.volume.size());
   if (!given.empty()) report.label = labels_of(solids, given);
   surface.face.erase("model");
   split_sheets(surface);

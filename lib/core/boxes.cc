@@ -46,8 +46,7 @@ void split(std::vector<Item>::iterator first, std::vector<Item>::iterator last, 
 class Grid {
  public:
   Grid(const Mesh& mesh, double side, double most) {
-    Box box = box_of(mesh, 0);
-    for (int t = 1; t < (int)mesh.tris.size(); ++t) box = join(box, box_of(mesh, t));
+    const Box box = box_of(mesh);
     lo_ = box.lo;
     const Vec3 d = box.hi - box.lo;
     if (!(side > 1e-6 * norm(d))) side = std::max(1e-6 * norm(d), 1e-300);  // a mesh without area
@@ -127,16 +126,16 @@ std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vect
   return boxes;
 }
 
-Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
+Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& tiles, double reach,
                    const Mesh* reference, double least) {
   constexpr double edges_per_cube = 4;
-  const int tiles = (int)boxes.size(), n = (int)mesh.tris.size();
+  const int count = (int)tiles.size(), n = (int)mesh.tris.size();
   const Grid grid(mesh, edges_per_cube * size_for_count(total_area(mesh), n), std::max(1000.0, 0.5 * n));
   std::vector<int> own(n, -1);
-  std::vector<std::vector<int>> cubes(tiles);
-  parallel_for(tiles, [&](int i) {
+  std::vector<std::vector<int>> cubes(count);
+  parallel_for(count, [&](int i) {
     std::vector<char> seen(grid.size());
-    for (int t : boxes[i]) {
+    for (int t : tiles[i]) {
       own[t] = i;
       Box box = box_of(mesh, t);
       const Vec3 d = box.hi - box.lo;
@@ -148,11 +147,11 @@ Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes,
     }
   });
   const Lists tiles_at = lists_of(grid.size(), [&](auto add) {
-    for (int i = 0; i < tiles; ++i)
+    for (int i = 0; i < count; ++i)
       for (int cube : cubes[i]) add(cube, i);
   });
-  return reference ? triangles_in_cubes(*reference, grid, tiles_at, tiles, {})
-                   : triangles_in_cubes(mesh, grid, tiles_at, tiles, own);
+  return reference ? triangles_in_cubes(*reference, grid, tiles_at, count, {})
+                   : triangles_in_cubes(mesh, grid, tiles_at, count, own);
 }
 
 Mesh part_of(const Mesh& mesh, std::span<const int> triangles, std::vector<int>* vertices) {

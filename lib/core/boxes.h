@@ -13,10 +13,10 @@ namespace meshpipe {
 /// their rows, ascending in each box.
 std::vector<std::vector<int>> split_into_boxes(const Mesh& mesh, const std::vector<int>& triangles, int most);
 
-/// Returns for each of several tiles the triangles of the reference that are no farther from it than `reach`
-/// of its edges, or the length `least`, and some others; where `reference` is null, triangles of the mesh
-/// that are not in the tile.
-Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& boxes, double reach,
+/// Returns for each tile, a list of triangles of the mesh, the triangles near it: all within `reach` extents,
+/// or the length `least`, of the bounding box of one of its triangles, and some farther ones; of `reference`,
+/// or where that is null, of the mesh without the tile.
+Lists around_tiles(const Mesh& mesh, const std::vector<std::vector<int>>& tiles, double reach,
                    const Mesh* reference, double least = 0);
 
 /// Returns these triangles as a mesh of their own. `vertices`, if given, receives the rows of its vertices.

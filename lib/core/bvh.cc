@@ -5,13 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lib/core/segments.h"
-
 namespace meshpipe {
 namespace {
 
 constexpr int task_size = 4096;  // smaller subtrees are not worth a task
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The four parts that `count` items are split into: halves of halves.
 std::array<int, 4> parts(int count) {
@@ -31,24 +28,18 @@ std::array<int, 2> tree_sizes(int n) {
   return sizes;
 }
 
-Vec3 segment_weights(Vec3 p, Vec3 a, Vec3 b) {
-  const double t = nearest_on_segment(p, a, b);
-  const Vec3 e = p - lerp(a, b, t);
-  return {1 - t, t, dot(e, e)};
-}
-
 std::array<double, 3> closest_on_edges(Vec3 p, const std::array<Vec3, 3>& v) {
   std::array<double, 3> best{1, 0, 0};
   double closest = infinity;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const Vec3 w = segment_weights(p, v[i], v[j]);
-    if (w.z < closest) {
-      closest = w.z;
-      best = {0, 0, 0};
-      best[i] = w.x;
-      best[j] = w.y;
-    }
+    const double t = nearest_fraction(p, v[i], v[j]);
+    const Vec3 e = p - lerp(v[i], v[j], t);
+    if (!(dot(e, e) < closest)) continue;
+    closest = dot(e, e);
+    best = {0, 0, 0};
+    best[i] = 1 - t;
+    best[j] = t;
   }
   return best;
 }
@@ -84,10 +75,19 @@ std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return {va / area, vb / area, vc / area};
 }
 
-Vec3 closest_point(const Mesh& mesh, int t, Vec3 p) {
+Place closest_place(const Mesh& mesh, int t, Vec3 p) {
   const auto& [a, b, c] = mesh.tris[t];
   const auto w = closest_on_triangle(p, mesh.points[a], mesh.points[b], mesh.points[c]);
-  return w[0] * mesh.points[a] + w[1] * mesh.points[b] + w[2] * mesh.points[c];
+  return {t, w[0], w[1], w[2]};
+}
+Vec3 closest_point(const Mesh& mesh, int t, Vec3 p) {
+  return value_at(closest_place(mesh, t, p), mesh.points, mesh.tris);
+}
+
+Box box_of(const Mesh& mesh) {
+  Box box = box_of(mesh, 0);
+  for (int t = 1; t < (int)mesh.tris.size(); ++t) box = join(box, box_of(mesh, t));
+  return box;
 }
 
 /// A triangle and its center in own units.
@@ -99,8 +99,7 @@ struct Bvh::Item {
 Bvh::Bvh(const Mesh& mesh) : mesh_(mesh), order_(mesh.tris.size()) {
   const int n = (int)mesh.tris.size();
   if (n == 0) throw std::logic_error("a bvh needs a triangle");
-  Box all = box_of(mesh, 0);
-  for (int t = 0; t < n; ++t) all = join(all, box_of(mesh, t));
+  const Box all = box_of(mesh);
   center_ = 0.5 * (all.lo + all.hi);
   const Vec3 half = all.hi - center_;
   const double extent = std::max({half.x, half.y, half.z});

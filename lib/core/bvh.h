@@ -12,21 +12,22 @@ namespace meshpipe {
 /// Closest point of triangle abc to p, as barycentric coordinates (the regions of Ericson, Real-Time
 /// Collision Detection, 5.1.5). A triangle without area counts as its three edges.
 std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
-/// The same for triangle t of a mesh, as a point.
+/// The same for triangle t of a mesh.
+Place closest_place(const Mesh& mesh, int t, Vec3 p);
 Vec3 closest_point(const Mesh& mesh, int t, Vec3 p);
 
 /// A box with sides along the axes.
 struct Box {
   Vec3 lo, hi;
 };
-inline Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-inline Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 inline Box join(const Box& a, const Box& b) { return {lower(a.lo, b.lo), upper(a.hi, b.hi)}; }
 inline Box box_of(const Mesh& mesh, int t) {
   const Vec3 &a = mesh.points[mesh.tris[t][0]], &b = mesh.points[mesh.tris[t][1]],
              &c = mesh.points[mesh.tris[t][2]];
   return {lower(lower(a, b), c), upper(upper(a, b), c)};
 }
+/// The box of all triangles. Requires: there is one.
+Box box_of(const Mesh& mesh);
 /// Without branches, as they could not be predicted.
 inline bool overlap(const Box& a, const Box& b) {
   return (a.lo.x <= b.hi.x) & (a.hi.x >= b.lo.x) & (a.lo.y <= b.hi.y) & (a.hi.y >= b.lo.y) &

@@ -2,13 +2,15 @@
 #include "lib/core/cdt.h"
 
 #include <algorithm>
+#include <bit>
 #include <deque>
-#include <numeric>
 #include <string>
 
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
+#include "lib/core/random.h"
 
 namespace meshpipe {
 namespace {
@@ -39,26 +41,17 @@ std::uint32_t hilbert(std::uint32_t x, std::uint32_t y) {
 /// Returns an order of insertion in random rounds of doubling size, each along Hilbert's curve: expected
 /// n log n time for any points (Amenta, Choi, Rote 2003).
 std::vector<int> insertion_order(const std::vector<Vec2>& points, Vec2 lo, double extent) {
+  constexpr int rounds = 8;
   int n = (int)points.size();
   std::vector<std::uint64_t> key(n);
+  Random random(0);
   for (int i = 0; i < n; ++i) {
-    std::uint64_t r = (i + 1) * 0x9E3779B97F4A7C15ull;
-    r = (r ^ (r >> 30)) * 0xBF58476D1CE4E5B9ull;
-    r = (r ^ (r >> 27)) * 0x94D049BB133111EBull;
-    int round = r >> 63   ? 0
-                : r >> 62 ? 1
-                : r >> 61 ? 2
-                : r >> 60 ? 3
-                : r >> 59 ? 4
-                : r >> 58 ? 5
-                : r >> 57 ? 6
-                          : 7;
+    const int round = std::min(std::countl_zero(random.bits()), rounds - 1);
     auto column = [&](double x) { return (std::uint32_t)(x * (65535 / extent)); };
-    key[i] =
-        (std::uint64_t)(7 - round) << 32 | hilbert(column(points[i].x - lo.x), column(points[i].y - lo.y));
+    key[i] = (std::uint64_t)(rounds - 1 - round) << 32 |
+             hilbert(column(points[i].x - lo.x), column(points[i].y - lo.y));
   }
-  std::vector<int> order(n);
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = identity(n);
   std::sort(order.begin(), order.end(),
             [&](int i, int j) { return key[i] != key[j] ? key[i] < key[j] : i < j; });
   return order;
@@ -222,10 +215,7 @@ void insert_all(Cdt& cdt) {
   const int n = (int)cdt.points.size();
   if (n < 3) throw GoalMissed("no region with " + std::to_string(n) + " points");
   Vec2 lo = cdt.points[0], hi = cdt.points[0];
-  for (Vec2 p : cdt.points) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
-  }
+  for (Vec2 p : cdt.points) lo = lower(lo, p), hi = upper(hi, p);
   double extent = std::max(hi.x - lo.x, hi.y - lo.y);
   if (!(extent > 0)) fail_at("all points are at ", lo);
   std::vector<int> order = insertion_order(cdt.points, lo, extent);
@@ -315,8 +305,7 @@ void recover(Cdt& cdt, int a, int b, std::uint8_t kind) {
 
 /// Flips free edges until all are Delaunay.
 void make_delaunay(Cdt& cdt) {
-  std::vector<int> todo(3 * cdt.tris.size());
-  std::iota(todo.begin(), todo.end(), 0);
+  std::vector<int> todo = identity(3 * cdt.tris.size());
   while (!todo.empty()) {
     int h = todo.back(), o = cdt.opposite[h];
     todo.pop_back();
@@ -337,8 +326,7 @@ void carve(Cdt& cdt, int n) {
   std::vector<int> todo{cdt.at[n]};
   side[cdt.at[n]] = 0;
   while (!todo.empty()) {
-    int t = todo.back();
-    todo.pop_back();
+    int t = take_last(todo);
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       if (cdt.opposite[h] < 0) continue;
       signed char s = side[t] ^ (cdt.fixed[h] == Cdt::border_segment);

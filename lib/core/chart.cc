@@ -2,17 +2,13 @@
 #include "lib/core/chart.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "lib/core/error.h"
 #include "lib/core/predicates.h"
-#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 int cell_of(double x, double low, double cells_per_unit, int n) {
   double c = (x - low) * cells_per_unit;
@@ -40,7 +36,7 @@ void visit_cells(const ChartGrid& g, const std::array<Vec2, 3>& t, Visit visit) 
   }
   for (int row = first; row <= last; ++row) {
     double y0 = g.low.y + row / g.cells_per_unit - slack, y1 = y0 + 1 / g.cells_per_unit + 2 * slack;
-    double x0 = inf, x1 = -inf;
+    double x0 = infinity, x1 = -infinity;
     for (int i = 0; i < 3; ++i) {
       Vec2 a = t[i], b = t[(i + 1) % 3];
       if (a.y > b.y) std::swap(a, b);
@@ -75,33 +71,19 @@ Place place_inside(const Chart& chart, int t, Vec2 p) {
   return {t, s0 / sum, s1 / sum, s2 / sum};
 }
 
-/// The nearest place to p on half-edge h, and its squared distance.
-Place place_on_edge(const Chart& chart, int h, Vec2 p, double& distance2) {
-  Vec2 a = chart.uv[origin(chart.mesh.tris, h)], b = chart.uv[target(chart.mesh.tris, h)];
-  const double t = nearest_on_segment(p, a, b);
-  Vec2 d = p - lerp(a, b, t);
-  distance2 = dot(d, d);
-  double bary[3] = {0, 0, 0};
-  bary[h % 3] = 1 - t;
-  bary[(h + 1) % 3] = t;
-  return {h / 3, bary[0], bary[1], bary[2]};
-}
-
 /// Keeps the border edge nearest to p among those looked at.
 struct Nearest {
   const Chart& chart;
   Vec2 p;
   Place place;
-  double distance2 = inf;
+  double distance2 = infinity;
   void look_at(int t) {
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       if (chart.opposite[h] >= 0) continue;
-      double d2;
-      Place q = place_on_edge(chart, h, p, d2);
-      if (d2 < distance2) {
-        distance2 = d2;
-        place = q;
-      }
+      const Vec2 a = chart.uv[origin(chart.mesh.tris, h)], b = chart.uv[target(chart.mesh.tris, h)];
+      const double t = nearest_fraction(p, a, b);
+      const Vec2 d = p - lerp(a, b, t);
+      if (dot(d, d) < distance2) distance2 = dot(d, d), place = place_on_edge(h, 1 - t, t);
     }
   }
 };
@@ -141,14 +123,18 @@ Place look_up(const Chart& chart, Vec2 p) {
 
 }  // namespace
 
+Place place_on_edge(int h, double from, double to) {
+  double b[3] = {0, 0, 0};
+  b[h % 3] = from;
+  b[(h + 1) % 3] = to;
+  return {h / 3, b[0], b[1], b[2]};
+}
+
 void index_chart(Chart& chart) {
   const auto& tris = chart.mesh.tris;
   chart.opposite = opposite_halfedges(tris, (int)chart.uv.size());
-  Vec2 low{inf, inf}, high{-inf, -inf};
-  for (Vec2 p : chart.uv) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  Vec2 low{infinity, infinity}, high{-infinity, -infinity};
+  for (Vec2 p : chart.uv) low = lower(low, p), high = upper(high, p);
   ChartGrid& g = chart.grid;
   g = {};
   double width = high.x - low.x, height = high.y - low.y;

@@ -30,6 +30,16 @@ struct Place {
   int face = -1;
   double b0 = 1, b1 = 0, b2 = 0;
 };
+/// Returns the place on half-edge h with these weights of its ends.
+Place place_on_edge(int h, double from, double to);
+/// Returns the corner of the largest weight.
+inline int nearest_corner(const Place& p) { return p.b0 >= p.b1 && p.b0 >= p.b2 ? 0 : p.b1 >= p.b2 ? 1 : 2; }
+/// Interpolates values at the vertices of a place's triangle.
+template <class T>
+T value_at(const Place& p, const std::vector<T>& values, const std::vector<Tri>& tris) {
+  const Tri& v = tris[p.face];
+  return p.b0 * values[v[0]] + p.b1 * values[v[1]] + p.b2 * values[v[2]];
+}
 
 /// Builds the charts of a surface from its part labels and the rows of the stream's chart_vertex table
 /// (part, vertex, u, v), not indexed. Throws BadInput if a row is missing, doubled or out of range, or a

@@ -18,7 +18,7 @@ class ChartRows {
         vertex_(table.get<int>("vertex")),
         u_(table.get<double>("u")),
         v_(table.get<double>("v")),
-        rows_(lists_by(static_cast<int>(n_vertices), vertex_)) {}
+        rows_(lists_by((int)n_vertices, vertex_)) {}
   /// Throws: BadInput if the part has no row for the vertex.
   Vec2 uv(int part, int vertex) const {
     for (int r : rows_[vertex])

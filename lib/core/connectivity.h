@@ -22,6 +22,12 @@ inline Vec3 centroid(const Mesh& mesh, int t) {
   return (1.0 / 3) * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]]);
 }
 
+/// Returns six times the volume between triangle t and a point, positive behind the triangle.
+inline double volume6(const Mesh& mesh, int t, Vec3 p) {
+  const Tri& v = mesh.tris[t];
+  return dot(mesh.points[v[0]] - p, cross(mesh.points[v[1]] - p, mesh.points[v[2]] - p));
+}
+
 inline const std::vector<std::uint8_t> no_model;
 
 /// A view of a mesh, its opposite half-edges, and the bits of its model edges; owns none of them.

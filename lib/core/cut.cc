@@ -2,7 +2,6 @@
 #include "lib/core/cut.h"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <tuple>
 
@@ -208,17 +207,8 @@ class Splitter {
 
   /// Face columns of the appended pieces.
   void copy_columns() {
-    for (Column& c : s_.face.columns) {
-      if (c.name == "model") continue;
-      std::visit(
-          [&](auto& values) {
-            for (int t : source_) {
-              const auto copy = values[t];
-              values.push_back(copy);
-            }
-          },
-          c.data);
-    }
+    append_rows(s_.face, source_);
+    if (model_) std::copy(bits_.begin(), bits_.end(), model_->end() - (std::ptrdiff_t)bits_.size());
     s_.face.rows = s_.tris.size();
   }
 
@@ -230,7 +220,7 @@ class Splitter {
   }
   void append(int t, Tri corners, int bits, int side_value, std::vector<int>& side) {
     s_.tris.push_back(corners);
-    if (model_) model_->push_back((std::uint8_t)bits);
+    bits_.push_back((std::uint8_t)bits);
     side.push_back(side_value);
     source_.push_back(t);
   }
@@ -239,6 +229,7 @@ class Splitter {
   const std::vector<int>& cut_;
   std::vector<std::uint8_t>* model_ = nullptr;
   std::vector<int> source_;
+  std::vector<std::uint8_t> bits_;
 };
 
 /// The half-edges whose neighbors a cut changes, except those of pieces to come: those of triangles that
@@ -315,9 +306,7 @@ int cut(const CutSurface& connected, const std::vector<signed char>& sign, const
 
 void name_origins(Surface& surface) {
   if (surface.face.has("origin")) return;
-  std::vector<int> identity(surface.tris.size());
-  std::iota(identity.begin(), identity.end(), 0);
-  surface.face.set("origin", std::move(identity));
+  surface.face.set("origin", identity(surface.tris.size()));
 }
 
 int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, const std::vector<char>& active,
@@ -335,14 +324,7 @@ int cut_by_scalar_field(Surface& surface, const std::vector<double>& field, cons
 int cut_along_line(const CutSurface& s, const LevelLine& line, const std::vector<char>& active,
                    std::vector<int>& side) {
   check_lengths(s.surface, line.sign.size(), active);
-  return cut(s, line.sign, active, side, [&](int a, int b) {
-    const auto place = std::lower_bound(
-        line.crossing.begin(), line.crossing.end(), std::pair(a, b),
-        [](const EdgeCrossing& c, std::pair<int, int> edge) { return std::pair(c.low, c.high) < edge; });
-    if (place == line.crossing.end() || place->low != a || place->high != b)
-      throw std::logic_error("cut: no crossing between " + std::to_string(a) + " and " + std::to_string(b));
-    return place->at;
-  });
+  return cut(s, line.sign, active, side, [&](int a, int b) { return crossing_on(line, a, b); });
 }
 
 }  // namespace meshpipe

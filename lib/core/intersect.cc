@@ -187,6 +187,11 @@ bool triangles_intersect(const Mesh& mesh, int s, int t) {
   return orient2d(from, to, drop(w, axis)) == orient2d(from, to, drop(x, axis));
 }
 
+bool has_area(Vec3 a, Vec3 b, Vec3 c) {
+  for (int axis : {2, 0, 1})
+    if (orient2d(drop(a, axis), drop(b, axis), drop(c, axis)) != 0) return true;
+  return false;
+}
 bool has_area(const Mesh& mesh, int t) { return view_axis(corners(mesh, t)) >= 0; }
 
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh) {

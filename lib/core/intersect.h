@@ -14,7 +14,8 @@ namespace meshpipe {
 /// opposite edge meets the other.
 bool triangles_intersect(const Mesh& mesh, int s, int t);
 
-/// Has triangle t area, by exact arithmetic?
+/// Has a triangle area, by exact arithmetic?
+bool has_area(Vec3 a, Vec3 b, Vec3 c);
 bool has_area(const Mesh& mesh, int t);
 
 /// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/least_area.h"
 
-#include <limits>
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
 
-constexpr double impossible = std::numeric_limits<double>::infinity();
 /// Weight of squared edge lengths against the area, over the squared number of corners: decides between
 /// triangulations of a plane hole, which all have the same area unless they fold. A fold at the rim of n
 /// corners costs an area of 1/n of what it saves in lengths, times the angle of the rim there, about 1/n.
@@ -28,7 +27,7 @@ class Polygon {
     for (int span = 2; span < n_; ++span)
       for (int i = 0; i + span < n_; ++i) {
         const int j = i + span;
-        double least = impossible;
+        double least = infinity;
         const bool chord = span < n_ - 1;  // the last edge, n-1 to 0, is the loop's own
         if (!chord || !joined_[i * n_ + j])
           for (int k = i + 1; k < j; ++k) {
@@ -41,11 +40,10 @@ class Polygon {
         cost_[i * n_ + j] = least;
       }
     std::vector<Tri> tris;
-    if (cost_[n_ - 1] == impossible) return tris;
+    if (cost_[n_ - 1] == infinity) return tris;
     std::vector<std::array<int, 2>> stack{{0, n_ - 1}};
     while (!stack.empty()) {
-      const auto [i, j] = stack.back();
-      stack.pop_back();
+      const auto [i, j] = take_last(stack);
       if (j - i < 2) continue;
       const int k = apex_[i * n_ + j];
       tris.push_back({i, k, j});

@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <numbers>
-#include <tuple>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace meshpipe {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 
-auto edge_of(const EdgeCrossing& c) { return std::tie(c.low, c.high); }
+using Edge = std::pair<int, int>;
+
+Edge edge_of(const EdgeCrossing& c) { return {c.low, c.high}; }
 
 /// By the edge, each once.
 std::vector<EdgeCrossing> sorted(std::vector<EdgeCrossing> list) {
@@ -99,12 +103,9 @@ class Pull {
     for (int h = 0; h < c.n_half_edges(); ++h) {
       const int a = c.from(h), b = c.to(h);
       if (c.is_border(h) || first_[a] < 0) first_[a] = h;
-      if (c_.is_crossed(h)) {
-        const auto found = std::lower_bound(
-            line.crossing.begin(), line.crossing.end(), std::pair(std::min(a, b), std::max(a, b)),
-            [](const EdgeCrossing& x, std::pair<int, int> e) { return std::pair(x.low, x.high) < e; });
-        c_.set(h, a < b ? found->at : 1 - found->at);
-      }
+      if (!c_.is_crossed(h)) continue;
+      const double at = crossing_on(line, std::min(a, b), std::max(a, b));
+      c_.set(h, a < b ? at : 1 - at);
     }
     for (int v = 0; v < (int)first_.size(); ++v)
       if (c_.sign[v] == 0 && first_[v] >= 0) on_.push_back(v);
@@ -251,6 +252,15 @@ class Pull {
 };
 
 }  // namespace
+
+double crossing_on(const LevelLine& line, int low, int high) {
+  const Edge edge(low, high);
+  const auto found = std::lower_bound(line.crossing.begin(), line.crossing.end(), edge,
+                                      [](const EdgeCrossing& c, const Edge& e) { return edge_of(c) < e; });
+  if (found == line.crossing.end() || edge_of(*found) != edge)
+    throw std::logic_error("no crossing between " + std::to_string(low) + " and " + std::to_string(high));
+  return found->at;
+}
 
 void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<Hold>& hold, double snap,
                    int sweeps) {

@@ -21,6 +21,9 @@ struct LevelLine {
   std::vector<EdgeCrossing> crossing;  ///< sorted by the edge; one for each edge between unlike sides
 };
 
+/// Returns where the line crosses the edge between low < high. Throws: std::logic_error if it does not.
+double crossing_on(const LevelLine& line, int low, int high);
+
 /// What becomes of a vertex when a line is pulled straight: it keeps its side, or it may change sides.
 enum class Hold : char { stays, moves };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows by key, in flat arrays.
+// Lists of numbers: what std::vector lacks, and rows by key in flat arrays.
 #pragma once
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace meshpipe {
@@ -12,6 +13,21 @@ template <class T>
 void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// Removes the last of a list and returns it.
+template <class T>
+T take_last(std::vector<T>& list) {
+  T last = std::move(list.back());
+  list.pop_back();
+  return last;
+}
+
+/// Returns the numbers 0 .. n - 1.
+inline std::vector<int> identity(std::size_t n) {
+  std::vector<int> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
 }
 
 /// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
@@ -114,16 +113,13 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// The box of points, and the largest of their coordinates.
 struct Extent {
   double far = 0;
   Vec3 lo{infinity, infinity, infinity}, hi{-infinity, -infinity, -infinity};
   void add(const Vec3& p) {
     far = std::max({far, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    lo = lower(lo, p), hi = upper(hi, p);
   }
   double size() const { return std::max({0.0, hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
 };

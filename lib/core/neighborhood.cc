@@ -23,34 +23,41 @@ void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
 
 }  // namespace
 
+SurfacePart take_faces(const Surface& whole, std::vector<int> faces) {
+  SurfacePart part;
+  part.face = std::move(faces);
+  std::vector<int> number(whole.points.size(), -1);
+  for (int t : part.face)
+    for (int v : whole.tris[t]) number[v] = 0;
+  for (int v = 0; v < (int)number.size(); ++v)
+    if (number[v] == 0) {
+      number[v] = (int)part.vertex.size();
+      part.vertex.push_back(v);
+      part.surface.points.push_back(whole.points[v]);
+    }
+  for (int t : part.face) {
+    const Tri& v = whole.tris[t];
+    part.surface.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
+  }
+  part.surface.vertex = rows_of(whole.vertex, part.vertex);
+  part.surface.face = rows_of(whole.face, part.face);
+  return part;
+}
+
 Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part,
                                int corners) {
   const Surface& whole = connected.surface;
   const std::vector<int>& opposite = connected.opposite;
-  Neighborhood near;
   const int n = (int)whole.tris.size();
   std::vector<char> within(whole.points.size(), 0);
   for (int t = 0; t < n; ++t)
     if (label[t] == part)
       for (int v : whole.tris[t]) within[v] = 1;
+  std::vector<int> faces;
   for (int t = 0; t < n; ++t)
     if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= corners)
-      near.face.push_back(t);
-  std::vector<int> number(whole.points.size(), -1);
-  for (int t : near.face)
-    for (int v : whole.tris[t]) number[v] = 0;
-  for (int v = 0; v < (int)number.size(); ++v)
-    if (number[v] == 0) {
-      number[v] = (int)near.vertex.size();
-      near.vertex.push_back(v);
-      near.surface.points.push_back(whole.points[v]);
-    }
-  for (int t : near.face) {
-    const Tri& v = whole.tris[t];
-    near.surface.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
-  }
-  near.surface.vertex = rows_of(whole.vertex, near.vertex);
-  near.surface.face = rows_of(whole.face, near.face);
+      faces.push_back(t);
+  Neighborhood near{take_faces(whole, std::move(faces)), {}};
   if (opposite.empty()) return near;
   std::vector<int> place(n, -1);
   for (int i = 0; i < (int)near.face.size(); ++i) place[near.face[i]] = i;

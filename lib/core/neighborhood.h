@@ -7,11 +7,16 @@
 
 namespace meshpipe {
 
-/// The triangles of a part and those with two of its vertices, in their order, as a surface of their own.
-struct Neighborhood {
-  Surface surface;                ///< with all columns
-  std::vector<int> opposite;      ///< half-edges; empty if the whole's are not known
-  std::vector<int> face, vertex;  ///< in the whole; of those that were taken
+/// Triangles of a surface and their vertices, in their order, as a surface of their own with all columns.
+struct SurfacePart {
+  Surface surface;
+  std::vector<int> face, vertex;  ///< in the whole
+};
+SurfacePart take_faces(const Surface& whole, std::vector<int> faces);
+
+/// The triangles of a part and those with two of its vertices.
+struct Neighborhood : SurfacePart {
+  std::vector<int> opposite;  ///< half-edges; empty if the whole's are not known
 
   struct Rim {
     int from, to, half_edge;  ///< of the whole

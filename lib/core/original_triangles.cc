@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "lib/core/connectivity.h"
@@ -49,11 +48,10 @@ bool hull_of_pieces(const Mesh& mesh, std::span<const int> pieces, Tri& corners)
 /// stream has other numbers than a surface of about this size.
 std::vector<int> by_origin(const std::vector<int>& origin) {
   const std::size_t n = origin.size();
-  std::vector<int> order(n);
-  if (n == 0) return order;
+  if (n == 0) return {};
   const auto [least, most] = std::minmax_element(origin.begin(), origin.end());
   if (*least < 0 || (std::size_t)*most > 1000 + 100 * n) {
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order = identity(n);
     std::stable_sort(order.begin(), order.end(), [&](int s, int t) { return origin[s] < origin[t]; });
     return order;
   }
@@ -77,7 +75,7 @@ Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin, std::ve
     if (one) whole.tris.push_back(corners);
     for (int i = first; i < last; ++i) {
       if (!one) whole.tris.push_back(mesh.tris[order[i]]);
-      if (whole_of) (*whole_of)[order[i]] = static_cast<int>(whole.tris.size()) - 1;
+      if (whole_of) (*whole_of)[order[i]] = (int)whole.tris.size() - 1;
     }
   }
   return whole;

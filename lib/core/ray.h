@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line through a point along x, and triangles.
+// The line and the ray through a point along x, and triangles.
 #pragma once
 #include <utility>
 
@@ -19,6 +19,14 @@ inline bool line_passes(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
     inside ^= orient2d({low->y, low->z}, {high->y, high->z}, {p.y, p.z}) > 0;  // the edge is at larger y
   }
   return inside;
+}
+
+/// Returns how the ray from p in direction x crosses the triangle: +1 if it leaves through it, -1 if it
+/// enters, 0 if not, or where p lies on it.
+inline int ray_crossing(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  if (!line_passes(p, a, b, c)) return 0;
+  const int below = orient3d(a, b, c, p), turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});
+  return below * turn > 0 ? turn : 0;
 }
 
 }  // namespace meshpipe

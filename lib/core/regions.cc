@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "lib/core/lists.h"
 #include "lib/core/pieces.h"
 
 namespace meshpipe {
@@ -147,8 +148,7 @@ void Joiner::join(int a, int b) {
   for (int h : regions_.border[b])
     if (label_[h / 3] == b) label_[h / 3] = a, stack.push_back(h / 3);
   while (!stack.empty()) {
-    int t = stack.back();
-    stack.pop_back();
+    int t = take_last(stack);
     for (int i = 0; i < 3; ++i)
       if (int o = c_.opposite[3 * t + i]; o >= 0 && label_[o / 3] == b)
         label_[o / 3] = a, stack.push_back(o / 3);

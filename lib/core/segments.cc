@@ -37,23 +37,21 @@ bool meet(const Segment& s, const Segment& t) {
 }
 
 SegmentTree::SegmentTree(const std::vector<Segment>& segments) : segments_(segments) {
-  const int n = static_cast<int>(segments.size());
+  const int n = (int)segments.size();
   box_.resize(2 * n);
   for (int i = 0; i < n; ++i) {
     const Segment& s = segments[i];
-    box_[n + i] = {{std::min(s.p.x, s.q.x), std::min(s.p.y, s.q.y)},
-                   {std::max(s.p.x, s.q.x), std::max(s.p.y, s.q.y)}};
+    box_[n + i] = {lower(s.p, s.q), upper(s.p, s.q)};
   }
   for (int k = n - 1; k > 0; --k) {
     const Box &a = box_[2 * k], &b = box_[2 * k + 1];
-    box_[k] = {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
-               {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
+    box_[k] = {lower(a.low, b.low), upper(a.high, b.high)};
   }
 }
 
 template <class Overlaps, class Visit>
 void SegmentTree::visit(const Overlaps& overlaps, const Visit& leaf) const {
-  const int n = static_cast<int>(segments_.size());
+  const int n = (int)segments_.size();
   if (n == 0) return;
   int stack[64], top = 0;
   stack[top++] = 1;  // the root, or the only leaf
@@ -70,7 +68,7 @@ void SegmentTree::visit(const Overlaps& overlaps, const Visit& leaf) const {
 }
 
 std::vector<std::array<int, 2>> SegmentTree::crossings() const {
-  const int n = static_cast<int>(segments_.size());
+  const int n = (int)segments_.size();
   std::vector<std::array<int, 2>> pairs;
   for (int i = 0; i < n; ++i) {
     const Box& mine = box_[n + i];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Segments in the plane: which of them meet, and how often they wind around a point; exact signs.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -43,16 +42,10 @@ class SegmentTree {
 /// Turns of one segment as seen from p: the crossings of the ray from p along +x, counted upwards.
 int ray_crossing(Vec2 p, Vec2 from, Vec2 to);
 
-/// Where on the segment from a to b the point nearest to p is, in the plane or in space: 0 at a, 1 at b.
-template <class Point>
-double nearest_on_segment(Point p, Point a, Point b) {
-  const double l2 = dot(b - a, b - a);
-  return l2 > 0 ? std::clamp(dot(p - a, b - a) / l2, 0.0, 1.0) : 0;
-}
-/// Distance of p from it.
+/// Distance of p from the segment from a to b, in the plane or in space.
 template <class Point>
 double distance_to_segment(Point p, Point a, Point b) {
-  return norm(a + nearest_on_segment(p, a, b) * (b - a) - p);
+  return norm(a + nearest_fraction(p, a, b) * (b - a) - p);
 }
 
 /// True if two segments meet elsewhere than at one common end.

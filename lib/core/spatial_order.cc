@@ -37,10 +37,7 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
 std::vector<int> along_curve(const std::vector<Vec3>& points) {
   const int n = (int)points.size();
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  for (const Vec3& p : points) low = lower(low, p), high = upper(high, p);
   const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   const double cells = extent > 0 ? ((1 << bits) - 1) / extent : 0;
   auto cell = [&](double x) { return (std::uint32_t)(cells * x); };

@@ -5,7 +5,6 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/normals.h"
-#include "lib/core/segments.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -47,18 +46,13 @@ SurfaceWalk::SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& mode
   }
 }
 
-Vec3 SurfaceWalk::point(const Place& p) const {
-  const Tri& v = mesh_.tris[p.face];
-  return p.b0 * mesh_.points[v[0]] + p.b1 * mesh_.points[v[1]] + p.b2 * mesh_.points[v[2]];
-}
+Vec3 SurfaceWalk::point(const Place& p) const { return value_at(p, mesh_.points, mesh_.tris); }
 
 Place SurfaceWalk::closest(const Place& from, Vec3 target, bool through_features) const {
   const std::vector<int>& beyond = through_features ? opposite_ : beyond_;
   auto project = [&](int face, double& d2) {
-    const Tri& v = mesh_.tris[face];
-    auto b = closest_on_triangle(target, mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]]);
-    Place p{face, b[0], b[1], b[2]};
-    Vec3 e = point(p) - target;
+    const Place p = closest_place(mesh_, face, target);
+    const Vec3 e = point(p) - target;
     d2 = dot(e, e);
     return p;
   };
@@ -102,11 +96,7 @@ Place SurfaceWalk::across(const Place& p) const {
   for (int i = 0; i < 3; ++i) {
     const int h = 3 * p.face + i, g = opposite_[h];
     if (b[(i + 2) % 3] > rounding || beyond_[h] >= 0 || g < 0) continue;
-    Place q{g / 3, 0, 0, 0};
-    double* c[3] = {&q.b0, &q.b1, &q.b2};
-    *c[g % 3] = b[(i + 1) % 3];
-    *c[(g + 1) % 3] = b[i];
-    return q;
+    return place_on_edge(g, b[(i + 1) % 3], b[i]);
   }
   return p;
 }
@@ -115,7 +105,7 @@ Place SurfaceWalk::across(const Place& p) const {
 double SurfaceWalk::squared_distance(int h, Vec3 target, double& t) const {
   const Vec3 p = mesh_.points[meshpipe::origin(mesh_.tris, h)],
              q = mesh_.points[meshpipe::target(mesh_.tris, h)];
-  t = nearest_on_segment(target, p, q);
+  t = nearest_fraction(target, p, q);
   const Vec3 e = lerp(p, q, t) - target;
   return dot(e, e);
 }
@@ -152,11 +142,7 @@ Place SurfaceWalk::slide_along(int line, Vec3 target) const {
     if (closer >= best * (1 - 1e-12)) break;
     best = closer, t = s, line = e;
   }
-  Place p{line / 3, 0, 0, 0};
-  double* c[3] = {&p.b0, &p.b1, &p.b2};
-  *c[line % 3] = 1 - t;
-  *c[(line + 1) % 3] = t;
-  return p;
+  return place_on_edge(line, 1 - t, t);
 }
 
 Place SurfaceWalk::slide(const Place& from, Vec3 target) const {

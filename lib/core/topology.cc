@@ -4,7 +4,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -141,7 +140,6 @@ double box_size(const std::vector<Vec3>& points) {
 double edge_path_depth(const Connectivity& c, const std::vector<int>& loop) {
   const Mesh& mesh = c.mesh;
   const std::vector<int>& opposite = c.opposite;
-  constexpr double far = std::numeric_limits<double>::infinity();
   // a half-edge that leaves the vertex; the border's, if there is one
   std::vector<int> star(mesh.points.size(), -1);
   double width = 0;
@@ -155,7 +153,7 @@ double edge_path_depth(const Connectivity& c, const std::vector<int>& loop) {
       ++edges;
     }
   width /= (double)edges;
-  std::vector<double> distance(mesh.points.size(), far);
+  std::vector<double> distance(mesh.points.size(), infinity);
   std::vector<std::vector<int>> buckets(1);
   auto bucket_of = [&](double d) { return (std::size_t)(d / width); };
   for (int h : loop) {
@@ -192,7 +190,7 @@ double edge_path_depth(const Connectivity& c, const std::vector<int>& loop) {
   }
   double depth = 0;
   for (double d : distance)
-    if (d < far) depth = std::max(depth, d);
+    if (d < infinity) depth = std::max(depth, d);
   return depth;
 }
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/lists.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
@@ -25,8 +25,7 @@ constexpr double needle = 6 * std::numbers::pi / 180;
 
 /// The vertex that each has become.
 std::vector<int> images(const MergedSurface& z) {
-  std::vector<int> image(z.points.size());
-  std::iota(image.begin(), image.end(), 0);
+  std::vector<int> image = identity(z.points.size());
   for (std::size_t i = z.merges.size(); i-- > 0;) image[z.merges[i].gone] = image[z.merges[i].kept];
   return image;
 }

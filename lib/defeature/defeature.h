@@ -43,7 +43,8 @@ struct DefeatureOptions {
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 
-/// Returns what the verification of a later result needs: "removed FEATURES moved DISTANCE".
+/// Returns a remark for the stream, "removed FEATURES moved DISTANCE", by which mcheck knows how far the
+/// surface may be off.
 std::string remark_of(const DefeatureReport& report);
 /// Returns the distance of such a remark; 0 of other texts.
 double moved_by(const std::string& remark);

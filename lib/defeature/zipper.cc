@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -40,14 +40,13 @@ Zipper::Zipper(const Surface& surface, const DefeatureOptions& options, const st
                              surface.face.get<std::uint8_t>("model")},
                     .points = surface.points,
                     .drift = std::vector<double>(surface.points.size(), 0),
-                    .origin = std::vector<int>(surface.tris.size()),
+                    .origin = identity(surface.tris.size()),
                     .added = {},
                     .merges = {},
                     .lines = {}},
       options_(options),
       banned_(banned),
       region_(points.size(), -1) {
-  std::iota(origin.begin(), origin.end(), 0);
   lines = find_lines(mesh, surface, given, add_wrinkles());
 }
 
@@ -285,8 +284,7 @@ int Zipper::run(std::vector<Candidate> heap) {
       4 * (int)points.size() + 100;  // each merge shortens the lines or takes a vertex: a backstop
   while (!heap.empty() && count < most) {
     std::pop_heap(heap.begin(), heap.end());
-    const Candidate c = heap.back();
-    heap.pop_back();
+    const Candidate c = take_last(heap);
     if (mesh.dead(c.h / 3) || mesh.from(c.h) != c.from || mesh.to(c.h) != c.to) continue;
     if (c.apex >= 0 && mesh.apex(c.h) != c.apex) continue;
     const std::size_t before = merges.size();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace meshpipe {
 namespace {
@@ -11,7 +12,7 @@ constexpr int samples = 3;  // a pixel is the mean of samples x samples
 
 /// Coordinates seen by the viewer: x to the right, y up, z towards the viewer.
 Vec3 seen(Vec3 p, const View& v) {
-  const double a = v.azimuth * M_PI / 180, e = v.elevation * M_PI / 180;
+  const double a = v.azimuth * std::numbers::pi / 180, e = v.elevation * std::numbers::pi / 180;
   const Vec3 right{-std::sin(a), std::cos(a), 0};
   const Vec3 back{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)};
   return {dot(p, right), dot(p, cross(back, right)), dot(p, back)};

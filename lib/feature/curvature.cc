@@ -5,7 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -114,8 +115,7 @@ std::vector<double> face_curvature(const Connectivity& surface, double least) {
               Four{(float)m[3], (float)m[4], (float)m[5], 0}};
   }
   const std::vector<float> given = shares_of(surface);
-  std::vector<int> active(n);
-  std::iota(active.begin(), active.end(), 0);
+  std::vector<int> active = identity(n);
   for (int step = 0; step < steps; ++step) {
     // averages do not exceed the largest value: after 0, 1, 2, 4, ... steps. What is above near the end comes
     // from what is above now, and depends on what is as near to that

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
@@ -233,8 +233,7 @@ void prune(Network& net, Keeps keeps) {
   std::vector<int> ends = free_ends(net);
   Chain chain;
   while (!ends.empty()) {
-    const int v = ends.back();
-    ends.pop_back();
+    const int v = take_last(ends);
     if (!net.free_end(v)) continue;
     chain.clear();
     int h = net.leaving(v, -1);
@@ -412,7 +411,7 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   // those without a normal of their own first, as they are next to thin ones that have one
   auto take_nearest = [&](const std::vector<char>& takes) {
     std::vector<int> out(n, -1), order, seeds;  // the half-edge through which the nearest side is reached
-    std::vector<double> way(n, std::numeric_limits<double>::infinity()), width(n, 0);
+    std::vector<double> way(n, infinity), width(n, 0);
     for (int h = 0; h < 3 * n; ++h) {
       const int t = h / 3, o = surface.opposite[h];
       if (!takes[t] || o < 0 || takes[o / 3] || !(farther(h) * half_way(h) < way[t])) continue;

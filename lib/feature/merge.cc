@@ -2,6 +2,7 @@
 #include "lib/feature/merge.h"
 
 #include <algorithm>
+#include <numbers>
 #include <tuple>
 
 #include "lib/core/error.h"
@@ -15,7 +16,8 @@ namespace {
 
 /// A small patch that turns by more than this on all sides (60 degrees) is a step or an edge with a
 /// thickness; triangles across its border would cut through the solid.
-constexpr double steepest = 1.0471975511965976;
+constexpr double steepest = 60 * std::numbers::pi / 180;
+constexpr double tangent = 20 * std::numbers::pi / 180;  ///< patches that meet at less are tangent
 
 /// The common border of two patches, by their indices.
 struct Border {
@@ -26,7 +28,7 @@ struct Border {
 
 int index_of(const PatchMerge& m, int label) {
   const auto i = std::lower_bound(m.patch.begin(), m.patch.end(), label);
-  return i != m.patch.end() && *i == label ? static_cast<int>(i - m.patch.begin()) : -1;
+  return i != m.patch.end() && *i == label ? (int)(i - m.patch.begin()) : -1;
 }
 
 /// Adds up rows for the same pair; those of a patch with itself are left out.
@@ -88,8 +90,8 @@ void merge_groups(PatchMerge& merge, const std::vector<std::vector<int>>& groups
   }
 }
 
-void merge_automatically(PatchMerge& merge, const Surface& surface, double h, double angle) {
-  const int n = static_cast<int>(merge.patch.size());
+void merge_automatically(PatchMerge& merge, const Surface& surface, double h) {
+  const int n = (int)merge.patch.size();
   if (n < 2) return;
   const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity sides{surface, opposite};
@@ -102,13 +104,13 @@ void merge_automatically(PatchMerge& merge, const Surface& surface, double h, do
     area[patch[t]] += 0.5 * norm(sides.area_vector((int)t));
   }
   std::vector<Border> rows;
-  for (int e = 0; e < static_cast<int>(opposite.size()); ++e) {
+  for (int e = 0; e < (int)opposite.size(); ++e) {
     const int o = opposite[e], a = patch[e / 3];
     const double length = sides.length(e);
     if (o < 0) open[a] += length;
     if (o < e || patch[o / 3] == a) continue;
     const double turn = meshpipe::angle(normal[e / 3], normal[o / 3]);
-    rows.push_back({a, patch[o / 3], length, turn * length, turn > angle ? length : 0});
+    rows.push_back({a, patch[o / 3], length, turn * length, turn > tangent ? length : 0});
   }
   rows = summed(std::move(rows));
 
@@ -132,7 +134,7 @@ void merge_automatically(PatchMerge& merge, const Surface& surface, double h, do
       width[i] = perimeter[i] > 0 ? 2 * size[i] / perimeter[i] : h;
       if (sets.find(i) == i && width[i] < 0.5 * h) small.push_back(i);
     }
-    for (int k = 0; k < static_cast<int>(now.size()); ++k)
+    for (int k = 0; k < (int)now.size(); ++k)
       for (int i : {now[k].a, now[k].b})
         if (best[i] < 0 || now[k].turn * now[best[i]].length < now[best[i]].turn * now[k].length) best[i] = k;
     std::sort(small.begin(), small.end(),

@@ -20,10 +20,10 @@ PatchMerge no_merge(const Surface& surface);
 /// Throws: NotAdmissible naming a label that no face has.
 void merge_groups(PatchMerge& merge, const std::vector<std::vector<int>>& groups);
 
-/// Merges patches that are tangent: normals differ by at most `angle` radians over 95 % of their border.
+/// Merges patches that are tangent: normals differ by at most 20 degrees over 95 % of their border.
 /// Then, smallest first, merges patches with a width (twice the area over the perimeter) below h / 2 into the
 /// neighbor whose normal differs least, if by at most 60 degrees. A merged patch has the label of its largest
 /// member.
-void merge_automatically(PatchMerge& merge, const Surface& surface, double h, double angle);
+void merge_automatically(PatchMerge& merge, const Surface& surface, double h);
 
 }  // namespace meshpipe

@@ -19,7 +19,7 @@ std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments)
   };
   std::vector<char> on(mesh.points.size());
   for (std::size_t v = 0; v < on.size(); ++v) on[v] = nearest(mesh.points[v]) >= 0;
-  for (int h = 0; h < static_cast<int>(under.size()); ++h) {
+  for (int h = 0; h < (int)under.size(); ++h) {
     const int a = origin(mesh.tris, h), b = target(mesh.tris, h);
     // the same point for both half-edges
     if (on[a] && on[b])
@@ -32,7 +32,7 @@ ModelSegments moved_segments(const ModelSegments& segments, const std::vector<in
                              const std::vector<int>& under_after) {
   ModelSegments moved;
   auto add = [&](int i, Vec3 a, Vec3 b) {
-    const int n = static_cast<int>(moved.points.size());
+    const int n = (int)moved.points.size();
     moved.points.insert(moved.points.end(), {a, b});
     moved.tris.push_back({n, n + 1, n + 1});
     moved.tag.push_back(segments.tag[i]);
@@ -42,14 +42,14 @@ ModelSegments moved_segments(const ModelSegments& segments, const std::vector<in
   std::vector<char> used(segments.tris.size(), 0);
   for (int i : under)
     if (i >= 0) used[i] = 1;
-  for (int i = 0; i < static_cast<int>(used.size()); ++i)
+  for (int i = 0; i < (int)used.size(); ++i)
     if (!used[i]) add(i, segments.points[segments.tris[i][0]], segments.points[segments.tris[i][1]]);
   std::vector<std::pair<int, int>> ascending;
-  for (int h = 0; h < static_cast<int>(under_after.size()); ++h)
+  for (int h = 0; h < (int)under_after.size(); ++h)
     if (const int a = origin(after.tris, h), b = target(after.tris, h); under_after[h] >= 0 && a < b)
       ascending.push_back({a, b});
   std::sort(ascending.begin(), ascending.end());
-  for (int h = 0; h < static_cast<int>(under_after.size()); ++h) {
+  for (int h = 0; h < (int)under_after.size(); ++h) {
     const int a = origin(after.tris, h), b = target(after.tris, h);
     if (under_after[h] < 0) continue;
     // of a border there may only be the half-edge that descends
@@ -70,11 +70,11 @@ ModelSegments segments_after_ends(const ModelSegments& segments, const Mesh& bef
     return moved_segments(segments, under, {after.points, before.tris}, under);
   const std::vector<int> opposite = opposite_halfedges(before);
   std::vector<char> gone(segments.tris.size(), 0);
-  for (int h = 0; h < static_cast<int>(under.size()); ++h)
+  for (int h = 0; h < (int)under.size(); ++h)
     if (under[h] >= 0 && opposite[h] < 0) gone[under[h]] = 1;
   ModelSegments kept;
   kept.points = segments.points;
-  for (int i = 0; i < static_cast<int>(gone.size()); ++i) {
+  for (int i = 0; i < (int)gone.size(); ++i) {
     if (gone[i]) continue;
     kept.tris.push_back(segments.tris[i]);
     kept.tag.push_back(segments.tag[i]);

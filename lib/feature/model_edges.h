@@ -11,8 +11,8 @@ struct ModelSegments : Mesh {
   std::vector<int> tag, ridge, required;
 };
 
-/// Returns per half-edge the number of a segment on which it lies, or -1: its ends and its midpoint are
-/// within a millionth of the diagonal of segments.
+/// Returns per half-edge the segment nearest to its midpoint, if its ends and midpoint are within 1e-6 of the
+/// mesh's diagonal from segments; else -1. The same for both half-edges of an edge.
 std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments);
 
 /// Returns the segments for a mesh that has changed into `after`: those under edges become one per edge, with

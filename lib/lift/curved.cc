@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/intersect.h"
+#include "lib/core/lists.h"
 #include "lib/core/original_triangles.h"
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
@@ -51,7 +51,7 @@ class Corners {
     std::vector<Vec3> normal(beyond_.size());
     std::vector<char> done(beyond_.size(), 0);
     std::vector<int> fan;
-    for (int h = 0; h < static_cast<int>(beyond_.size()); ++h) {
+    for (int h = 0; h < (int)beyond_.size(); ++h) {
       if (done[h]) continue;
       fan.clear();
       for_each_spoke(beyond_, h, [&](int c) { done[c] = 1, fan.push_back(c); });
@@ -158,12 +158,11 @@ std::vector<char> feature_edges(const Surface& reference, const Connectivity& wh
 }  // namespace
 
 CurvedSurface::CurvedSurface(const Surface& reference) : reference_(reference) {
-  below_.resize(reference.tris.size());
   if (reference.face.has("origin")) {
     whole_ = recover_triangles(reference, reference.face.get<int>("origin"), &below_);
   } else {
     whole_ = reference;
-    std::iota(below_.begin(), below_.end(), 0);
+    below_ = identity(reference.tris.size());
   }
   const std::vector<int> opposite = opposite_halfedges(whole_);
   const Connectivity whole{whole_, opposite};
@@ -171,7 +170,7 @@ CurvedSurface::CurvedSurface(const Surface& reference) : reference_(reference) {
   const std::vector<Vec3> normal = Corners(whole, feature).normals(side_normals(whole, 0));
   const FeatureCurves curves(whole, feature);
   off_.resize(opposite.size());
-  for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {
+  for (int h = 0; h < (int)opposite.size(); ++h) {
     const int a = origin(whole_.tris, h), b = target(whole_.tris, h);
     const Vec3 chord = whole_.points[b] - whole_.points[a];
     Vec3 from_a, from_b;
@@ -193,13 +192,12 @@ CurvedSurface::CurvedSurface(const Surface& reference) : reference_(reference) {
 }
 
 Vec3 CurvedSurface::point(const Place& place) const {
-  const Tri& cut = reference_.tris[place.face];
-  const auto& p = reference_.points;
-  const Vec3 x = place.b0 * p[cut[0]] + place.b1 * p[cut[1]] + place.b2 * p[cut[2]];
+  const std::vector<Vec3>& p = reference_.points;
+  const Vec3 x = value_at(place, p, reference_.tris);
   const int t = below_[place.face];
   const Tri& v = whole_.tris[t];
   double b[3] = {place.b0, place.b1, place.b2};
-  if (v != cut) {
+  if (v != reference_.tris[place.face]) {
     const Vec3 n = area_vector(p[v[0]], p[v[1]], p[v[2]]);
     double sum = 0;
     for (int i = 0; i < 3; ++i)
@@ -232,7 +230,7 @@ int raise_vertices(LiftedMesh& mesh, const CurvedSurface& surface) {
           lowered = true;
         }
   }
-  return static_cast<int>(std::count(stays.begin(), stays.end(), 1));
+  return (int)std::count(stays.begin(), stays.end(), 1);
 }
 
 }  // namespace meshpipe

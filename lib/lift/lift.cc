@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <numeric>
 #include <tuple>
 
 #include "lib/core/connectivity.h"
@@ -51,9 +50,9 @@ std::vector<Edge> segments_of(const Lines& lines, const std::vector<int>& vertex
 void lift_line_points(const Surface& s, const Lines& lines, const std::vector<int>& vertex, LiftedMesh& out) {
   const auto& size = s.vertex.get<double>("size");
   const std::vector<char> corner = line_corners(s, lines);
-  const int n_rows = static_cast<int>(lines.points.size());
+  const int n_rows = (int)lines.points.size();
   for (int kept : {1, 0})  // a vertex of several lines is on one that is a border or a model edge, if any
-    for (int l = 0; l < static_cast<int>(lines.lines.size()); ++l) {
+    for (int l = 0; l < (int)lines.lines.size(); ++l) {
       const Line& line = lines.lines[l];
       if ((line.kind != interface_line) != (kept != 0)) continue;
       for (int i = line.first; i < line.first + line.count; ++i) {
@@ -68,10 +67,10 @@ void lift_line_points(const Surface& s, const Lines& lines, const std::vector<in
     }
 
   // a triangle that has the edge: rows by their first vertex, met by the half-edges that leave it either way
-  const Lists rows = lists_of(static_cast<int>(s.points.size()), [&](auto use) {
+  const Lists rows = lists_of((int)s.points.size(), [&](auto use) {
     for (int row = 0; row < n_rows; ++row) use(lines.points[row].a, row);
   });
-  for (int t = 0; t < static_cast<int>(s.tris.size()); ++t)
+  for (int t = 0; t < (int)s.tris.size(); ++t)
     for (int i = 0; i < 3; ++i) {
       for (int row : rows[s.tris[t][i]]) {
         const LinePoint& p = lines.points[row];
@@ -106,7 +105,7 @@ std::vector<InnerEdge> double_edges(const std::vector<PlaneMesh>& meshes, const 
     int part, a, b;
   };
   std::vector<Use> uses;
-  for (int p = 0; p < static_cast<int>(meshes.size()); ++p)
+  for (int p = 0; p < (int)meshes.size(); ++p)
     for (const Tri& t : meshes[p].tris)
       for (int i = 0; i < 3; ++i) {
         const int a = t[i], b = t[(i + 1) % 3];
@@ -134,7 +133,7 @@ std::vector<InnerEdge> double_edges(const std::vector<PlaneMesh>& meshes, const 
 
 /// Splits an inner edge in the middle.
 void split_edge(const Chart& chart, PlaneMesh& mesh, int a, int b) {
-  const int middle = static_cast<int>(mesh.points.size()), n = static_cast<int>(mesh.tris.size());
+  const int middle = (int)mesh.points.size(), n = (int)mesh.tris.size();
   const Vec2 uv = lerp(mesh.points[a].uv, mesh.points[b].uv, 0.5);
   mesh.points.push_back({uv, -1, locate(chart, uv, std::max(0, mesh.points[a].place.face))});
   for (int t = 0; t < n; ++t)
@@ -167,11 +166,10 @@ void look_below(const Surface& s, const Chart& chart, const PlaneMesh& mesh, std
 /// one with the largest area there.
 std::vector<int> label_regions(const Connectivity& mesh, const std::vector<int>& below) {
   const int n = mesh.n_tris();
-  std::vector<int> within = mesh.opposite, region, order(n);
+  std::vector<int> within = mesh.opposite, region, order = identity(n);
   for (int h = 0; h < 3 * n; ++h)
     if (mesh.is_model(h)) within[h] = -1;
   const int n_regions = components(within, region);
-  std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int t, int u) {
     return std::tie(region[t], below[t], t) < std::tie(region[u], below[u], u);
   });
@@ -194,7 +192,7 @@ std::vector<int> label_regions(const Connectivity& mesh, const std::vector<int>&
 /// Checks that the glued mesh is a manifold and its border edges are the segments of the border lines, and
 /// returns its opposite half-edges.
 std::vector<int> check_glue(const LiftedMesh& mesh, const std::vector<Edge>& segments) {
-  const int n_vertices = static_cast<int>(mesh.points.size());
+  const int n_vertices = (int)mesh.points.size();
   std::vector<int> opposite;
   try {
     opposite = opposite_halfedges(mesh.tris, n_vertices);
@@ -204,7 +202,7 @@ std::vector<int> check_glue(const LiftedMesh& mesh, const std::vector<Edge>& seg
   const int pinched = find_pinched_vertex(mesh.tris, opposite, n_vertices);
   if (pinched >= 0) throw GoalMissed("the glued mesh is pinched at vertex " + std::to_string(pinched));
   std::size_t border = 0;
-  for (int h = 0; h < static_cast<int>(opposite.size()); ++h) {
+  for (int h = 0; h < (int)opposite.size(); ++h) {
     if (opposite[h] >= 0) continue;
     ++border;
     const Edge e = sorted_edge(origin(mesh.tris, h), target(mesh.tris, h));
@@ -240,10 +238,9 @@ void lift_part(const Surface& s, const Chart& chart, const PlaneMesh& mesh, cons
     if (x.line_point >= 0) continue;
     const int v = number.back();
     const Place place{chart.mesh.face[x.place.face], x.place.b0, x.place.b1, x.place.b2};
-    const Tri& t = s.tris[place.face];
     out.place[v] = place;
-    out.points[v] = place.b0 * s.points[t[0]] + place.b1 * s.points[t[1]] + place.b2 * s.points[t[2]];
-    out.size[v] = place.b0 * size[t[0]] + place.b1 * size[t[1]] + place.b2 * size[t[2]];
+    out.points[v] = value_at(place, s.points, s.tris);
+    out.size[v] = value_at(place, size, s.tris);
   }
   for (const Tri& t : mesh.tris) out.tris.push_back({number[t[0]], number[t[1]], number[t[2]]});
   out.part.insert(out.part.end(), mesh.tris.size(), part);
@@ -268,7 +265,7 @@ void mark_model_edges(const Lines& lines, const std::vector<int>& vertex, int n_
 
 LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes) {
-  const int n_parts = static_cast<int>(meshes.size());
+  const int n_parts = (int)meshes.size();
   int n_line_vertices = 0;
   const std::vector<int> vertex = number_line_points(lines, reference.points.size(), n_line_vertices);
   const std::vector<InnerEdge> doubled = double_edges(meshes, lines, vertex);
@@ -280,7 +277,7 @@ LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines
   std::size_t n_vertices = n_line_vertices, n_tris = 0;
   std::vector<int> first(n_parts);  // number of each part's first inside point
   for (int p = 0; p < n_parts; ++p) {
-    first[p] = static_cast<int>(n_vertices);
+    first[p] = (int)n_vertices;
     for (const ChartPoint& x : parts[p].points) n_vertices += x.line_point < 0;
     n_tris += parts[p].tris.size();
   }

@@ -68,7 +68,8 @@ struct MidPoints {
 };
 
 /// Computes a node within every edge: its midpoint moved to the nearest point of the reference (of the
-/// reference's borders and model edges, for those) and on to the smooth surface, if that is not null.
+/// reference's borders and model edges, for those) and on to the smooth surface, if that is not null. Edges
+/// of triangles that would fold keep their midpoints. Throws: like opposite_halfedges.
 MidPoints mid_points(const LiftedMesh& mesh, const Surface& reference, const CurvedSurface* surface);
 
 }  // namespace meshpipe

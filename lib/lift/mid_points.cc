@@ -86,7 +86,7 @@ bool is_sound(const Vec3 (&x)[3], const Vec3 (&m)[3]) {
 MidPoints mid_points(const LiftedMesh& mesh, const Surface& reference, const CurvedSurface* surface) {
   const Ground ground(reference);
   const std::vector<int> opposite = opposite_halfedges(mesh);
-  const int n = static_cast<int>(opposite.size());
+  const int n = (int)opposite.size();
   std::vector<Vec3> middle(n);
   auto chord = [&](int h) {
     return lerp(mesh.points[origin(mesh.tris, h)], mesh.points[target(mesh.tris, h)], 0.5);

@@ -30,14 +30,6 @@ Mesh edges_of(const Connectivity& s, On kind, std::vector<int>& halfedges) {
   return edges;
 }
 
-Place on_edge(int h, double t) {
-  Place p{h / 3, 0, 0, 0};
-  double* b[3] = {&p.b0, &p.b1, &p.b2};
-  *b[h % 3] = 1 - t;
-  *b[(h + 1) % 3] = t;
-  return p;
-}
-
 double mean_edge(const Mesh& mesh) {
   double sum = 0;
   for (const Tri& t : mesh.tris)
@@ -71,20 +63,18 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
     for (int v = 0; v < n; ++v) {
       if (on[v] != kind) continue;
       const Bvh::Hit hit = tree.nearest(mesh.points[v]);
-      r.place[v] = none ? hit.place : on_edge(halfedges[kind][hit.place.face], 1 - hit.place.b0);
+      r.place[v] =
+          none ? hit.place : place_on_edge(halfedges[kind][hit.place.face], hit.place.b0, 1 - hit.place.b0);
     }
   }
   const double edge = mean_edge(mesh);
   int far = 0;
   for (int v = 0; v < n; ++v) {
     const Place& p = r.place[v];
-    const Tri& t = reference.tris[p.face];
-    r.points[v] =
-        p.b0 * reference.points[t[0]] + p.b1 * reference.points[t[1]] + p.b2 * reference.points[t[2]];
+    r.points[v] = value_at(p, reference.points, reference.tris);
     far += norm(r.points[v] - mesh.points[v]) > edge;
     if (!reference.vertex.has("size")) continue;
-    const auto& size = reference.vertex.get<double>("size");
-    r.size.push_back(p.b0 * size[t[0]] + p.b1 * size[t[1]] + p.b2 * size[t[2]]);
+    r.size.push_back(value_at(p, reference.vertex.get<double>("size"), reference.tris));
   }
   if (2 * far > n)
     throw NotAdmissible("the mesh is not one of the reference: " + std::to_string(far) + " of " +

@@ -65,10 +65,9 @@ std::vector<SpecialEdge> special_edges(const Connectivity& mesh, const std::vect
 /// `tag`.
 Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char>& corner,
                    const Places& place, std::vector<int>* tag = nullptr) {
-  const int n_vertices = static_cast<int>(corner.size());
+  const int n_vertices = (int)corner.size();
   const Lists stars = lists_of(n_vertices, [&](auto use) {
-    for (int i = 0; i < static_cast<int>(edges.size()); ++i)
-      use(place(edges[i].a), i), use(place(edges[i].b), i);
+    for (int i = 0; i < (int)edges.size(); ++i) use(place(edges[i].a), i), use(place(edges[i].b), i);
   });
   auto is_joint = [&](int v) {
     const auto star = stars[v];
@@ -80,8 +79,8 @@ Chains chain_edges(const std::vector<SpecialEdge>& edges, const std::vector<char
   auto walk = [&](int v, int e, bool closed) {
     const SpecialEdge& first = edges[e];
     const bool along = place(first.a) == v;
-    Chain c{first.kind, static_cast<int>(chains.vertex.size()), 1,
-            closed,     along ? first.left : first.right,       along ? first.right : first.left};
+    Chain c{first.kind, (int)chains.vertex.size(),        1,
+            closed,     along ? first.left : first.right, along ? first.right : first.left};
     const int origin = v;
     chains.vertex.push_back(along ? first.a : first.b);
     for (;;) {
@@ -111,7 +110,7 @@ void drop_copies(std::vector<SpecialEdge>& edges, const Places& place) {
     auto operator<=>(const Row&) const = default;
   };
   std::vector<Row> rows;
-  for (int i = 0; i < static_cast<int>(edges.size()); ++i)
+  for (int i = 0; i < (int)edges.size(); ++i)
     if (edges[i].kind == border_line) {
       const int a = place(edges[i].a), b = place(edges[i].b);
       rows.push_back({std::min(a, b), std::max(a, b), i});
@@ -162,9 +161,9 @@ void copy_lines(const Connectivity& mesh, const std::vector<int>& part, const Pl
   std::vector<int> all_tags;
   for (std::size_t l = 0; l < chains.chain.size(); ++l) {
     const Chain& c = chains.chain[l];
-    const int leader = static_cast<int>(all.chain.size());
+    const int leader = (int)all.chain.size();
     auto add = [&](Chain copy) {
-      copy.first = static_cast<int>(all.vertex.size());
+      copy.first = (int)all.vertex.size();
       all.chain.push_back(copy);
       all.leader.push_back(leader);
       all_tags.push_back(tag[l]);
@@ -222,8 +221,8 @@ class Course {
   Vec3 at(double l) const {
     const double total = length_.back();
     if (closed_) l = l < 0 ? l + total : l > total ? l - total : l;
-    int i = static_cast<int>(std::upper_bound(length_.begin(), length_.end(), l) - length_.begin());
-    i = std::clamp(i, 1, static_cast<int>(length_.size()) - 1);
+    int i = (int)(std::upper_bound(length_.begin(), length_.end(), l) - length_.begin());
+    i = std::clamp(i, 1, (int)length_.size() - 1);
     const double d = length_[i] - length_[i - 1];
     const double t = d > 0 ? std::clamp((l - length_[i - 1]) / d, 0.0, 1.0) : 0;
     return lerp(points_[vertex(i - 1)], points_[vertex(i)], t);
@@ -235,11 +234,11 @@ class Course {
   std::vector<double> length_;
 };
 
-/// Marks the inner vertices of a chain that turn by more than `limit` at every scale from its edges up to the
-/// size. The zig-zag of a scan's border fades with scale; a circle is straight at the small ones. Next to its
-/// ends the larger scales are missing: with `rough_ends` there are no corners there.
+/// Marks the inner vertices of a chain that turn by more than corner_turn at every scale from its edges up to
+/// the size. The zig-zag of a scan's border fades with scale; a circle is straight at the small ones. Next to
+/// its ends the larger scales are missing: with `rough_ends` there are no corners there.
 void mark_corners(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
-                  double limit, bool rough_ends, std::vector<char>& corner) {
+                  bool rough_ends, std::vector<char>& corner) {
   const Course course(s, chains, c);
   struct Candidate {
     int index;
@@ -255,11 +254,11 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
     const double to_end = std::min(course.length(i), course.length(c.count - 1) - course.length(i));
     if (rough_ends && !c.closed && to_end < rough_end * size[v]) continue;
     for (double scale : {0.25, 0.5, 1.0})
-      if (turn > limit) turn = std::min(turn, course.turn(i, scale * reach));
-    if (turn > limit) found.push_back({i, turn});
+      if (turn > corner_turn) turn = std::min(turn, course.turn(i, scale * reach));
+    if (turn > corner_turn) found.push_back({i, turn});
   }
   // on a rough border the neighbors of a corner turn as well, but less
-  const int n = static_cast<int>(found.size());
+  const int n = (int)found.size();
   for (int k = 0; k < n; ++k) {
     const double h = size[course.vertex(found[k].index)];
     bool sharpest = true;
@@ -284,7 +283,7 @@ void mark_corners(const Surface& s, const std::vector<double>& size, const Chain
 
 /// Marks ends, junctions and turns of the border and model edges, whatever the parts, and peaks.
 std::vector<char> mark_corners(const Surface& s, const std::vector<SpecialEdge>& edges, const Places& place,
-                               double limit, const std::vector<Peak>& peaks) {
+                               const std::vector<Peak>& peaks) {
   const auto& size = s.vertex.get<double>("size");
   std::vector<char> corner(s.points.size(), 0);
   std::vector<SpecialEdge> kept;
@@ -299,7 +298,7 @@ std::vector<char> mark_corners(const Surface& s, const std::vector<SpecialEdge>&
   for (std::size_t v = 0; v < s.points.size(); ++v)
     corner[v] = degree[v] != 0 && (degree[v] != 2 || kinds[v] == (1 << border_line | 1 << model_line));
   const Chains chains = chain_edges(kept, corner, place);
-  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, limit, !place.first.empty(), corner);
+  for (const Chain& c : chains.chain) mark_corners(s, size, chains, c, !place.first.empty(), corner);
   for (const Peak& p : peaks) corner[p.vertex] = 1;
   return corner;
 }
@@ -345,7 +344,7 @@ void measure_chains(const Surface& s, const std::vector<double>& size, Chains& c
 /// where its sag, which grows with the square of its length, is a tenth larger than that of length h.
 bool cuts_off_a_bend(const Surface& s, const std::vector<double>& size, const Chains& chains, const Chain& c,
                      const std::vector<Cut>& cuts) {
-  const int n = static_cast<int>(cuts.size()) - 1;
+  const int n = (int)cuts.size() - 1;
   const double segment = (cuts[n].measure - cuts[0].measure) / n;
   if (c.kind == interface_line || segment * segment <= 1.1) return false;
   const int* v = &chains.vertex[c.first];
@@ -371,7 +370,7 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
     const Chain& c = chains.chain[line];
     return chains.measure[c.first + c.count - 1];
   };
-  for (int l = 0; l < static_cast<int>(chains.chain.size()); ++l) {
+  for (int l = 0; l < (int)chains.chain.size(); ++l) {
     const Chain& c = chains.chain[l];
     const int a = place(chains.vertex[c.first]), b = place(chains.vertex[c.first + c.count - 1]);
     if (!chains.leader.empty() && chains.leader[l] != l) {
@@ -389,7 +388,7 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
     if (!(all <= most_segments))
       throw GoalMissed("the sizes ask for more than " + shown(most_segments) +
                        " segments of lines; ask for larger sizes");
-    const int n = static_cast<int>(std::round(total(l)));
+    const int n = (int)std::round(total(l));
     count.push_back(std::max(s.points[a] == s.points[b] ? 3 : 1, n));
     if (count.back() == 1) single.push_back({std::min(a, b), std::max(a, b), l});
   }
@@ -403,8 +402,9 @@ std::vector<int> segment_counts(const Surface& s, const Chains& chains, const Pl
   return count;
 }
 
-}  // namespace
-
+/// Marks the border vertices that the surface had before cuts: not those that a cut inserted, whose two
+/// border edges are in line and pieces of one triangle (face column `origin`). All of them without that
+/// column.
 std::vector<char> input_border(const Surface& surface) {
   const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity mesh{surface, opposite};
@@ -422,10 +422,64 @@ std::vector<char> input_border(const Surface& surface) {
   return found;
 }
 
-std::vector<char> model_corners(const Surface& surface, double corner) {
+/// Throws NotAdmissible without sizes, BadInput naming a vertex or a face whose size or part is wrong.
+void check_columns(const Surface& surface, int n_charts) {
+  if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
+  const auto& size = surface.vertex.get<double>("size");
+  for (std::size_t v = 0; v < size.size(); ++v)
+    if (!(size[v] > 0))
+      throw BadInput("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                     ", but sizes are positive");
+  refuse_unresolved_sizes(surface, size);
+  const auto& part = surface.face.get<int>("part");
+  for (std::size_t t = 0; t < part.size(); ++t)
+    if (part[t] < 0 || part[t] >= n_charts)
+      throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
+                     ", but there are " + std::to_string(n_charts) + " charts");
+}
+
+/// Divides borders at the input's points only.
+void keep_input_points(const Surface& surface, const Places& place, const Chains& chains,
+                       Division& division) {
+  std::vector<char> kept = input_border(surface);
+  for (int v = 0; v < (int)kept.size(); ++v) kept[place(v)] |= kept[v];
+  for (std::size_t l = 0; l < division.size(); ++l) {
+    const Chain& c = chains.chain[l];
+    if (c.kind != border_line) continue;
+    division[l].clear();
+    for (int i = 0; i < c.count; ++i)
+      if (i == 0 || i == c.count - 1 || kept[place(chains.vertex[c.first + i])])
+        division[l].push_back({i, 0, chains.measure[c.first + i]});
+  }
+}
+
+/// The lines of divided chains, and the parts that use them.
+Lines lines_of(const Chains& chains, const std::vector<int>& tag, const Division& division,
+               bool keep_border) {
+  Lines lines;
+  for (int l = 0; l < (int)division.size(); ++l) {
+    const Chain& c = chains.chain[l];
+    const int n = (int)division[l].size() - (c.closed ? 1 : 0);
+    lines.lines.push_back({c.kind, tag[l], (int)lines.points.size(), n, c.closed ? 1 : 0,
+                           keep_border && c.kind == border_line});
+    for (int i = 0; i < n; ++i) {
+      const Cut& cut = division[l][i];
+      const int a = chains.vertex[c.first + cut.piece];
+      lines.points.push_back({a, cut.t > 0 ? chains.vertex[c.first + cut.piece + 1] : a, cut.t});
+    }
+    const int low = std::min(c.left, c.right), high = std::max(c.left, c.right);
+    if (low >= 0 && low != high) lines.uses.push_back({l, low});
+    lines.uses.push_back({l, high});
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<char> model_corners(const Surface& surface) {
   const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity mesh{surface, opposite, model_of(surface)};
-  return mark_corners(surface, special_edges(mesh, surface.face.get<int>("part")), {}, corner,
+  return mark_corners(surface, special_edges(mesh, surface.face.get<int>("part")), {},
                       sharp_peaks(mesh, surface.vertex.get<double>("size")));
 }
 
@@ -446,29 +500,19 @@ std::vector<char> line_corners(const Surface& surface, const Lines& lines) {
   return corner;
 }
 
-Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner,
-                 const std::vector<int>* tag, bool keep_border, bool sheets_meet) {
-  const int n_vertices = static_cast<int>(surface.points.size());
-  if (!surface.vertex.has("size")) throw NotAdmissible("the vertices have no size; run msize first");
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, const std::vector<int>* tag,
+                 bool keep_border, bool sheets_meet) {
+  check_columns(surface, (int)charts.size());
+  const int n_vertices = (int)surface.points.size();
   const auto& size = surface.vertex.get<double>("size");
   const auto& part = surface.face.get<int>("part");
-  for (int v = 0; v < n_vertices; ++v)
-    if (!(size[v] > 0))
-      throw BadInput("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
-                     ", but sizes are positive");
-  refuse_unresolved_sizes(surface, size);
-  for (int t = 0; t < static_cast<int>(part.size()); ++t)
-    if (part[t] < 0 || part[t] >= static_cast<int>(charts.size()))
-      throw BadInput("face " + std::to_string(t) + " is in part " + std::to_string(part[t]) +
-                     ", but there are " + std::to_string(charts.size()) + " charts");
-
   const std::vector<int> opposite = opposite_halfedges(surface.tris, n_vertices);
   const Connectivity mesh{surface, opposite, model_of(surface)};
   const Places place{sheets_meet ? first_at_border(mesh) : std::vector<int>()};
   std::vector<SpecialEdge> edges = special_edges(mesh, part, tag);
   if (sheets_meet) drop_copies(edges, place);
   const std::vector<Peak> peaks = sharp_peaks(mesh, size);
-  std::vector<char> corners = mark_corners(surface, edges, place, corner, peaks);
+  std::vector<char> corners = mark_corners(surface, edges, place, peaks);
   for (int v = 0; v < n_vertices; ++v) corners[place(v)] |= corners[v];
   if (sheets_meet) mark_changes(mesh, place, corners);
   std::vector<int> chain_tag;
@@ -477,47 +521,22 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, doubl
   measure_chains(surface, size, chains);
   Division division(chains.chain.size());
   const std::vector<int> count = segment_counts(surface, chains, place);
-  for (int l = 0; l < static_cast<int>(count.size()); ++l) {
+  for (int l = 0; l < (int)count.size(); ++l) {
     if (count[l] == 0) continue;
     division[l] = divide(chains, l, count[l]);
     if (cuts_off_a_bend(surface, size, chains, chains.chain[l], division[l]))
       division[l] = divide(chains, l, count[l] + 1);
   }
-  if (keep_border) {
-    std::vector<char> kept = input_border(surface);
-    for (int v = 0; v < n_vertices; ++v) kept[place(v)] |= kept[v];
-    for (int l = 0; l < static_cast<int>(count.size()); ++l) {
-      const Chain& c = chains.chain[l];
-      if (c.kind != border_line) continue;
-      division[l].clear();
-      for (int i = 0; i < c.count; ++i)
-        if (i == 0 || i == c.count - 1 || kept[place(chains.vertex[c.first + i])])
-          division[l].push_back({i, 0, chains.measure[c.first + i]});
-    }
-  }
-  if (!keep_border && !sheets_meet) divide_at_sharp_corners(mesh, size, chains, division);
+  if (keep_border)
+    keep_input_points(surface, place, chains, division);
+  else if (!sheets_meet)
+    divide_at_sharp_corners(mesh, size, chains, division);
   for (std::size_t l = 0; l < chains.leader.size(); ++l) division[l] = division[chains.leader[l]];
   std::vector<char> inside(n_vertices, 0);
   for (const Peak& p : peaks) inside[p.vertex] = 1;
   for (int v : chains.vertex) inside[v] = 0;
   refine_until_noncrossing(chains, charts, inside, division);
-
-  Lines lines;
-  for (int l = 0; l < static_cast<int>(division.size()); ++l) {
-    const Chain& c = chains.chain[l];
-    const int n = static_cast<int>(division[l].size()) - (c.closed ? 1 : 0);
-    lines.lines.push_back({c.kind, chain_tag[l], static_cast<int>(lines.points.size()), n, c.closed ? 1 : 0,
-                           keep_border && c.kind == border_line});
-    for (int i = 0; i < n; ++i) {
-      const Cut& cut = division[l][i];
-      const int a = chains.vertex[c.first + cut.piece];
-      lines.points.push_back({a, cut.t > 0 ? chains.vertex[c.first + cut.piece + 1] : a, cut.t});
-    }
-    const int low = std::min(c.left, c.right), high = std::max(c.left, c.right);
-    if (low >= 0 && low != high) lines.uses.push_back({l, low});
-    lines.uses.push_back({l, high});
-  }
-  return lines;
+  return lines_of(chains, chain_tag, division, keep_border);
 }
 
 }  // namespace meshpipe

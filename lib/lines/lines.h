@@ -37,13 +37,9 @@ struct Lines {
 constexpr double corner_turn = 0.7;  ///< radians; a regular octagon has 8 corners, a circle none
 
 /// Marks the vertices that a remeshed surface keeps: ends and junctions of the mesh border and model edges,
-/// and vertices where these turn by more than `corner` radians at every scale from their edges up to the size
+/// and vertices where these turn by more than corner_turn at every scale from their edges up to the size
 /// (so that the zig-zag of scans has none); and sharp_peaks.
-std::vector<char> model_corners(const Surface& surface, double corner = corner_turn);
-
-/// Marks the border vertices of the input, leaving out those where a cut divided a border edge: there both
-/// border edges belong to one triangle of face column `origin`, and are in line.
-std::vector<char> input_border(const Surface& surface);
+std::vector<char> model_corners(const Surface& surface);
 
 /// Chains border edges, edges between parts, and model edges into lines, which end at junctions, at
 /// model_corners and where `tag` (per half-edge, or null) changes. Divides each evenly in the integral of 1/h
@@ -53,7 +49,7 @@ std::vector<char> input_border(const Surface& surface);
 /// Requires: vertex column `size` (h), face column `part`; charts in part order, positively oriented.
 /// Throws: NotAdmissible without sizes; BadInput naming a vertex whose size is not positive or a face whose
 /// part has no chart; GoalMissed for sizes too small, or naming two lines that meet in a chart.
-Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, double corner = corner_turn,
+Lines make_lines(const Surface& surface, const std::vector<Chart>& charts,
                  const std::vector<int>* tag = nullptr, bool keep_border = false, bool sheets_meet = false);
 
 /// Marks what a mesh with these lines keeps of a surface: model_corners, vertices where the label of lines

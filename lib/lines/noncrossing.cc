@@ -25,7 +25,7 @@ constexpr double on_vertex = 1e-9;  // of an edge: points nearer to its end are 
 Cut at_measure(const Chains& chains, const Chain& c, double m) {
   const double* begin = &chains.measure[c.first];
   const int last = c.count - 1;
-  int i = static_cast<int>(std::upper_bound(begin, begin + c.count, m) - begin) - 1;
+  int i = (int)(std::upper_bound(begin, begin + c.count, m) - begin) - 1;
   i = std::clamp(i, 0, last - 1);
   const double x = chains.ratio[c.first + i], whole = begin[i + 1] - begin[i];
   // m grows with log(1 + x t) / x; both ends of the edge are met exactly
@@ -118,7 +118,7 @@ class Refinement {
 
 void Refinement::locate_chains(const std::vector<Chart>& charts) {
   std::size_t total = 0;
-  for (int l = 0; l < static_cast<int>(chains_.chain.size()); ++l) {
+  for (int l = 0; l < (int)chains_.chain.size(); ++l) {
     const Chain& c = chains_.chain[l];
     for (int p : {c.left, c.right}) {
       if (p < 0 || (p == c.right && p == c.left && !drawn_[p].empty() && drawn_[p].back().line == l))
@@ -129,9 +129,9 @@ void Refinement::locate_chains(const std::vector<Chart>& charts) {
   }
   uv_.reserve(total);  // Drawn points into it
   std::vector<int> local(n_vertices_, -1);
-  for (int p = 0; p < static_cast<int>(charts.size()); ++p) {
+  for (int p = 0; p < (int)charts.size(); ++p) {
     const auto& vertex = charts[p].mesh.vertex;
-    for (int i = 0; i < static_cast<int>(vertex.size()); ++i) local[vertex[i]] = i;
+    for (int i = 0; i < (int)vertex.size(); ++i) local[vertex[i]] = i;
     for (Drawn& d : drawn_[p]) {
       const Chain& c = chains_.chain[d.line];
       d.uv = uv_.data() + uv_.size();
@@ -142,7 +142,7 @@ void Refinement::locate_chains(const std::vector<Chart>& charts) {
 
 Drawing Refinement::draw(int part, const std::vector<int>& first_key) const {
   Drawing d;
-  for (int i = 0; i < static_cast<int>(drawn_[part].size()); ++i) {
+  for (int i = 0; i < (int)drawn_[part].size(); ++i) {
     const Drawn& use = drawn_[part][i];
     const Chain& c = chains_.chain[use.line];
     const auto& cuts = division_[use.line];
@@ -153,7 +153,7 @@ Drawing Refinement::draw(int part, const std::vector<int>& first_key) const {
     auto key = [&](int k) {
       return cuts[k].t > 0 ? first_key[use.line] + k : chains_.vertex[c.first + cuts[k].piece];
     };
-    for (int k = 0; k + 1 < static_cast<int>(cuts.size()); ++k) {
+    for (int k = 0; k + 1 < (int)cuts.size(); ++k) {
       Segment s{point(k), point(k + 1), key(k), key(k + 1)};
       if (use.side < 0) s = {s.q, s.p, s.to, s.from};
       d.segments.push_back(s);
@@ -187,7 +187,7 @@ double Refinement::deviation(int part, const Drawing& d, int segment) const {
   const Segment& s = d.segments[segment];
   double most = 0;
   for_piece(part, d, segment, [&](Vec2, Vec2 x) {
-    most = std::max(most, norm(x - lerp(s.p, s.q, nearest_on_segment(x, s.p, s.q))));
+    most = std::max(most, norm(x - lerp(s.p, s.q, nearest_fraction(x, s.p, s.q))));
   });
   return most;
 }
@@ -208,7 +208,7 @@ Finding Refinement::examine(int part, const std::vector<int>& first_key) const {
     }
   }
   // the signed area, so that zig-zag cancels
-  for (int i = 0; i < static_cast<int>(d.segments.size()); ++i) {
+  for (int i = 0; i < (int)d.segments.size(); ++i) {
     if (!refinable(d.source[i])) continue;
     const Segment& s = d.segments[i];
     double between = 0;
@@ -221,7 +221,7 @@ Finding Refinement::examine(int part, const std::vector<int>& first_key) const {
 
 /// Numbers the border loops: per segment its loop, -1 on lines inside.
 std::vector<int> Refinement::loops_of(const Drawing& d) const {
-  const int n = static_cast<int>(d.segments.size());
+  const int n = (int)d.segments.size();
   std::vector<int> by_from;
   for (int i = 0; i < n; ++i)
     if (d.weight[i]) by_from.push_back(i);
@@ -247,7 +247,7 @@ std::vector<int> Refinement::loops_of(const Drawing& d) const {
 /// area, or inside another one that did not hold them, and inner lines and points outside the border.
 void Refinement::examine_nesting(int part, const Drawing& d, const SegmentTree& tree,
                                  Finding& finding) const {
-  const int n = static_cast<int>(d.segments.size());
+  const int n = (int)d.segments.size();
   const std::vector<int> loop = loops_of(d);
   const int loops = n == 0 ? 0 : *std::max_element(loop.begin(), loop.end()) + 1;
   std::vector<int> first(loops, -1);
@@ -300,7 +300,7 @@ void Refinement::insert(int line, const std::vector<int>& segments) {
   auto& cuts = division_[line];
   std::vector<Cut> out;
   std::size_t next = 0;
-  for (int k = 0; k < static_cast<int>(cuts.size()); ++k) {
+  for (int k = 0; k < (int)cuts.size(); ++k) {
     out.push_back(cuts[k]);
     if (next == segments.size() || segments[next] != k) continue;
     ++next;
@@ -322,7 +322,7 @@ void Refinement::keep_graded(int line) {
   const bool closed = chains_.chain[line].closed;
   for (;;) {
     const auto& cuts = division_[line];
-    const int n = static_cast<int>(cuts.size()) - 1;
+    const int n = (int)cuts.size() - 1;
     auto measure = [&](int k) { return cuts[k + 1].measure - cuts[k].measure; };
     const double tiny = tiny_measure * cuts.back().measure / n;
     std::vector<int> large;
@@ -333,19 +333,19 @@ void Refinement::keep_graded(int line) {
     }
     if (large.empty()) return;
     insert(line, large);
-    if (static_cast<int>(division_[line].size()) == n + 1) return;
+    if ((int)division_[line].size() == n + 1) return;
   }
 }
 
 void Refinement::run() {
-  const int n_parts = static_cast<int>(drawn_.size()), n_lines = static_cast<int>(division_.size());
+  const int n_parts = (int)drawn_.size(), n_lines = (int)division_.size();
   std::vector<char> dirty(n_parts, 1), bare(n_lines, 0);
   for (int round = 0;; ++round) {
     std::vector<int> first_key(n_lines);
     int key = n_vertices_;
     for (int l = 0; l < n_lines; ++l) {
       first_key[l] = key;
-      key += static_cast<int>(division_[l].size());
+      key += (int)division_[l].size();
     }
     std::vector<Finding> findings(n_parts);
     parallel_for(n_parts, [&](int p) {

@@ -122,7 +122,7 @@ void divide_at_sharp_corners(const Connectivity& mesh, const std::vector<double>
   // a fan of sectors is divided as the sharpest of them
   UnionFind fans((int)ends.size());
   for (const Sector& s : sectors) fans.join(s.right, s.left);
-  std::vector<double> sharpest(ends.size(), HUGE_VAL);
+  std::vector<double> sharpest(ends.size(), infinity);
   for (const Sector& s : sectors)
     sharpest[fans.find(s.left)] = std::min(sharpest[fans.find(s.left)], s.angle);
   std::vector<std::vector<int>> members(ends.size());
@@ -132,7 +132,7 @@ void divide_at_sharp_corners(const Connectivity& mesh, const std::vector<double>
     if (fan.empty()) continue;
     const double growth = per_width * sharpest[fans.find(fan[0])];
     std::vector<FromEnd> lines;
-    double shortest = HUGE_VAL;
+    double shortest = infinity;
     for (int e : fan) {
       lines.emplace_back(mesh.mesh, chains, ends[e]);
       shortest = std::min(shortest, lines.back().length());

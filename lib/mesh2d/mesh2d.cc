@@ -9,6 +9,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "lib/core/weld.h"
 #include "lib/mesh2d/adapt.h"
@@ -37,14 +38,14 @@ std::size_t most_points(const Chart& chart, const std::vector<double>& size, int
 /// Refuses a size at a chart vertex that the numbers (u, v) cannot resolve; lib/lines/lines.h says why.
 void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
   std::vector<char> seen(chart.uv.size(), 0);
-  for (int h = 0; h < 3 * static_cast<int>(chart.mesh.tris.size()); ++h) {
+  for (int h = 0; h < 3 * (int)chart.mesh.tris.size(); ++h) {
     const int v = origin(chart.mesh.tris, h);
     if (std::exchange(seen[v], 1)) continue;
     const double far = std::max(std::abs(chart.uv[v].x), std::abs(chart.uv[v].y));
     const Site site = field.at(Place{h / 3, 1.0 * (h % 3 == 0), 1.0 * (h % 3 == 1), 1.0 * (h % 3 == 2)});
     const LogMetric m = site.metric;
     const double stretch = std::exp(0.25 * (m.a + m.c) + 0.5 * std::hypot(0.5 * (m.a - m.c), m.b));
-    const double spacing = (std::nextafter(far, HUGE_VAL) - far) * stretch * site.size;
+    const double spacing = (std::nextafter(far, infinity) - far) * stretch * site.size;
     if (!(site.size < least_spacings * spacing)) continue;
     throw Informed<GoalMissed>("vertex " + std::to_string(chart.mesh.vertex[v]) + " has size " +
                                    shown(site.size) + ", but points of the map are " + shown(spacing) +
@@ -165,10 +166,9 @@ void open_pockets(SiteMesh& m, const SizeMetric& field, int n) {
   constexpr double same_place = 1e-6;  // of the size: copies of a point are nearer
   constexpr int most_passes = 4;       // pockets are small
   std::vector<Vec3> points;
-  double size = HUGE_VAL;
+  double size = infinity;
   for (int v = 0; v < n; ++v) points.push_back(m.site[v].space), size = std::min(size, m.site[v].size);
-  std::vector<int> first(n);
-  std::iota(first.begin(), first.end(), 0);
+  std::vector<int> first = identity(n);
   if (n == 0 || merge_near(points, std::vector<char>(n, 1), same_place * size, first) == 0) return;
   const Cdt& cdt = m.cdt;
   std::vector<std::pair<int, int>> segments;
@@ -211,9 +211,8 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
       throw NotAdmissible("line point " + std::to_string(drawing.row[i]) + " lies on edge " +
                           std::to_string(p.a) + " " + std::to_string(p.b) + ", which is not in the chart");
     site[i] = field.at(place);
-    const Tri& t = chart.mesh.tris[place.face];
     // as the third weight is zero, the same bits as linear interpolation along the edge
-    uv[i] = place.b0 * chart.uv[t[0]] + place.b1 * chart.uv[t[1]] + place.b2 * chart.uv[t[2]];
+    uv[i] = value_at(place, chart.uv, chart.mesh.tris);
   }
 
   SiteMesh m{Cdt(uv, drawing.segments), std::move(site), n, most_points(chart, size, n), {}};
@@ -279,7 +278,7 @@ static void place_on_surface(const Chart& chart, FailureFacts& facts) {
   const Place at = locate(chart, {facts.place.x, facts.place.y}, 0);
   const Tri& t = chart.mesh.tris[at.face];
   const Vec3 a = chart.mesh.points[t[0]], b = chart.mesh.points[t[1]], c = chart.mesh.points[t[2]];
-  facts.place = at.b0 * a + at.b1 * b + at.b2 * c;
+  facts.place = value_at(at, chart.mesh.points, chart.mesh.tris);
   facts.reach = std::max({norm(b - a), norm(c - b), norm(a - c)});
 }
 

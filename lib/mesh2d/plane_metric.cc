@@ -65,11 +65,9 @@ Vec2 SizeMetric::to_plane(int face, Vec3 d) const {
 }
 
 Site SizeMetric::at(const Place& p) const {
-  const Tri& t = chart_.mesh.tris[p.face];
-  const auto& x = chart_.mesh.points;
-  Site s{p, p.b0 * x[t[0]] + p.b1 * x[t[1]] + p.b2 * x[t[2]],
-         factor_ * (p.b0 * size_[t[0]] + p.b1 * size_[t[1]] + p.b2 * size_[t[2]]),
-         p.b0 * map_[t[0]] + p.b1 * map_[t[1]] + p.b2 * map_[t[2]]};
+  const std::vector<Tri>& tris = chart_.mesh.tris;
+  Site s{p, value_at(p, chart_.mesh.points, tris), factor_ * value_at(p, size_, tris),
+         value_at(p, map_, tris)};
   double log_h2 = 2 * std::log(s.size);
   s.metric.a -= log_h2;
   s.metric.c -= log_h2;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -106,8 +107,7 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     stack.push_back({first, 0});
     done[first] = 1;
     while (!stack.empty()) {
-      auto [face, t] = stack.back();
-      stack.pop_back();
+      auto [face, t] = take_last(stack);
       for (int i = 0; i < 3; ++i) {
         int& s = covered_by[chart.mesh.tris[face][i]];
         if (s == unknown) {

@@ -45,7 +45,7 @@ FilledDisk fill_holes(const Mesh& part) {
     for (int h : loops[l]) center = center + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
     for (int i = 0; i < n; i++) {
       const int h = loops[l][i], t = first + i;
-      disk.tris.push_back({target(part.tris, h), origin(part.tris, h), static_cast<int>(disk.points.size())});
+      disk.tris.push_back({target(part.tris, h), origin(part.tris, h), (int)disk.points.size()});
       disk.opposite[h] = 3 * t;  // and its neighbors in the fan: the half-edge before on the loop, the next
       disk.opposite.insert(disk.opposite.end(),
                            {h, 3 * (first + (i + n - 1) % n) + 2, 3 * (first + (i + 1) % n) + 1});
@@ -59,7 +59,7 @@ FilledDisk fill_holes(const Mesh& part) {
     auto w = cotangent_weights(disk.points[c[0]], disk.points[c[1]], disk.points[c[2]]);
     std::copy(w.begin(), w.end(), disk.weights.begin() + 3 * t);
   }
-  for (int h = 0; h < static_cast<int>(disk.weights.size()); h++) {
+  for (int h = 0; h < (int)disk.weights.size(); h++) {
     const int o = disk.opposite[h];
     if (o < 0)
       disk.weights[h] = std::max(disk.weights[h], least_weight);

@@ -7,6 +7,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
@@ -261,8 +262,7 @@ void keep_what_touches_the_border(Solver& s) {
       stack.push_back(i);
     }
   while (!stack.empty()) {
-    int i = stack.back();
-    stack.pop_back();
+    int i = take_last(stack);
     neighbors(s, i, [&](int n) {
       if (s.small[n] || keep[n]) return;
       keep[n] = 1;
@@ -283,8 +283,7 @@ int join_beyond(Solver& s, std::vector<int>& set_of, int n_sets) {
     s.visited[s.domain[i]] = stamp;
     stack.push_back(s.domain[i]);
     while (!stack.empty()) {
-      int t = stack.back();
-      stack.pop_back();
+      int t = take_last(stack);
       if (s.place[t] >= 0) to[set_of[s.place[t]]] = number;
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         int o = s.disk.opposite[h] < 0 ? -1 : s.disk.opposite[h] / 3;

@@ -6,13 +6,14 @@
 
 namespace meshpipe {
 
-/// What the zero level of a field does to a part.
+/// What a cut along the zero level of a field does to a part of genus 0.
 struct Assessment {
-  bool valid = false;        ///< both sides are there, each in one piece
-  int loops = 0;             ///< of both halves together; 2 for two disks
-  double length = 0;         ///< of the cut
-  double smaller_share = 0;  ///< of the area
+  bool valid = false;        ///< both sides exist, each connected by edges; else the rest means nothing
+  int loops = 0;             ///< border loops of both halves; 2: two disks
+  double length = 0;         ///< of the zero level
+  double smaller_share = 0;  ///< of the area, by thirds of triangles
 };
+/// Assesses the cut along the zero level of a field (one value per vertex; above 0 is one side).
 Assessment assess(const ConnectedPart& part, const std::vector<double>& field);
 
 /// How a cut was found, for pictures: on the part, or on a coarse model of a large one (lib/core/coarsen.h).

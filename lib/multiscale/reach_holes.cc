@@ -23,7 +23,7 @@ void reach_holes(const FilledDisk& disk, const Connectivity& part, std::vector<d
   const int n = disk.part_vertices;
   const std::vector<Tri>& tris = disk.tris;
   std::vector<int> corner(n, -1), from(n, -1), seen, path, ring;  // corner: a half-edge that leaves
-  std::vector<double> distance(n, HUGE_VAL);
+  std::vector<double> distance(n, infinity);
   std::vector<char> on_border(n, 0);
   for (int h = 0; h < 3 * disk.part_tris; ++h) {
     corner[origin(tris, h)] = h;
@@ -34,7 +34,7 @@ void reach_holes(const FilledDisk& disk, const Connectivity& part, std::vector<d
     for (int t = disk.fan_begin[f]; t < disk.fan_begin[f + 1]; ++t) ring.push_back(tris[t][0]);
     const bool side = field[ring[0]] > 0;
     if (std::any_of(ring.begin(), ring.end(), [&](int v) { return (field[v] > 0) != side; })) continue;
-    for (int v : seen) distance[v] = HUGE_VAL;
+    for (int v : seen) distance[v] = infinity;
     seen = ring;
     for (int v : ring) distance[v] = 0, from[v] = -1;
     int last = -1;  // of the path: the first vertex with a neighbor on the other side

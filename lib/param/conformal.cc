@@ -218,7 +218,7 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
     at += edge_length(part, h);
   }
   constexpr int most = 200;
-  double change = HUGE_VAL;
+  double change = infinity;
   for (int iteration = 0; iteration < most && change > 1e-8; ++iteration) {
     Complex center = 0;
     for (int v = 0; v < n; ++v) center += moment[v] * z[v] / total;

@@ -43,9 +43,10 @@ class BoundaryFirst {
   std::vector<double> scale_;  ///< of the lengths, log, at bend 1; empty until asked for
 };
 
-/// Least squares conformal map (Levy and others 2002, Desbrun and others 2002): Dirichlet energy less the
-/// area, as one Hermitian matrix for u + i v; of the border two vertices far apart are held. The natural
-/// condition holds on the longest loop, and on holes that are not filled. Scaled to the part's area.
+/// Computes the least squares conformal map (Levy and others 2002, Desbrun and others 2002): minimizes the
+/// Dirichlet energy less the area, with two distant border vertices held; the longest loop, and holes that
+/// are left open, get the natural condition. Returns a point per vertex, scaled to the part's area. Throws:
+/// GoalMissed if the matrix is singular.
 std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const Filled& filled,
                                     SolveTime* time);
 

@@ -27,10 +27,7 @@ int turn(const std::vector<Vec2>& polygon) {
 /// The kernel of a star-shaped polygon: the polygon's box clipped by the half-plane of each edge.
 std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
   Vec2 low = polygon[0], high = polygon[0];
-  for (Vec2 p : polygon) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  for (Vec2 p : polygon) low = lower(low, p), high = upper(high, p);
   std::vector<Vec2> region{low, {high.x, low.y}, high, {low.x, high.y}}, clipped;
   for (std::size_t e = 0; e < polygon.size() && !region.empty(); ++e) {
     Vec2 a = polygon[e], d = polygon[(e + 1) % polygon.size()] - a;

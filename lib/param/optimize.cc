@@ -70,7 +70,7 @@ double energy(const std::vector<Tri>& tris, const std::vector<Rest>& rest, const
   for (std::size_t t = 0; t < tris.size(); ++t) {
     Jacobian j = jacobian(rest[t], tris[t], uv);
     double det = j.xx * j.yy - j.xy * j.yx;
-    if (!(det > 0)) return HUGE_VAL;
+    if (!(det > 0)) return infinity;
     sum += rest[t].area * (j.xx * j.xx + j.xy * j.xy + j.yx * j.yx + j.yy * j.yy) * (1 + 1 / (det * det));
   }
   return sum;
@@ -171,7 +171,7 @@ double longest_step(const std::vector<Tri>& tris, const std::vector<Vec2>& uv,
     if (root < 0) continue;
     root = std::sqrt(root);
     // the smallest positive root, in the form that does not cancel
-    double low = b <= 0 ? 2 * c / (-b + root) : a < 0 ? (-b - root) / (2 * a) : HUGE_VAL;
+    double low = b <= 0 ? 2 * c / (-b + root) : a < 0 ? (-b - root) / (2 * a) : infinity;
     if (low > 0 && low < step) step = low;
   }
   return margin * step;

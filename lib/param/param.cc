@@ -257,7 +257,7 @@ class Search {
 
 void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report) {
   std::vector<double> anisotropy, scale;
-  double part_area = 0, sum = 0, chart_area = 0, smallest = HUGE_VAL, least = HUGE_VAL, most = 0;
+  double part_area = 0, sum = 0, chart_area = 0, smallest = infinity, least = infinity, most = 0;
   constexpr double most_finite = std::numeric_limits<double>::max();
   std::array<int, 2> extremes{0, 0};
   for (const Tri& t : part.tris) {
@@ -273,7 +273,7 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
     double keep = 0.5 * std::hypot(x.x + y.y, x.y - y.x), reverse = 0.5 * std::hypot(x.x - y.y, x.y + y.x);
     // sigma2 from the determinant, for the difference may cancel; finite, for a table has to hold it
     double sigma = keep + reverse, determinant = image / area;
-    anisotropy.push_back(std::min(determinant > 0 ? sigma * (sigma / determinant) : HUGE_VAL, most_finite));
+    anisotropy.push_back(std::min(determinant > 0 ? sigma * (sigma / determinant) : infinity, most_finite));
     part_area += area;
     sum += area * anisotropy.back();
     scale.push_back(image / area);
@@ -285,7 +285,7 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
   report.anisotropy_p99 = quantile(anisotropy, 0.99);
   report.anisotropy_max = quantile(anisotropy, 1);
   double low = quantile(scale, 0.01);
-  report.area_scale = std::min(low > 0 ? quantile(scale, 0.99) / low : HUGE_VAL, most_finite);
+  report.area_scale = std::min(low > 0 ? quantile(scale, 0.99) / low : infinity, most_finite);
   report.smallest_area = smallest / chart_area;
   report.anisotropy_mean = std::min(sum / part_area, most_finite);
   if (report.apart.empty()) report.apart.push_back(extremes);

@@ -62,6 +62,6 @@ std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
 /// none, early, with area_scale set, if that of boundary first flattening would be above `most_uneven`.
 /// Throws GoalMissed if no map is one-to-one.
 std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
-                           double most_uneven = HUGE_VAL);
+                           double most_uneven = infinity);
 
 }  // namespace meshpipe

@@ -14,8 +14,7 @@ Aggregates grow_aggregates(const Connectivity& mesh, const std::vector<double>& 
   Aggregates result;
   if (wanted >= n) {
     result.n = n;
-    result.of.resize(n);
-    std::iota(result.of.begin(), result.of.end(), 0);
+    result.of = identity(n);
   } else {
     const double share = std::accumulate(area.begin(), area.end(), 0.0) / wanted, least = 0.3 * share;
     result.of.assign(n, -1);

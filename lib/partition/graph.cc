@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numeric>
 #include <stdexcept>
 #include <string>
+
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 
@@ -17,12 +18,8 @@ std::vector<int> partition_graph(const Graph& graph, int k, double imbalance, in
   if ((int)graph.start.size() != n + 1 || graph.edge_weight.size() != graph.adjacency.size() ||
       graph.start.back() != (int)graph.adjacency.size())
     throw std::logic_error("graph: rows, edges and weights do not belong together");
-  std::vector<int> part(n, 0);
-  if (k <= 1 || n == 0) return part;
-  if (k >= n) {  // METIS is not made for parts of one vertex
-    std::iota(part.begin(), part.end(), 0);
-    return part;
-  }
+  if (k <= 1 || n == 0) return std::vector<int>(n, 0);
+  if (k >= n) return identity(n);  // METIS is not made for parts of one vertex
 
   std::vector<idx_t> start(graph.start.begin(), graph.start.end());
   std::vector<idx_t> adjacency(graph.adjacency.begin(), graph.adjacency.end());
@@ -41,8 +38,7 @@ std::vector<int> partition_graph(const Graph& graph, int k, double imbalance, in
                                         vertex_weight.data(), nullptr, edge_weight.data(), &parts, nullptr,
                                         nullptr, options, &cut, result.data());
   if (status != METIS_OK) throw std::logic_error("graph: METIS failed with status " + std::to_string(status));
-  std::copy(result.begin(), result.end(), part.begin());
-  return part;
+  return {result.begin(), result.end()};
 }
 
 }  // namespace meshpipe

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <string>
 
@@ -331,7 +332,7 @@ Component make_component(ConnectedPart part, const Region& whole) {
 
 Labeling best_labeling(Component& c, bool homology, int seed) {
   constexpr int enough = 8000, a_handle = 600, most = 30000, at_most = 8;  // triangles; of them for one
-  constexpr double worth = 2, most_turn = 60 * 3.14159265358979 / 180;
+  constexpr double worth = 2, most_turn = 60 * std::numbers::pi / 180;
   const int n = (int)c.mesh.tris.size(), least = std::min(enough + a_handle * c.whole.genus(), most);
   Coarse coarse;
   if (n > 2 * least) coarse = coarsen({c.mesh, c.opposite}, std::clamp(n / at_most, least, most), most_turn);

@@ -27,13 +27,14 @@ bool is_crease(const Connectivity& mesh, int h);
 
 /// How long and how straight the interfaces between the parts are.
 struct Interfaces {
-  double length = 0;  ///< over the diagonal of the surface's bounding box
-  /// The 90 % quantile and the largest of the angles by which successive edges turn on the surface (geodesic
-  /// curvature: pi |left - right| / (left + right) by the angles of the triangles on both sides), in degrees;
-  /// without junctions and the vertices of interface edges along creases.
+  double length = 0;  ///< of all, over the diagonal of the surface's bounding box
+  /// The 90 % quantile and the largest of the angles between successive interface edges on the surface,
+  /// degrees: pi |left - right| / (left + right) by the surface's angles on both sides. Not at junctions,
+  /// borders and creases.
   double turning_angle = 0, largest_angle = 0;
   int junctions = 0;  ///< vertices with three or more interface edges
 };
+/// `part` is per triangle.
 Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& part);
 
 /// Moves the interface of each pair of parts (face column `part`, 0..n_parts-1) to the zero level of a

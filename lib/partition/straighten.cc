@@ -8,6 +8,7 @@
 
 #include "lib/core/connectivity.h"
 #include "lib/core/cut.h"
+#include "lib/core/lists.h"
 #include "lib/core/neighborhood.h"
 #include "lib/core/progress.h"
 #include "lib/core/regions.h"
@@ -476,8 +477,7 @@ void trim_ears(const CutSurface& cut, const Limits& limits) {
   for (int h = 0; h < (int)opposite.size(); ++h)
     if (is_ear(h)) ears.push_back(h);
   while (!ears.empty()) {
-    const int h = ears.back();
-    ears.pop_back();
+    const int h = take_last(ears);
     if (!is_ear(h)) continue;
     --faces[part[h / 3]];
     ++faces[other(h)];

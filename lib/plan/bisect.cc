@@ -8,6 +8,7 @@
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/neighborhood.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"
@@ -122,11 +123,10 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   };
   std::vector<Line> lines;
   double area = std::accumulate(mass.begin(), mass.end(), 0.0);
-  std::vector<int> order(mesh.points.size());
   for (std::size_t f = 0; f < fields.size(); ++f) {
     // levels by the share of the area below them
     const auto& field = fields[f];
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order = identity(mesh.points.size());
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return std::tie(field[a], a) < std::tie(field[b], b); });
     constexpr int shares = 50;

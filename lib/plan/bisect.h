@@ -8,11 +8,11 @@
 
 namespace meshpipe {
 
-/// Cuts `part` (face column `part`) in two along the shortest line over the root of the smaller side's area
-/// that leaves two connected halves without pinched vertices. Lines are levels of the potential between each
-/// pair of vertices in `apart` (numbers in the surface), or of the Fiedler vector if there are none: both
-/// have connected sides except for rounding. The triangles above the level become part new_part. Returns
-/// false, and changes nothing, if no line will do.
+/// Cuts `part` (face column `part`) in two along the line of least length / sqrt(area of the smaller side) of
+/// those with two connected sides without pinched vertices. Lines are levels of the potential between both
+/// vertices of each pair in `apart` (numbers in the surface; pairs not in the part are skipped), or of the
+/// Fiedler vector if none is left. The side above the level becomes part new_part. Returns false, and changes
+/// nothing, if there is no such line.
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
 
 /// Cuts `part` by multiscale_cut although its aspect ratio is admissible: along its limbs, so that none

@@ -80,7 +80,7 @@ void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles
     charts.failure[p].clear();
     try {
       const bool any = options.strict || round >= limit::limb_rounds || charts.as_it_is[p];
-      chart.uv = map_part(chart.mesh, options, charts.report[p], any ? HUGE_VAL : limit::area_scale);
+      chart.uv = map_part(chart.mesh, options, charts.report[p], any ? infinity : limit::area_scale);
       if (round == 0) add_progress((double)chart.mesh.tris.size() / (double)n_triangles);
     } catch (const GoalMissed& e) {
       charts.failure[p] = "part " + std::to_string(p) + ": " + e.what();
@@ -96,7 +96,7 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const ParamReport& report = charts.report[p];
   const SubMesh& mesh = charts.chart[p].mesh;
   const bool missed = !charts.failure[p].empty();
-  const double area_scale = missed ? HUGE_VAL : report.area_scale;
+  const double area_scale = missed ? infinity : report.area_scale;
   // a circle map that was asked for is the user's own choice
   const bool chosen = report.used == options.map && options.map != MapKind::conformal;
   const bool stretched =

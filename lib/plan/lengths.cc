@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts every part that is too long, until none is.
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <string>
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 #include "lib/core/neighborhood.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
@@ -174,8 +174,7 @@ void join_parts(Work& work) {
   Joiner joiner(mesh, label, find_regions(mesh, label, n_before));
   std::vector<std::vector<int>> faces(n_before);  // of each part
   for (int t = 0; t < n_tris; ++t) faces[label[t]].push_back(t);
-  std::vector<int> becomes(n_before), numbers(s.points.size(), -1);
-  std::iota(becomes.begin(), becomes.end(), 0);
+  std::vector<int> becomes = identity(n_before), numbers(s.points.size(), -1);
   auto length = [&](int h) { return mesh.length(h); };
   const bool any = join_neighbors(joiner, mesh, label, length, [&](int a, int b) {
     if (!work.was_cut[a] && !work.was_cut[b]) return false;

@@ -20,7 +20,7 @@ struct RelaxOptions {
   /// parallel. With 250,000 a tile takes about 75 MB, and the seams are 7 % of all.
   int tile = 250000;
   /// The regions on both sides of each patch. Vertices inside of sheets are moved off the reference, by at
-  /// most 0.08 edges, to bring the volumes near to those of the reference.
+  /// most 0.08 of their shortest edge, to bring the volumes near to those of the reference.
   std::vector<SheetPatch> sheets;
 };
 
@@ -95,7 +95,7 @@ struct TilePass {
   double share = 1;        ///< of the work that is shown, per tile
 };
 
-/// The optimization of a large mesh in steps, with tiles that may be jobs of their own. Arguments as in
+/// The optimization of a large mesh in steps, with tiles that may be separate jobs. Arguments as in
 /// relax, which does the same, to the bit, to a mesh for which `uses_tiles`.
 struct TiledRelax {
   const Surface& reference;

@@ -63,15 +63,9 @@ Reference::Reference(const Surface& reference)
       walk(reference, model_of(reference)),
       normals(vertex_area_vectors(reference)) {}
 
-Vec3 Reference::normal(const Place& p) const {
-  const Tri& v = surface.tris[p.face];
-  return normalized(p.b0 * normals[v[0]] + p.b1 * normals[v[1]] + p.b2 * normals[v[2]]);
-}
+Vec3 Reference::normal(const Place& p) const { return normalized(value_at(p, normals, surface.tris)); }
 
-double Reference::size(const Place& p) const {
-  const Tri& v = surface.tris[p.face];
-  return p.b0 * (*sizes)[v[0]] + p.b1 * (*sizes)[v[1]] + p.b2 * (*sizes)[v[2]];
-}
+double Reference::size(const Place& p) const { return value_at(p, *sizes, surface.tris); }
 
 State::State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, std::vector<Place> places,
              std::vector<double> sizes)

@@ -133,8 +133,7 @@ void Regions::append(const TriangleArrangement& plane, const Tri& corners, std::
     done[seed] = 1;
     todo.assign(1, seed);
     while (!todo.empty()) {
-      const int t = todo.back();
-      todo.pop_back();
+      const int t = take_last(todo);
       region.tris.push_back(tris[t]);
       for (int h = 3 * t; h < 3 * t + 3; ++h) {
         const int a = origin(tris, h), b = target(tris, h);

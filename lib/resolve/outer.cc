@@ -8,6 +8,7 @@
 #include "lib/core/around.h"
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
+#include "lib/core/lists.h"
 #include "lib/core/predicates.h"
 #include "lib/core/ray.h"
 #include "lib/core/union_find.h"
@@ -48,14 +49,6 @@ Sides connect_sides(const Pieces& pieces, const std::vector<Tri>& tris, const Ex
   return s;
 }
 
-/// Returns the sign of a crossing of the ray from p in direction x with a triangle: +1 if the ray leaves
-/// through it.
-int leaves(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
-  if (!line_passes(p, a, b, c)) return 0;
-  const int below = orient3d(a, b, c, p), turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});
-  return below * turn > 0 ? turn : 0;
-}
-
 /// Per component: the winding number of all others that are closed, in the middle of its largest piece.
 std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, const Pieces& pieces,
                              const ExactPoints& points, const Hull& hull,
@@ -73,7 +66,7 @@ std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, c
       largest[k] = area, place[k] = (1.0 / 3) * (p + q + r);
   }
   const Bvh tree(mesh);
-  double end = -std::numeric_limits<double>::infinity();
+  double end = -infinity;
   for (const Tri& t : mesh.tris)
     for (int v : t) end = std::max(end, mesh.points[v].x);
   for (int c = 0; c < (int)sum.size(); ++c) {
@@ -82,7 +75,8 @@ std::vector<int> surrounding(const Mesh& mesh, const std::vector<int>& weight, c
       const int d = hull.component[pieces.piece_of[t]];
       if (d == c || open[d]) return;
       const Tri& v = mesh.tris[t];
-      sum[c] += sign[d] * weight[t] * leaves(p, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+      sum[c] +=
+          sign[d] * weight[t] * ray_crossing(p, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
     });
   }
   return sum;
@@ -161,8 +155,7 @@ bool Winding::spread(int side, int number) {
   std::vector<int> todo{sides_.level.find(side)};
   number_[todo[0]] = number;
   while (!todo.empty()) {
-    const int level = todo.back();
-    todo.pop_back();
+    const int level = take_last(todo);
     for (int s = first_[level]; s >= 0; s = next_[s]) {
       const int other = sides_.level.find(s ^ 1), weight = pieces_.weight[s / 2];
       const int there = number_[level] + (s % 2 ? -weight : weight);

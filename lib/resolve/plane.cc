@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <deque>
-#include <numeric>
 
 #include "lib/core/error.h"
 #include "lib/core/fan.h"
+#include "lib/core/lists.h"
 #include "lib/core/predicates.h"
 
 namespace meshpipe {
@@ -138,11 +138,7 @@ void TriangleArrangement::clear_way(int p, int q, const std::vector<std::array<i
   }
 }
 
-void TriangleArrangement::improve() {
-  std::vector<int> all(mesh_.opposite.size());
-  std::iota(all.begin(), all.end(), 0);
-  improve(std::move(all));
-}
+void TriangleArrangement::improve() { improve(identity(mesh_.opposite.size())); }
 
 void TriangleArrangement::improve(std::vector<int> todo) {
   auto seen = [&](int v) {

@@ -88,37 +88,26 @@ void pass(PieceMesh& s, const std::vector<std::pair<int, int>>& pairs, const Res
   s.pieces = std::move(pieces);
 }
 
-/// A vertex of the result: a place on a triangle of the input.
-struct Origin {
-  int face = -1;
-  std::array<double, 3> at{};
-};
-
-std::vector<Origin> origins(const PieceMesh& s, const Surface& input) {
-  std::vector<Origin> of(s.points.size());
+/// The places of the result's vertices on the input.
+std::vector<Place> origins(const PieceMesh& s, const Surface& input) {
+  std::vector<Place> of(s.points.size());
   for (std::size_t t = 0; t < s.pieces.tris.size(); ++t)
-    for (int v : s.pieces.tris[t]) {
-      if (of[v].face >= 0) continue;
-      const int f = s.pieces.origin[t];
-      const auto [a, b, c] = input.tris[f];
-      of[v] = {f, closest_on_triangle(s.points[v], input.points[a], input.points[b], input.points[c])};
-    }
+    for (int v : s.pieces.tris[t])
+      if (of[v].face < 0) of[v] = closest_place(input, s.pieces.origin[t], s.points[v]);
   return of;
 }
 
-void interpolate(Table& table, const std::vector<Origin>& of, const Surface& input) {
+void interpolate(Table& table, const std::vector<Place>& of, const Surface& input) {
   for (Column& c : table.columns)
     std::visit(
-        [&](auto& old) {
-          std::remove_reference_t<decltype(old)> values(of.size());
-          for (std::size_t v = 0; v < of.size(); ++v) {
-            const Tri& t = input.tris[of[v].face];
-            const auto& at = of[v].at;
-            const auto i = std::max_element(at.begin(), at.end()) - at.begin();
-            if constexpr (std::is_same_v<decltype(values), std::vector<double>>)
-              values[v] = at[i] == 1 ? old[t[i]] : at[0] * old[t[0]] + at[1] * old[t[1]] + at[2] * old[t[2]];
+        [&]<class T>(std::vector<T>& old) {
+          std::vector<T> values;
+          for (const Place& p : of) {
+            const bool at_vertex = std::max({p.b0, p.b1, p.b2}) == 1;
+            if (std::is_same_v<T, double> && !at_vertex)
+              values.push_back((T)value_at(p, old, input.tris));
             else
-              values[v] = old[t[i]];
+              values.push_back(old[input.tris[p.face][nearest_corner(p)]]);
           }
           old = std::move(values);
         },
@@ -127,7 +116,7 @@ void interpolate(Table& table, const std::vector<Origin>& of, const Surface& inp
 }
 
 void take_over(const PieceMesh& s, Surface& surface, ResolveReport& report) {
-  const std::vector<Origin> of = origins(s, surface);
+  const std::vector<Place> of = origins(s, surface);
   PointNumbers places(surface.points.size());
   std::vector<int> numbers(std::max(surface.points.size(), s.points.size()));
   places.add(surface.points.data(), (int)surface.points.size(), numbers.data());

@@ -2,22 +2,15 @@
 #include "lib/resolve/simplify.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "lib/core/edges.h"
-#include "lib/core/predicates.h"
+#include "lib/core/intersect.h"
+#include "lib/core/lists.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/weld.h"
 
 namespace meshpipe {
 namespace {
-
-bool has_area(const std::vector<Vec3>& points, const Tri& t) {
-  if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return false;
-  const Vec3 &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-  return orient2d({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) || orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z}) ||
-         orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x});
-}
 
 /// Replaces vertices by `same`, drops what has no area then, unites what coincides, and numbers vertices
 /// anew; `flagged` follows.
@@ -27,7 +20,7 @@ void contract(PieceMesh& mesh, const std::vector<int>& same, std::vector<char>& 
   for (std::size_t t = 0; t < p.tris.size(); ++t) {
     Tri tri = p.tris[t];
     for (int& v : tri) v = same[v];
-    if (!has_area(mesh.points, tri)) continue;
+    if (!has_area(mesh.points[tri[0]], mesh.points[tri[1]], mesh.points[tri[2]])) continue;
     p.tris[n] = tri;
     p.origin[n] = p.origin[t];
     p.weight[n++] = p.weight[t];
@@ -87,12 +80,6 @@ bool divide_edges(PieceMesh& mesh, const std::vector<char>& flagged, double tole
   return any;
 }
 
-std::vector<int> themselves(std::size_t n) {
-  std::vector<int> same(n);
-  std::iota(same.begin(), same.end(), 0);
-  return same;
-}
-
 }  // namespace
 
 void normalize(PieceMesh& mesh) {
@@ -106,11 +93,11 @@ void remove_slivers(PieceMesh& mesh, const std::vector<char>& flagged, double to
   for (const Tri& t : mesh.pieces.tris)
     if (flagged[t[0]] || flagged[t[1]] || flagged[t[2]])
       for (int v : t) ring[v] = 1;
-  std::vector<int> same = themselves(mesh.points.size());
+  std::vector<int> same = identity(mesh.points.size());
   merge_near(mesh.points, ring, tolerance, same);
   contract(mesh, same, ring);
   for (int round = 0; round < most_rounds && divide_edges(mesh, ring, tolerance); ++round)
-    contract(mesh, themselves(mesh.points.size()), ring);
+    contract(mesh, identity(mesh.points.size()), ring);
 }
 
 }  // namespace meshpipe

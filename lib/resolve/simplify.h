@@ -13,7 +13,8 @@ struct PieceMesh {
   Pieces pieces;
 };
 
-/// Makes one vertex of equal ones, drops triangles without area, and unites those with the same vertices.
+/// Makes one vertex of equal ones, drops triangles without area and unused vertices, and unites triangles
+/// with the same vertices. Clears `piece_of`.
 void normalize(PieceMesh& mesh);
 
 /// Among the triangles at the vertices flagged: merges vertices no farther apart than `tolerance`, and

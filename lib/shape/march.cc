@@ -2,7 +2,6 @@
 // Marching tetrahedra: a cube is cut into the six tetrahedra of its paths from corner 0 to corner 7 (Kuhn),
 // which agree on the faces between cubes; a tetrahedron has no ambiguous case, so the surface is a manifold.
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "lib/core/error.h"
@@ -65,7 +64,7 @@ class Marcher {
   }
 
  private:
-  static constexpr double unknown = std::numeric_limits<double>::infinity();
+  static constexpr double unknown = infinity;
 
   std::size_t at(int i, int j) const { return (std::size_t)j * (nx_ + 1) + i; }
   Vec3 point(int i, int j, int k) const { return lo_ + Vec3{i * h_, j * h_, k * h_}; }

@@ -4,7 +4,6 @@
 // 1998. These have the vertices of the former, moved so that sheets and lines are smooth.
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/random.h"
@@ -66,7 +65,7 @@ class Image {
 int Image::label_at(Vec3 p) const {
   if (ball_ && norm(p) > 1) return 0;
   int best = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (std::size_t s = 0; s < seeds_.size(); ++s)
     if (const double d = dot(p - seeds_[s], p - seeds_[s]); d < least) least = d, best = (int)s + 1;
   return best;

@@ -2,12 +2,12 @@
 // Bodies given by implicit functions: a plate with holes, and a branching tree of tubes.
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 #include "lib/core/cut.h"
 #include "lib/core/edit_mesh.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/lists.h"
 #include "lib/core/random.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/topology.h"
@@ -172,10 +172,8 @@ class Tree {
     lo = {1e300, 1e300, 1e300};
     hi = {-1e300, -1e300, -1e300};
     for (const Segment& s : segments)
-      for (auto [p, r] : {std::pair{s.a, s.ra}, std::pair{s.b, s.rb}}) {
-        lo = {std::min(lo.x, p.x - r), std::min(lo.y, p.y - r), std::min(lo.z, p.z - r)};
-        hi = {std::max(hi.x, p.x + r), std::max(hi.y, p.y + r), std::max(hi.z, p.z + r)};
-      }
+      for (auto [p, r] : {std::pair{s.a, s.ra}, std::pair{s.b, s.rb}})
+        lo = lower(lo, p - Vec3{r, r, r}), hi = upper(hi, p + Vec3{r, r, r});
     const Vec3 size = hi - lo;
     const double longest = std::max({size.x, size.y, size.z}), margin = 0.02 * longest;
     lo = lo - Vec3{margin, margin, margin};
@@ -258,8 +256,7 @@ class Grower {
 
   Tree grow() {
     const Vec3 root{0, 0, 0}, up{0, 0, 1};
-    std::vector<int> all(leaves_.size());
-    std::iota(all.begin(), all.end(), 0);
+    std::vector<int> all = identity(leaves_.size());
     tree_.ends.push_back({root, {0, 0, -1}, 0.5});
     const double length = branch_length(0.5);
     const Vec3 fork = place(all, apex + length);
@@ -287,10 +284,7 @@ class Grower {
 
   void split(std::vector<int>& set, Vec3 at, Vec3 direction, double reach, double radius) {
     Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
-    for (int i : set) {
-      lo = {std::min(lo.x, leaves_[i].x), std::min(lo.y, leaves_[i].y)};
-      hi = {std::max(hi.x, leaves_[i].x), std::max(hi.y, leaves_[i].y)};
-    }
+    for (int i : set) lo = lower(lo, leaves_[i]), hi = upper(hi, leaves_[i]);
     const bool along_x = hi.x - lo.x > hi.y - lo.y;
     std::sort(set.begin(), set.end(), [&](int a, int b) {
       return along_x ? leaves_[a].x < leaves_[b].x : leaves_[a].y < leaves_[b].y;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -68,7 +67,7 @@ void Diagram::spread(int seed) {
     for (int i = 0; i < samples; ++i) {
       const Vec3 p = anywhere();
       int best = 0;
-      double least = std::numeric_limits<double>::infinity();
+      double least = infinity;
       for (int s = 0; s < n_; ++s)
         if (const double d = dot(p - seeds_[s], p - seeds_[s]); d < least) least = d, best = s;
       sum[best] = sum[best] + p;

@@ -28,7 +28,7 @@ struct Grid {
     if (!(count[0] * count[1] * count[2] < most_voxels))
       throw GoalMissed("voxels of " + shown(h) + " are " + shown(count[0] * count[1] * count[2]) +
                        ", but at most " + shown(most_voxels) + " are possible");
-    for (int k = 0; k < 3; ++k) n[k] = static_cast<int>(count[k]);
+    for (int k = 0; k < 3; ++k) n[k] = (int)count[k];
   }
   std::size_t at(int x, int y, int z) const { return (static_cast<std::size_t>(z) * n[1] + y) * n[0] + x; }
 };
@@ -38,7 +38,7 @@ void close_loops(Mesh& mesh) {
   for (const auto& loop : boundary_loops(opposite_halfedges(mesh))) {
     Vec3 center;
     for (int h : loop) center = center + (1.0 / loop.size()) * mesh.points[origin(mesh.tris, h)];
-    const int c = static_cast<int>(mesh.points.size());
+    const int c = (int)mesh.points.size();
     mesh.points.push_back(center);
     for (int h : loop) mesh.tris.push_back({target(mesh.tris, h), origin(mesh.tris, h), c});
   }
@@ -47,18 +47,18 @@ void close_loops(Mesh& mesh) {
 /// Which voxels have their center inside: by the parity of what the line along x has passed.
 std::vector<char> inside(const Mesh& mesh, const Grid& g) {
   std::vector<char> in(g.at(0, 0, g.n[2]), 0);
-  for (int t = 0; t < static_cast<int>(mesh.tris.size()); ++t) {
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
     const auto& [i, j, k] = mesh.tris[t];
     const Vec3 a = mesh.points[i], b = mesh.points[j], c = mesh.points[k], normal = area_vector(a, b, c);
     const Box box = box_of(mesh, t);
-    auto first = [&](double x, double from) { return static_cast<int>(std::max(0.0, (x - from) / g.h - 1)); };
+    auto first = [&](double x, double from) { return (int)std::max(0.0, (x - from) / g.h - 1); };
     for (int z = first(box.lo.z, g.lo.z); g.lo.z + (z + 0.5) * g.h <= box.hi.z; ++z)
       for (int y = first(box.lo.y, g.lo.y); g.lo.y + (y + 0.5) * g.h <= box.hi.y; ++y) {
         const Vec3 p{0, g.lo.y + (y + 0.5) * g.h, g.lo.z + (z + 0.5) * g.h};
         if (!line_passes(p, a, b, c) || normal.x == 0) continue;
         const double x = a.x - (normal.y * (p.y - a.y) + normal.z * (p.z - a.z)) / normal.x;
         const double voxel = std::ceil((std::clamp(x, box.lo.x, box.hi.x) - g.lo.x) / g.h - 0.5);
-        in[g.at(static_cast<int>(voxel), y, z)] ^= 1;
+        in[g.at((int)voxel, y, z)] ^= 1;
       }
   }
   for (std::size_t v = 1; v < in.size(); ++v) in[v] ^= in[v - 1];  // every line ends outside
@@ -69,16 +69,14 @@ std::vector<char> inside(const Mesh& mesh, const Grid& g) {
 
 Mesh voxels(Mesh mesh, double h) {
   close_loops(mesh);
-  Box box = box_of(mesh, 0);
-  for (int t = 1; t < static_cast<int>(mesh.tris.size()); ++t) box = join(box, box_of(mesh, t));
-  const Grid g(box, h);
+  const Grid g(box_of(mesh), h);
   const std::vector<char> in = inside(mesh, g);
   Mesh faces;
   std::vector<int> number(in.size(), -1);  // of a voxel's lowest corner
   auto corner = [&](const int* p) {
     int& v = number[g.at(p[0], p[1], p[2])];
     if (v < 0) {
-      v = static_cast<int>(faces.points.size());
+      v = (int)faces.points.size();
       faces.points.push_back(g.lo + g.h * Vec3{(double)p[0], (double)p[1], (double)p[2]});
     }
     return v;

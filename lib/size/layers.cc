@@ -51,7 +51,7 @@ Layers parse_layers(const std::string& text) {
   if (words.size() > 2) {
     const double n = number(words[2], text);
     if (n > most_layers || n != std::floor(n)) number("", text);
-    layers.count = static_cast<int>(n);
+    layers.count = (int)n;
   }
   if (words.size() > 3 || !std::isfinite(layers.total())) number("", text);
   return layers;
@@ -86,7 +86,7 @@ LayerReport check_layers(Surface& surface, const Layers& layers) {
         bound(v, 1 / curvature[t], LayerReport::curvature, 1 / curvature[t]);
   LayerReport r;
   r.total = layers.total();
-  r.least = HUGE_VAL;
+  r.least = infinity;
   for (int v = 0; v < c.n_vertices(); ++v) {
     if (sharpest[v] < least_angle) bound(v, 0, LayerReport::corner, sharpest[v]);
     if (fits[v] < r.total) {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
+#include "lib/core/edges.h"
+#include "lib/core/lists.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
@@ -18,7 +19,6 @@ namespace meshpipe {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
 constexpr double least_triangles = 12;  ///< of a closed component: those of a sphere with four edges around
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
@@ -26,23 +26,25 @@ constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not 
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
 constexpr double opposite_sides = -0.31;     ///< largest cosine between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
-constexpr double least_area = 0.2;  ///< of a circle as long: a path there and back the same way has none
+constexpr double per_length = 1.5;    ///< size over the length of a line: kappa 0.8 between such edges
+constexpr double least_line = 0.001;  ///< of the size asked for: a shorter line is a point
+constexpr double least_area = 0.2;    ///< of a circle as long: a path there and back the same way has none
 
 /// Finds the rings around tubes, from one vertex after the other.
 class TubeFinder {
  public:
   explicit TubeFinder(const Mesh& mesh)
       : mesh_(mesh),
-        next_(mesh),
+        next_(neighbors_of(mesh)),
         normal_(vertex_area_vectors(mesh)),
-        distance_(mesh.points.size(), infinite),
+        distance_(mesh.points.size(), infinity),
         from_(mesh.points.size()),
         branch_(mesh.points.size()) {}
 
   /// Returns the length of the shortest ring through v, at most `below`. Leaves the vertices nearer than half
   /// of it in near(), with their distances.
   double ring(int v, double below) {
-    for (int u : reached_) distance_[u] = infinite;
+    for (int u : reached_) distance_[u] = infinity;
     near_.clear();
     reached_.assign(1, v);
     distance_[v] = 0, from_[v] = branch_[v] = v;
@@ -50,13 +52,12 @@ class TubeFinder {
     shortest_paths(reached_, distance_, [&](int a, auto reach) {
       if (distance_[a] > 0.5 * shortest) return false;
       near_.push_back(a);
-      for (int k = next_.start[a]; k < next_.start[a + 1]; ++k) {
-        const int b = next_.vertex[k];
+      for (int b : next_[a]) {
         const double l = distance_[a] + norm(mesh_.points[b] - mesh_.points[a]), before = distance_[b];
         if (l + before < shortest && from_[a] != b && from_[b] != a && is_ring(v, a, b))
           shortest = l + before;
         if (!reach(b, l)) continue;
-        if (before == infinite) reached_.push_back(b);
+        if (before == infinity) reached_.push_back(b);
         from_[b] = a, branch_[b] = a == v ? b : branch_[a];
       }
       return true;
@@ -89,7 +90,7 @@ class TubeFinder {
   }
 
   const Mesh& mesh_;
-  const Neighbors next_;
+  const Lists next_;
   std::vector<Vec3> normal_;
   std::vector<double> distance_;
   std::vector<int> from_, branch_, reached_, near_;
@@ -101,7 +102,7 @@ std::vector<double> closed_areas(const Connectivity& surface) {
   std::vector<double> area(components(surface.opposite, component), 0), whole;
   for (int h = 0; h < surface.n_half_edges(); ++h)
     area[component[h / 3]] +=
-        surface.is_border(h) || surface.is_model(h) ? infinite : triangle_area(surface.mesh, h / 3) / 3;
+        surface.is_border(h) || surface.is_model(h) ? infinity : triangle_area(surface.mesh, h / 3) / 3;
   for (int c : component) whole.push_back(area[c]);
   return whole;
 }
@@ -110,8 +111,8 @@ std::vector<double> closed_areas(const Connectivity& surface) {
 
 std::vector<double> closed_line_lengths(const Connectivity& surface) {
   const Mesh& mesh = surface.mesh;
-  const int n = static_cast<int>(mesh.points.size());
-  std::vector<double> around(n, infinite);
+  const int n = (int)mesh.points.size();
+  std::vector<double> around(n, infinity);
   std::vector<std::array<int, 2>> ends(n, {-1, -1});  // the other ends of the first two edges
   std::vector<int> degree(n, 0);
   for (int h = 0; h < surface.n_half_edges(); ++h) {
@@ -164,7 +165,7 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
     }
   std::optional<TubeFinder> finder;  // most surfaces of a scan bend nowhere as much
   std::vector<char> done(n, 0);
-  for (int v = 0; v < static_cast<int>(n); ++v) {
+  for (int v = 0; v < (int)n; ++v) {
     const double below = ring_edges * size[v];
     if (done[v] || !(bend[v] * below > full_bend)) continue;
     TubeFinder& tubes = finder ? *finder : finder.emplace(mesh);
@@ -177,6 +178,37 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
     }
   }
   return feature;
+}
+
+void lower_along_short_lines(const Mesh& mesh, std::vector<double>& size) {
+  const int n = (int)mesh.points.size();
+  std::vector<std::array<int, 2>> edges;
+  for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]);
+    if (uses.size() > 2) edges.push_back({origin(mesh.tris, h), target(mesh.tris, h)});
+  });
+  const Lists star = lists_of(n, [&](auto use) {
+    for (int e = 0; e < (int)edges.size(); ++e)
+      for (int v : edges[e]) use(v, e);
+  });
+  const std::vector<double> asked = size;
+  std::vector<int> line;
+  for (int v = 0; v < n; ++v) {
+    if (star[v].size() == 2) continue;
+    for (int first : star[v]) {
+      line.assign(1, v);
+      double length = 0;
+      for (int e = first;;) {
+        const int w = edges[e][edges[e][0] == line.back()];
+        length += norm(mesh.points[w] - mesh.points[line.back()]);
+        line.push_back(w);
+        if (star[w].size() != 2 || per_length * length >= asked[w]) break;
+        e = star[w][star[w][0] == e];
+      }
+      if (star[line.back()].size() == 2) continue;  // long enough
+      for (int w : line) size[w] = std::min(size[w], std::max(per_length * length, least_line * asked[w]));
+    }
+  }
 }
 
 }  // namespace meshpipe

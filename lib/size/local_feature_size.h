@@ -22,4 +22,9 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
 /// Returns the curvature that a surface has to exceed somewhere so that it has a tube too narrow for `size`.
 double least_tube_curvature(const std::vector<double>& size);
 
+/// Lowers the sizes along short lines where more than two triangles meet, between the points where such lines
+/// meet or end: the triangles around the only segment of such a line can be no better than its length allows.
+/// `size` is per vertex.
+void lower_along_short_lines(const Mesh& mesh, std::vector<double>& size);
+
 }  // namespace meshpipe

@@ -35,14 +35,14 @@ class Around {
         const Vec3 a = surface_.point(surface_.from(g)) - p, b = surface_.point(surface_.to(g)) - p;
         const bool inside = dot(a, a) < r * r, ends_inside = dot(b, b) < r * r;
         if (!inside && !ends_inside) continue;
-        if (surface_.is_border(g)) return HUGE_VAL;
+        if (surface_.is_border(g)) return infinity;
         if (inside != ends_inside && ends < 2) end[ends++] = inside ? crossing(a, b, r) : crossing(b, a, r);
         const int t = surface_.opposite[g] / 3;
         if (seen_[t] != center) seen_[t] = center, queue_.push_back(t);
       }
       if (ends == 2) length += norm(end[1] - end[0]);
     }
-    return length > 0 ? length / r : HUGE_VAL;
+    return length > 0 ? length / r : infinity;
   }
 
   long long looks = 0;
@@ -83,7 +83,7 @@ std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<dou
     const int v = surface.from(h);
     if (!(norm(sum[v]) < across * weight[v])) continue;
     weight[v] = 0;
-    double total = 0, nearest = HUGE_VAL;
+    double total = 0, nearest = infinity;
     surface.for_each_spoke(h, [&](int g) {
       const Vec3 a = surface.point(surface.to(g)) - surface.point(v);
       total += angle(a, surface.point(surface.apex(g)) - surface.point(v));
@@ -91,7 +91,7 @@ std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<dou
     });
     if (total < widest && nearest < scale * size[v])
       total = around.looks < (long long)most_looks * surface.n_tris() ? around.angle(h, scale * size[v])
-                                                                      : HUGE_VAL;
+                                                                      : infinity;
     if (total < widest) peaks.push_back({v, total});
   }
   return peaks;

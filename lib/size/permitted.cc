@@ -3,18 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
-#include "lib/core/segments.h"
 
 namespace meshpipe {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
 constexpr double most_sag = 0.3;      ///< of the gap; triangles sag by 4/3 of what edges do
@@ -176,7 +173,7 @@ bool Measure::adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) con
       way += norm(surface_.point(v) - x);
       x = surface_.point(v);
       if (way > most || then == h) {
-        way = infinite;
+        way = infinity;
         break;
       }
       const int w = forward ? surface_.to(then) : surface_.from(then);
@@ -210,14 +207,14 @@ Vec3 Measure::inward(int h, double width) const {
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
   double width = asked(h) / per_width;
   const double least = surface_.length(h) < asked(h) ? least_width_ : 0;
-  SizeBound found{h, p, infinite, 0};
+  SizeBound found{h, p, infinity, 0};
   search.flood(
       {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
       [&](int t) {
         for (int g = 3 * t; g < 3 * t + 3; ++g) {
           if (g == h || !is_line(g)) continue;
           const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
-          const Vec3 q = lerp(a, b, nearest_on_segment(p, a, b));
+          const Vec3 q = lerp(a, b, nearest_fraction(p, a, b));
           const double d = norm(q - p);
           if (!(d < width) || d <= least || dot(q - p, inward(h, d)) < opposed * d ||
               dot(p - q, inward(g, d)) < opposed * d || adjacent_along(h, p, g, q, d))
@@ -244,7 +241,7 @@ double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) c
           const double za = dot(a - p, up) - most, zb = dot(b - p, up) - most;
           if ((za > 0) != (zb > 0) && n < 2) level[n++] = lerp(a, b, za / (za - zb));
         }
-        const double at = nearest_on_segment(p, level[0], level[1]);
+        const double at = nearest_fraction(p, level[0], level[1]);
         if (n == 2) reach = std::min(reach, norm(lerp(level[0], level[1], at) - p));
         return true;
       });
@@ -268,7 +265,7 @@ Bend Measure::bend(int h) const {
 }
 
 SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
-  const SizeBound none{h, p, infinite, 0};
+  const SizeBound none{h, p, infinity, 0};
   const int s = h / 3, t = surface_.opposite[h] / 3;
   auto [up, heights, gap] = bend(h);
   if (!(gap > 0)) return none;
@@ -300,7 +297,7 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
 void measure_along(const Measure& measure, int h, double from, double to, Search& search,
                    std::vector<SizeBound>& found, double apart = 1) {
   SizeBound x = measure.at(h, 0.5 * (from + to), search);
-  if (x.size == infinite) return;
+  if (x.size == infinity) return;
   const double length = measure.surface().length(h), piece = (to - from) * length;
   if (piece < apart * x.size || piece < least_piece * length) {
     x.length = measure.is_line(h) ? piece : 0;
@@ -408,7 +405,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           if (!line) {
             const double size = measure.asked(h),
-                         gap = surface.length(h) > size ? infinite : measure.bend(h).gap;
+                         gap = surface.length(h) > size ? infinity : measure.bend(h).gap;
             const Vec3 middle = lerp(surface.point(surface.from(h)), surface.point(surface.to(h)), 0.5);
             if (gap > 0) edges.push_back({h, middle, size, gap});
             continue;
@@ -416,7 +413,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           measure_edge(measure, h, search, found[c]);
           if (measure.turns(h))
             for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
-              if (x.size < infinite) found[c].push_back(x);
+              if (x.size < infinity) found[c].push_back(x);
         }
         measure_sheets(measure, edges, search, most, found[c]);
       }
@@ -424,7 +421,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
     all.clear();
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     for (SizeBound& x : all) x.size = std::max(x.size, least);
-    if (triangles_of_strips(all, infinite) > most_triangles) return all;
+    if (triangles_of_strips(all, infinity) > most_triangles) return all;
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const SizeBound& a, const SizeBound& b) { return a.half_edge < b.half_edge; });

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "lib/core/neighbors.h"
@@ -50,13 +49,13 @@ constexpr double inset = 0.3;  ///< towards the triangle's center: vertices of c
 /// Unit normals of the vertices, averaged over rings of vertices whose normals are alike.
 std::vector<Vec3> averaged_normals(const Mesh& mesh) {
   std::vector<Vec3> normal = vertex_normals(mesh), to(normal.size());
-  const Neighbors next(mesh);
+  const Lists next = neighbors_of(mesh);
   for (int i = 0; i < averaged; ++i) {
 #pragma omp parallel for schedule(static)
     for (int v = 0; v < (int)normal.size(); ++v) {
       Vec3 sum = normal[v];
-      for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-        if (const Vec3 n = normal[next.vertex[k]]; dot(n, normal[v]) > smooth) sum = sum + 0.5 * n;
+      for (int w : next[v])
+        if (const Vec3 n = normal[w]; dot(n, normal[v]) > smooth) sum = sum + 0.5 * n;
       to[v] = normalized(sum);
     }
     std::swap(normal, to);
@@ -92,17 +91,17 @@ Mesh oriented_outward(const Connectivity& c) {
 /// Replaces the radii of the vertices flagged, layer by layer, by the mean of their neighbors' that are
 /// known; `none` where there are none.
 void fill(const Mesh& mesh, double none, std::vector<char> left, std::vector<double>& radius) {
-  const Neighbors next(mesh);
+  const Lists next = neighbors_of(mesh);
   std::vector<int> todo;
-  for (int v = 0; v < static_cast<int>(left.size()); ++v)
+  for (int v = 0; v < (int)left.size(); ++v)
     if (left[v]) todo.push_back(v);
   for (std::vector<int> filled{0}; !filled.empty();) {  // layer by layer
     filled.clear();
     std::erase_if(todo, [&](int v) {
       double sum = 0;
       int n = 0;
-      for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-        if (const int u = next.vertex[k]; !left[u] && radius[u] < none) sum += radius[u], ++n;
+      for (int u : next[v])
+        if (!left[u] && radius[u] < none) sum += radius[u], ++n;
       if (n == 0) return false;
       radius[v] = sum / n;
       filled.push_back(v);
@@ -170,7 +169,7 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
     }
   if (n < least_hits) return {none_};
   auto nth = [&](double share) {
-    const auto at = found + static_cast<int>(share * (n - 1));
+    const auto at = found + (int)(share * (n - 1));
     std::nth_element(found, at, found + n);
     return *at;
   };
@@ -187,8 +186,7 @@ SheetDistance::Ball SheetDistance::ball_on_face(int t, Vec3 p) const {
 double SheetDistance::radius_at(Vec3 p) const {
   const Place place = tree_.nearest(p).place;
   const auto& [i, j, k] = mesh_.tris[place.face];
-  if (folded_[i] || folded_[j] || folded_[k])
-    return place.b0 * radius_[i] + place.b1 * radius_[j] + place.b2 * radius_[k];
+  if (folded_[i] || folded_[j] || folded_[k]) return value_at(place, radius_, mesh_.tris);
   double longest = 0;
   for (int h = 3 * place.face; h < 3 * place.face + 3; ++h)
     longest = std::max(longest, edge_length(mesh_, h));
@@ -214,7 +212,7 @@ double SheetDistance::ball_on_sides(int face, Vec3 p) const {
 }
 
 void SheetDistance::measure() {
-  const int n = static_cast<int>(mesh_.points.size()), n_tris = static_cast<int>(mesh_.tris.size());
+  const int n = (int)mesh_.points.size(), n_tris = (int)mesh_.tris.size();
   std::vector<Ball> at_corner(3 * static_cast<std::size_t>(n_tris), Ball{-1});
   for (int h = 0; h < 3 * n_tris; ++h)
     if (const int v = origin(mesh_.tris, h);
@@ -246,17 +244,16 @@ void SheetDistance::close_openings(const Connectivity& c) {
   std::vector<char> open(components(c.opposite, component), 0);
   for (int h = 0; h < c.n_half_edges(); ++h)
     if (c.is_border(h)) open[component[h / 3]] = 1;
-  const Neighbors next(mesh_);
-  std::vector<double> way(c.n_vertices(), std::numeric_limits<double>::infinity());  // in radii
+  const Lists next = neighbors_of(mesh_);
+  std::vector<double> way(c.n_vertices(), infinity);  // in radii
   std::vector<int> sources;
   for (int h = 0; h < c.n_half_edges(); ++h)
     if (const int v = c.from(h); open[component[h / 3]] && radius_[v] < none_ && way[v] > 0)
       way[v] = 0, sources.push_back(v);
   shortest_paths(sources, way, [&](int v, auto reach) {
     if (way[v] > opening) return false;
-    for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-      if (const int u = next.vertex[k];
-          reach(u, way[v] + norm(mesh_.points[u] - mesh_.points[v]) / radius_[v])) {
+    for (int u : next[v])
+      if (reach(u, way[v] + norm(mesh_.points[u] - mesh_.points[v]) / radius_[v])) {
         radius_[u] = radius_[v];
         folded_[u] = 1;
       }
@@ -275,9 +272,9 @@ void SheetDistance::leave_branchings(const Connectivity& c) {
     if (angle < largest_corner) corner[c.from(h)] = 1;
     if (angle > least_reflex) reflex[c.from(h)] = 1;
   }
-  const Neighbors next(mesh_);
-  const int n = static_cast<int>(radius_.size());
-  std::vector<double> way(n, std::numeric_limits<double>::infinity());  // in radii
+  const Lists next = neighbors_of(mesh_);
+  const int n = (int)radius_.size();
+  std::vector<double> way(n, infinity);  // in radii
   std::vector<int> sources;
   for (int v = 0; v < n; ++v)
     if (sure_[v]) way[v] = 0, sources.push_back(v);
@@ -286,10 +283,8 @@ void SheetDistance::leave_branchings(const Connectivity& c) {
   shortest_paths(sources, way, [&](int v, auto reach) {
     if (way[v] > branching) return false;
     left[v] = way[v] > 0 && (!corner[v] || reflex[v]);
-    for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-      if (const int u = next.vertex[k];
-          reach(u, way[v] + norm(mesh_.points[u] - mesh_.points[v]) / radius[v]))
-        radius[u] = radius[v];
+    for (int u : next[v])
+      if (reach(u, way[v] + norm(mesh_.points[u] - mesh_.points[v]) / radius[v])) radius[u] = radius[v];
     return true;
   });
   for (int v = 0; v < n; ++v) folded_[v] |= left[v];
@@ -306,15 +301,14 @@ double SheetDistance::angle_on_side(const Connectivity& c, int h) const {
 /// touches the other side of the fold.
 void SheetDistance::leave_sides(const Connectivity& c, const std::vector<char>& fold,
                                 std::vector<double> reach) {
-  std::vector<double> way(c.n_vertices(), std::numeric_limits<double>::infinity());
+  std::vector<double> way(c.n_vertices(), infinity);
   std::vector<int> sources;
   for (int v = 0; v < c.n_vertices(); ++v)
     if (fold[v]) way[v] = 0, sources.push_back(v);
-  const Neighbors next(mesh_);
+  const Lists next = neighbors_of(mesh_);
   shortest_paths(sources, way, [&](int v, auto lower) {
     if (radius_[v] < least_resolved * way[v]) folded_[v] = 1;
-    for (int k = next.start[v]; k < next.start[v + 1]; ++k) {
-      const int u = next.vertex[k];
+    for (int u : next[v]) {
       const double d = way[v] + norm(mesh_.points[u] - mesh_.points[v]);
       if (d <= reach[v] && lower(u, d)) reach[u] = reach[v];
     }
@@ -349,12 +343,12 @@ void SheetDistance::leave_folds(const Connectivity& c) {
       if (r < none_) radius_[v] = radius_[v] < none_ ? std::max(radius_[v], r) : r;
     }
   }
-  const Neighbors next(mesh_);
+  const Lists next = neighbors_of(mesh_);
   // what a single vertex has alone is a fault there
   const std::vector<double> before = radius_;
   for (int v = 0; v < c.n_vertices(); ++v) {
     double least = none_;
-    for (int k = next.start[v]; k < next.start[v + 1]; ++k) least = std::min(least, before[next.vertex[k]]);
+    for (int w : next[v]) least = std::min(least, before[w]);
     if (before[v] >= lone * least) continue;
     radius_[v] = least;
     folded_[v] = 1;

@@ -3,22 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 #include <unordered_map>
 
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/failure_facts.h"
 #include "lib/core/junctions.h"
+#include "lib/core/lists.h"
 #include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/split_edges.h"
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
-#include "lib/size/junction_lines.h"
 #include "lib/size/local_feature_size.h"
 #include "lib/size/permitted.h"
 #include "lib/size/sheet_distance.h"
@@ -26,7 +24,6 @@
 namespace meshpipe {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double default_size = 0.1;       ///< of the diagonal, where no source bounds the size
 constexpr double longest_edge = 1.0 / 16;  ///< of the diagonal, where a field may have detail anywhere
 constexpr int most_passes = 12;            ///< of splitting edges; each halves them, fields have few scales
@@ -50,7 +47,7 @@ struct Field {
   Table* chart;
   const SizeOptions& o;
   double diagonal = 0, cap = 0;
-  double uniform = infinite, scale = 1;  ///< meet_count varies these two
+  double uniform = infinity, scale = 1;  ///< meet_count varies these two
   std::vector<int> opposite{};
   std::vector<double> curvature{};  ///< per triangle; empty if not needed
   std::vector<Source> sources{};
@@ -77,8 +74,8 @@ double edge_length(const Field& f, int h) { return edge_length(f.s, h); }
 
 /// Returns the size that a curvature asks for.
 double by_curvature(const SizeOptions& o, double k) {
-  if (!(k > 0)) return infinite;
-  double h = infinite;
+  if (!(k > 0)) return infinity;
+  double h = infinity;
   if (o.per_turn > 0) h = 2 * std::numbers::pi / (o.per_turn * k);
   // a chord of length h over an arc of radius r is r - sqrt(r^2 - h^2 / 4) away from it
   if (o.chord > 0)
@@ -103,7 +100,7 @@ double asked(Field& f, int a, int b, double curvature) {
 /// Sets the wishes: what the sources ask for at the vertices.
 void set_wishes(Field& f) {
   const std::size_t n = f.s.points.size();
-  f.wish.assign(n, infinite);
+  f.wish.assign(n, infinity);
   std::vector<double> most(n, 0);
   if (!f.curvature.empty())
     for (std::size_t t = 0; t < f.s.tris.size(); ++t) {
@@ -129,7 +126,7 @@ void set_wishes(Field& f) {
 /// Returns what the sources ask for in the middle of an edge.
 double wish_between(Field& f, int h) {
   const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
-  double least = infinite, most = 0;
+  double least = infinity, most = 0;
   if (!f.curvature.empty()) {
     most = o >= 0 ? std::max(f.curvature[h / 3], f.curvature[o / 3]) : f.curvature[h / 3];
     least = by_curvature(f.o, most);
@@ -168,9 +165,9 @@ void each_bound(const Field& f, int h, Visit visit) {
 
 /// Lowers what the surface permits at the ends of every edge by the bounds on it.
 void bound_vertices(Field& f) {
-  f.permits.assign(f.s.points.size(), infinite);
+  f.permits.assign(f.s.points.size(), infinity);
   if (f.bounds.empty()) return;
-  for (int h = 0; h < static_cast<int>(f.opposite.size()); ++h)
+  for (int h = 0; h < (int)f.opposite.size(); ++h)
     each_bound(f, h, [&](const SizeBound& x) {
       for (int v : {origin(f.s.tris, h), target(f.s.tris, h)})
         f.permits[v] = std::min(f.permits[v], x.size + f.o.gradation * norm(f.s.points[v] - x.place));
@@ -197,12 +194,12 @@ void set_sizes(Field& f, double uniform, double scale) {
 /// x < 0 the uniform length is e^x diagonals; beyond, the other sources are multiplied by e^x.
 void meet_count(Field& f) {
   auto count_at = [&](double x) {
-    set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinite, x > 0 ? std::exp(x) : 1);
+    set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinity, x > 0 ? std::exp(x) : 1);
     const double strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
     return std::log((count_for_size(f.s, f.size) + strips) / f.o.triangles);
   };
   // without other sources all x > 0 are one: narrow places that ask for more there do so everywhere
-  if (!f.bounds.empty() && *std::min_element(f.wish.begin(), f.wish.end()) == infinite && count_at(0) > 0)
+  if (!f.bounds.empty() && *std::min_element(f.wish.begin(), f.wish.end()) == infinity && count_at(0) > 0)
     return;
   constexpr double step = 0.3, most = 20;  // of x: sizes grow by a third a step, up to e^20 times
   double low = std::min(0.0, std::log(size_for_count(total_area(f.s), f.o.triangles) / f.diagonal)),
@@ -235,7 +232,7 @@ void make_sizes(Field& f) {
   if (f.o.triangles > 0)
     meet_count(f);
   else
-    set_sizes(f, infinite, 1);
+    set_sizes(f, infinity, 1);
 }
 
 /// Whether interpolation along the edge misses the field in its middle, on a scale that a mesh would show.
@@ -272,7 +269,7 @@ void connect(Field& f) { f.opposite = opposite_halfedges(f.s); }
 template <class Test>
 bool split(Field& f, const Test& test) {
   std::vector<char> mark(f.opposite.size(), 0);
-  for (int h = 0; h < static_cast<int>(mark.size()); ++h)
+  for (int h = 0; h < (int)mark.size(); ++h)
     if (f.opposite[h] < h) mark[h] = test(h);
   const std::vector<int> parent = split_edges({f.s, f.opposite}, std::move(mark), f.chart);
   if (parent.empty()) return false;
@@ -323,14 +320,14 @@ double most_for(double triangles) { return std::max(most_times * triangles, many
 
 /// Throws: GoalMissed if narrow strips ask for many times as many triangles as there should be.
 void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const SizeReport& r) {
-  const double strips = triangles_of_strips(bounds, infinite);
+  const double strips = triangles_of_strips(bounds, infinity);
   const double limit = most_for(triangles);
   if (strips <= limit) return;
   FailureFacts facts;
   facts.strip_width = std::max(wide_strip * r.narrow_from, 2 * r.narrow_gap);
   auto left = [&] {
     std::erase_if(bounds, [&](const SizeBound& x) { return x.gap < facts.strip_width; });
-    return triangles_of_strips(bounds, infinite);
+    return triangles_of_strips(bounds, infinity);
   };
   while (left() > limit) facts.strip_width *= 2;
   throw Informed<GoalMissed>("narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
@@ -342,7 +339,7 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
 /// Puts the surface back as it was before it was split for its bounds (not the chart table), and throws
 /// GoalMissed, if the field asks for more triangles than `limit`, or has taken as many vertices.
 void refuse_costly_field(Field& f, double limit, double triangles, const SizeReport& r) {
-  const double count = count_for_size(f.s, f.size) + triangles_of_strips(f.bounds, infinite);
+  const double count = count_for_size(f.s, f.size) + triangles_of_strips(f.bounds, infinity);
   if (count <= limit && (double)(f.s.points.size() - f.given.points.size()) <= limit) return;
   f.s = std::move(f.given);
   throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
@@ -366,7 +363,7 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
     seen[c] = 1;
     for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= opposite[h] < 0;
   }
-  double asked = 0, narrowest = infinite;
+  double asked = 0, narrowest = infinity;
   Vec3 place;
   for (int c = 0; c < n; ++c) {
     const double around = area[c] / norm(box[c].hi - box[c].lo);
@@ -455,8 +452,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   const std::size_t at = std::min_element(values.begin(), values.end()) - values.begin();
   const auto measured =
       std::count_if(values.begin(), values.end(), [&](double x) { return x < kind.balls * f.diagonal; });
-  return {kind.column,   kind.edges, static_cast<int>(measured), values[at], kind.factor() * values[at],
-          f.s.points[at]};
+  return {kind.column, kind.edges, (int)measured, values[at], kind.factor() * values[at], f.s.points[at]};
 }
 
 /// Makes a field that is not uniform; `bounds` and the number of `triangles` are those of a uniform size, or
@@ -465,7 +461,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
                                SizeReport& report, std::vector<SizeBound> bounds = {}, double triangles = 0) {
   const bool bounds_known = triangles > 0;
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
-  f.cap = o.max > 0 ? o.max : infinite;
+  f.cap = o.max > 0 ? o.max : infinity;
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
   if (!(o.size > 0 || o.triangles > 0 || o.max > 0 || o.at || !o.data.empty()))
     f.cap = default_size * f.diagonal;
@@ -480,7 +476,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (may_split && o.at)
     while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
     }
-  double limit = infinite;  // triangles
+  double limit = infinity;  // triangles
   auto follow_field = [&] {
     bool split_last = false;
     for (int pass = 0;; ++pass) {
@@ -505,14 +501,13 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
     limit = most_for(triangles);
     f.bounds = std::move(bounds);
     f.given = s;
-    f.root.resize(s.tris.size());
-    std::iota(f.root.begin(), f.root.end(), 0);
+    f.root = identity(s.tris.size());
     follow_field();
   }
   lower_where_narrow(f, report);
   if (!f.bounds.empty()) refuse_costly_field(f, limit, triangles, report);
   report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
-  report.added = static_cast<int>(s.points.size() - n_before);
+  report.added = (int)(s.points.size() - n_before);
   report.scale = f.scale;
   return std::move(f.size);
 }
@@ -535,7 +530,7 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Vec3 p = mesh.points[v];
     const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    const double spacing = std::nextafter(far, HUGE_VAL) - far;
+    const double spacing = std::nextafter(far, infinity) - far;
     if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
     throw Informed<GoalMissed>(
         "vertex " + std::to_string(v) + " has size " + shown(size[v]) + ", but coordinates there are " +
@@ -546,11 +541,10 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
 }
 
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
-  const Neighbors next(mesh);
+  const Lists next = neighbors_of(mesh);
   auto each_lower = [&](int v, const auto& lower) {
-    for (int k = next.start[v]; k < next.start[v + 1]; ++k)
-      if (const int u = next.vertex[k]; size[u] > size[v])
-        lower(u, size[v] + slope * norm(mesh.points[u] - mesh.points[v]));
+    for (int u : next[v])
+      if (size[u] > size[v]) lower(u, size[v] + slope * norm(mesh.points[u] - mesh.points[v]));
   };
   std::vector<int> sources;
   for (int v = 0; v < (int)size.size(); ++v) {
@@ -566,7 +560,7 @@ int match_sheets(Surface& surface, Table* chart, double slope) {
   std::vector<double>& size = surface.vertex.get<double>("size");
   Mesh joined = surface;
   const std::vector<int> vertex = join_borders(joined);
-  std::vector<double> least(vertex.size(), infinite);
+  std::vector<double> least(vertex.size(), infinity);
   for (std::size_t t = 0; t < joined.tris.size(); ++t)
     for (int i = 0; i < 3; ++i)
       least[joined.tris[t][i]] = std::min(least[joined.tris[t][i]], size[surface.tris[t][i]]);
@@ -588,7 +582,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   if (options.layers.first > 0) report.layers = check_layers(surface, options.layers);
   std::vector<double> size;
   if (uniform) {
-    double h = options.size > 0 ? options.size : infinite;
+    double h = options.size > 0 ? options.size : infinity;
     if (options.triangles > 0) h = std::min(h, size_for_count(area, options.triangles));
     if (options.max > 0) h = std::min(h, options.max);
     h = std::max(h, options.min);

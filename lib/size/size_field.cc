@@ -9,7 +9,7 @@ namespace meshpipe {
 
 void add_lone_points(SizeField& field) {
   const std::vector<char> used = used_points(field);
-  for (int v = 0; v < static_cast<int>(used.size()); ++v)
+  for (int v = 0; v < (int)used.size(); ++v)
     if (!used[v]) field.tris.push_back({v, v, v});
 }
 
@@ -17,20 +17,14 @@ double size_near(const SizeField& field, const Bvh& tree, Vec3 p) {
   // distances that differ by less than this share of the size are almost equal: sheets that a mesh of that
   // size cannot tell apart
   constexpr double almost_equal = 0.1;
-  auto size_at = [&](int t, double b0, double b1, double b2) {
-    const Tri& v = field.tris[t];
-    return b0 * field.size[v[0]] + b1 * field.size[v[1]] + b2 * field.size[v[2]];
-  };
   const Bvh::Hit hit = tree.nearest(p);
-  const double nearest = size_at(hit.place.face, hit.place.b0, hit.place.b1, hit.place.b2);
+  const double nearest = value_at(hit.place, field.size, field.tris);
   double least = nearest;
   const double reach = hit.distance + almost_equal * nearest;
   tree.overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}}, [&](int t) {
-    const Vec3 a = field.points[field.tris[t][0]], b = field.points[field.tris[t][1]],
-               c = field.points[field.tris[t][2]];
-    const auto w = closest_on_triangle(p, a, b, c);
-    if (norm(w[0] * a + w[1] * b + w[2] * c - p) <= reach)
-      least = std::min(least, size_at(t, w[0], w[1], w[2]));
+    const Place place = closest_place(field, t, p);
+    if (norm(value_at(place, field.points, field.tris) - p) <= reach)
+      least = std::min(least, value_at(place, field.size, field.tris));
   });
   return least;
 }

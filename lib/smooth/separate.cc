@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held) {
-  const int n = static_cast<int>(start.size());
+  const int n = (int)start.size();
   std::vector<char> back(n, 0);
   Mesh known;
   bool has_known = false;
@@ -36,7 +36,7 @@ int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held
       mesh.points[v] = round < 3 ? lerp(mesh.points[v], start[v], 0.5) : start[v];
     }
   }
-  return static_cast<int>(std::count(back.begin(), back.end(), 1));
+  return (int)std::count(back.begin(), back.end(), 1);
 }
 
 }  // namespace meshpipe

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Steps that all kinds of smoothing have in common.
 #pragma once
 #include <utility>
 #include <vector>

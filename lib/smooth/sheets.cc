@@ -7,6 +7,7 @@
 #include "lib/core/edges.h"
 #include "lib/core/error.h"
 #include "lib/core/junctions.h"
+#include "lib/core/lists.h"
 #include "lib/core/normals.h"
 #include "lib/core/union_find.h"
 #include "lib/smooth/separate.h"
@@ -24,7 +25,7 @@ constexpr int rounds = 4;  // of volume: what one holds back leaves the rest to 
 /// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
 /// as at the end of such a line, which would become ever shorter.
 struct Net {
-  std::vector<int> start, vertex;
+  Lists near;
   std::vector<char> held;
   double edge = 0;                          ///< mean length
   std::vector<std::pair<int, int>> smooth;  ///< triangles that are adjacent within a sheet
@@ -80,18 +81,12 @@ Net make_net(const Mesh& mesh) {
   });
   net.edge /= (double)edges.size();
   net.rigid = joined_ends(edges, on_line);
-  auto each = [&](auto f) {
+  net.near = lists_of(n, [&](auto use) {
     for (const auto& [a, b, uses] : edges) {
-      if (on_line[a] < 2 || uses > 2) f(a, b);
-      if (on_line[b] < 2 || uses > 2) f(b, a);
+      if (on_line[a] < 2 || uses > 2) use(a, b);
+      if (on_line[b] < 2 || uses > 2) use(b, a);
     }
-  };
-  net.start.assign(n + 1, 0);
-  each([&](int v, int) { ++net.start[v + 1]; });
-  for (int v = 0; v < n; ++v) net.start[v + 1] += net.start[v];
-  net.vertex.resize(net.start[n]);
-  std::vector<int> at(net.start.begin(), net.start.end() - 1);
-  each([&](int v, int w) { net.vertex[at[v]++] = w; });
+  });
   return net;
 }
 
@@ -99,10 +94,10 @@ void step(const Net& net, const std::vector<Vec3>& start, double within, double 
   std::vector<Vec3> to = p;
 #pragma omp parallel for schedule(static)
   for (int v = 0; v < (int)p.size(); ++v) {
-    const int n = net.start[v + 1] - net.start[v];
+    const double n = (double)net.near[v].size();
     if (net.held[v] || n == 0) continue;
     Vec3 mean;
-    for (int k = net.start[v]; k < net.start[v + 1]; ++k) mean = mean + 1.0 / n * p[net.vertex[k]];
+    for (int w : net.near[v]) mean = mean + 1.0 / n * p[w];
     const Vec3 d = p[v] + share * (mean - p[v]) - start[v];
     to[v] = start[v] + std::min(1.0, within / std::max(norm(d), 1e-300)) * d;
   }

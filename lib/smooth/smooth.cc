@@ -45,7 +45,7 @@ struct Motion {
   const Connectivity& c;
   double within;
   std::vector<Vec3> start;
-  Neighbors near;
+  Lists near;
   std::vector<std::array<int, 2>> along{};  ///< per vertex of a border: its two neighbors there
   std::vector<int> loop{};                  ///< per vertex, of the border it slides along; else -1
   std::vector<Vec3> plane{};                ///< per loop: the unit normal of its plane; zero if it stays
@@ -55,7 +55,7 @@ struct Motion {
   int n_components = 0;
 
   Motion(Surface& surface, const Connectivity& connectivity, double bound)
-      : s(surface), c(connectivity), within(bound), start(surface.points), near(surface) {}
+      : s(surface), c(connectivity), within(bound), start(surface.points), near(neighbors_of(surface)) {}
   int n() const { return c.n_vertices(); }
 };
 
@@ -71,7 +71,7 @@ void find_borders(Motion& m, bool keep_features, SmoothReport& report) {
   m.held.assign(m.n(), 0);
   m.loop.assign(m.n(), -1);
   m.along.resize(m.n());
-  for (int v = 0; v < m.n(); ++v) m.held[v] = m.near.start[v] == m.near.start[v + 1];
+  for (int v = 0; v < m.n(); ++v) m.held[v] = m.near[v].empty();
   const double tolerance = planar * diagonal(m.s);
   for (const auto& loop : boundary_loops(m.c.opposite)) {
     Vec3 center, normal;
@@ -87,7 +87,7 @@ void find_borders(Motion& m, bool keep_features, SmoothReport& report) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int v = m.c.from(loop[i]);
       m.held[v] |= !flat || m.loop[v] >= 0;  // a second loop goes through it
-      m.loop[v] = static_cast<int>(m.plane.size());
+      m.loop[v] = (int)m.plane.size();
       m.along[v] = {m.c.from(loop[(i + loop.size() - 1) % loop.size()]), m.c.to(loop[i])};
     }
     m.plane.push_back(flat ? normal : Vec3{});
@@ -133,9 +133,8 @@ void smooth_steps(Motion& m, int count) {
       if (m.loop[v] >= 0) {
         mean = lerp(p[v], 0.5 * (p[m.along[v][0]] + p[m.along[v][1]]), along_rim);
       } else {
-        const int first = m.near.start[v], last = m.near.start[v + 1];
-        for (int k = first; k < last; ++k) mean = mean + p[m.near.vertex[k]];
-        mean = (1.0 / (last - first)) * mean;
+        for (int w : m.near[v]) mean = mean + p[w];
+        mean = (1.0 / (double)m.near[v].size()) * mean;
       }
       to[v] = p[v] + allowed(m, v, damping * (mean - p[v]));
     });
@@ -147,7 +146,7 @@ void smooth_steps(Motion& m, int count) {
 void spread(const Motion& m, int count, std::vector<double>& value) {
   const std::vector<double> area = vertex_areas(m.s);
   std::vector<double> to = value, share(m.n(), 0);
-  for (int v = 0; v < m.n(); ++v) share[v] = 1.0 / std::max(1, m.near.start[v + 1] - m.near.start[v]);
+  for (int v = 0; v < m.n(); ++v) share[v] = 1.0 / std::max(1.0, (double)m.near[v].size());
   for (int i = 0; i < count; ++i) {
     for_vertices(m, [&](int v) {
       double sum = 0;
@@ -155,8 +154,7 @@ void spread(const Motion& m, int count, std::vector<double>& value) {
         sum = along_rim * (0.5 * (value[m.along[v][0]] + value[m.along[v][1]]) - value[v]);
       } else if (area[v] > 0) {
         // symmetric flows (Metropolis), at most the whole in a step
-        for (int k = m.near.start[v]; k < m.near.start[v + 1]; ++k) {
-          const int u = m.near.vertex[k];
+        for (int u : m.near[v]) {
           if (m.held[u]) continue;
           sum += std::min(area[u], area[v]) * std::min(share[u], share[v]) * (value[u] - value[v]);
         }
@@ -247,7 +245,7 @@ double mean_angle(const Connectivity& c) {
 
 double mean_edge(const Mesh& mesh) {
   double sum = 0;
-  for (int h = 0; h < 3 * static_cast<int>(mesh.tris.size()); ++h) sum += edge_length(mesh, h);
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) sum += edge_length(mesh, h);
   return sum / (3.0 * mesh.tris.size());
 }
 
@@ -265,7 +263,7 @@ void refuse_small_bound(Motion& m, const SmoothReport& r, double edge) {
   }
   std::vector<double> way(m.n());
   for (int v = 0; v < m.n(); ++v) way[v] = norm(m.s.points[v] - m.start[v]);
-  const int most = static_cast<int>(std::max_element(way.begin(), way.end()) - way.begin());
+  const int most = (int)(std::max_element(way.begin(), way.end()) - way.begin());
   const double longest = way[most];
   std::nth_element(way.begin(), way.begin() + m.n() / 2, way.end());
   throw GoalMissed("a bound of " + shown(r.within) +
@@ -294,7 +292,7 @@ SmoothReport smooth(Surface& surface, const SmoothOptions& options) {
   r.angle_before = mean_angle(c);
 
   const std::vector<char> held = m.held;
-  r.angle_after = HUGE_VAL;
+  r.angle_after = infinity;
   for (std::size_t i = 0; i < std::size(steps) && !(r.angle_after < r.angle_before); ++i) {
     surface.points = m.start;
     m.held = held;

@@ -43,7 +43,7 @@ void flip_ears(Surface& surface);
 /// Throws: NotAdmissible if there are no triangles. Source: Taubin as above, with his negative steps.
 SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options);
 
-/// Returns lines for the user.
+/// Returns the report as sentences, one per line of output.
 std::vector<std::string> describe(const SmoothReport& report);
 
 }  // namespace meshpipe

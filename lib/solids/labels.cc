@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "lib/core/lists.h"
 #include "lib/solids/solids.h"
 
 namespace meshpipe {
@@ -27,22 +28,19 @@ int outside_label(const Solids& solids, const std::vector<std::array<int, 2>>& g
 
 std::vector<int> labels_of(const Solids& solids, const std::vector<std::array<int, 2>>& given) {
   const int n = (int)given.size(), regions = (int)solids.volume.size();
-  std::vector<int> label(regions, 0), from(regions, -1), start(regions + 1, 0), triangles;
-  for (const auto& [a, b] : solids.sides) ++start[a + 1], ++start[b + 1];
-  for (int r = 0; r < regions; ++r) start[r + 1] += start[r];
-  triangles.resize(start[regions]);
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (int t = 0; t < n; ++t)
-    for (int r : solids.sides[t]) triangles[at[r]++] = t;
+  std::vector<int> label(regions, 0), from(regions, -1);
+  const Lists triangles = lists_of(regions, [&](auto use) {
+    for (int t = 0; t < n; ++t)
+      for (int r : solids.sides[t]) use(r, t);
+  });
   std::vector<int> todo{0};
   std::vector<char> known(regions, 0);
   label[0] = outside_label(solids, given);
   known[0] = 1;
   while (!todo.empty()) {
-    const int r = todo.back();
-    todo.pop_back();
-    for (int i = start[r]; i < start[r + 1]; ++i) {
-      const int t = triangles[i], other = solids.sides[t][solids.sides[t][0] == r];
+    const int r = take_last(todo);
+    for (int t : triangles[r]) {
+      const int other = solids.sides[t][solids.sides[t][0] == r];
       const std::array<int, 2>& pair = given[t];
       const std::string where =
           "triangle " + std::to_string(t) + " has labels " + pair_of(pair) + " on its sides, but ";

@@ -15,12 +15,6 @@
 namespace meshpipe {
 namespace {
 
-/// Six times the volume between a triangle and a point.
-double volume6(const Mesh& mesh, int t, Vec3 from) {
-  const auto& [a, b, c] = mesh.tris[t];
-  return dot(mesh.points[a] - from, cross(mesh.points[b] - from, mesh.points[c] - from));
-}
-
 /// Where a line along x passes through a triangle.
 struct Crossing {
   double x;

@@ -63,7 +63,7 @@ struct RegionMeasure {
 /// Measures the regions that have a label in `sheets`, by the divergence theorem; in ascending order.
 std::vector<RegionMeasure> measure_regions(const Surface& surface, const std::vector<SheetPatch>& sheets);
 
-/// Returns the volumes of n regions, the outside's negative, from the regions on both sides of each triangle.
+/// Returns the volumes of n regions, the outside's negative. `sides` is as in Solids. Requires: a point.
 std::vector<double> region_volumes(const Mesh& mesh, const std::vector<std::array<int, 2>>& sides,
                                    std::size_t n);
 

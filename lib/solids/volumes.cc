@@ -76,8 +76,7 @@ std::vector<double> region_volumes(const Mesh& mesh, const std::vector<std::arra
   std::vector<double> volume(n, 0);
   const Vec3 from = mesh.points[0];
   for (std::size_t t = 0; t < sides.size(); ++t) {
-    const auto& [a, b, c] = mesh.tris[t];
-    const double v = dot(mesh.points[a] - from, cross(mesh.points[b] - from, mesh.points[c] - from)) / 6;
+    const double v = volume6(mesh, (int)t, from) / 6;
     volume[sides[t][0]] -= v;
     volume[sides[t][1]] += v;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/wrap/fit.h"
 
+#include "lib/core/connectivity.h"
 #include "lib/core/lists.h"
 
 namespace meshpipe {
@@ -65,23 +66,18 @@ Quadric planes_at(Vec3 s, const Mesh& soup, const Bvh& tree, double offset, doub
   Quadric q;
   const auto hit = tree.nearest(s);
   if (hit.distance > reach || hit.distance <= 0) return q;
-  const auto& [a, b, c] = soup.tris[hit.place.face];
-  const Vec3 near =
-      hit.place.b0 * soup.points[a] + hit.place.b1 * soup.points[b] + hit.place.b2 * soup.points[c];
+  const Vec3 near = value_at(hit.place, soup.points, soup.tris);
   const Vec3 direction = normalized(s - near);
   const Vec3 margin{tiny, tiny, tiny};
   const double least = std::min({hit.place.b0, hit.place.b1, hit.place.b2});
   if (least < 1e-9)
     tree.overlapping({near - margin, near + margin}, [&](int t) {
-      const auto& [i, j, k] = soup.tris[t];
-      const Vec3 &x = soup.points[i], &y = soup.points[j], &z = soup.points[k];
-      const Vec3 n = area_vector(x, y, z);
+      const Vec3 n = area_vector(soup, t);
       const double size = norm(n);
       if (!(size > 0)) return;
       const double cosine = dot(n, direction) / size;
       if (std::abs(cosine) < sharpest) return;
-      const auto w = closest_on_triangle(near, x, y, z);
-      if (norm(w[0] * x + w[1] * y + w[2] * z - near) > tiny) return;
+      if (norm(closest_point(soup, t, near) - near) > tiny) return;
       const Vec3 unit = (cosine > 0 ? 1 / size : -1 / size) * n;
       q.add_plane(unit, dot(unit, near) + offset, 1);
     });
@@ -188,9 +184,7 @@ std::vector<Tri> divided(const QuadMesh& m, const std::vector<Vec3>& points, con
     const Vec3 normal = cross(pc - pa, pd - pb);
     auto error = [&](Vec3 p) {
       const auto hit = tree.nearest(p);
-      const auto& t = soup.tris[hit.place.face];
-      const Vec3 near = hit.place.b0 * soup.points[t[0]] + hit.place.b1 * soup.points[t[1]] +
-                        hit.place.b2 * soup.points[t[2]];
+      const Vec3 near = value_at(hit.place, soup.points, soup.tris);
       return std::abs((dot(p - near, normal) < 0 ? -hit.distance : hit.distance) - offset);
     };
     // on flat ground both are equal up to rounding, and at a sharp edge three of the corners may be in line

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "lib/core/intersect.h"
-#include "lib/core/predicates.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -15,12 +14,6 @@ constexpr double back[] = {0, 1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 1};
 constexpr int last_step = (int)std::size(back) - 1;
 /// Rounds of moving points back before all of them go: more have not been seen to be needed than 12.
 constexpr int most_rounds = 60;
-
-bool has_area(Vec3 a, Vec3 b, Vec3 c) {
-  return orient2d({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) != 0 ||
-         orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z}) != 0 ||
-         orient2d({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) != 0;
-}
 
 /// Do two triangles with a common edge fold back on each other, other than at a convex ridge? A wrap has no
 /// cracks so narrow. Slivers do not count: they may face anywhere.

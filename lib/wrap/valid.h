@@ -28,12 +28,12 @@ class InsideTest {
   std::vector<Vec3> face_normal_, vertex_normal_;
 };
 
-/// A copy of the soup in which triangles without area are slivers of this width, which exact tests need.
+/// Returns a copy of the soup in which each triangle without area is a sliver of this width along its longest
+/// edge, since exact tests need an area.
 Mesh with_area(const Mesh& soup, double width);
 
-/// Whether triangles of `wrap` and the soup meet: for each triangle t of the wrap with wanted[t] (all if
-/// empty). Exact.
-/// Requires: triangles of the soup have area.
+/// Returns per triangle of `wrap` whether it meets one of the soup (exact); 0 where `wanted`, if not empty,
+/// is 0. Requires: triangles of the soup have area.
 std::vector<std::uint8_t> triangles_that_meet(const Mesh& wrap, const std::vector<std::uint8_t>& wanted,
                                               const Mesh& soup);
 

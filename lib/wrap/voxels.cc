@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "lib/core/error.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -80,8 +81,7 @@ Voxels make_grid(const Mesh& soup, const Bvh& tree, const WrapOptions& o, double
                  WrapReport& report) {
   Voxels v;
   v.spacing = spacing;
-  Box box = box_of(soup, 0);
-  for (int t = 1; t < (int)soup.tris.size(); ++t) box = join(box, box_of(soup, t));
+  const Box box = box_of(soup);
   const double block = Voxels::side * spacing, margin = reach + 2 * block;
   // faces along the axes do not lie on voxel sides, where rounding would decide
   const Vec3 shift = spacing * Vec3{0.3719, 0.4177, 0.4553};
@@ -154,8 +154,7 @@ void flood(Voxels& v, const Reached& reached) {
       visit(i, j + 1, k), visit(i, j, k - 1), visit(i, j, k + 1);
       continue;
     }
-    const int b = far.back();
-    far.pop_back();
+    const int b = take_last(far);
     const Place3 p{b % v.blocks[0], b / v.blocks[0] % v.blocks[1], b / v.blocks[0] / v.blocks[1]};
     for (int axis = 0; axis < 3; ++axis)
       for (int step : {-1, 1}) {
@@ -185,8 +184,7 @@ void flood(Voxels& v, const Reached& reached) {
 /// neighbors that come nearer to the soup.
 void descend(Voxels& v, std::vector<std::int64_t> front) {
   while (!front.empty()) {
-    const std::int64_t from = front.back();
-    front.pop_back();
+    const std::int64_t from = take_last(front);
     const auto [i, j, k] = v.position(from);
     for (int n = 0; n < 27; ++n) {
       const int a = n % 3 - 1, b = n / 3 % 3 - 1, c = n / 9 - 1;

@@ -64,12 +64,8 @@ void verify_wrap(const Mesh& wrap, const Mesh& soup, WrapReport& r) {
   const int chi = n_points - (int)wrap.tris.size() / 2;  // every vertex is used
   r.genus = r.components - chi / 2;
   std::vector<double> volume(r.components, 0);
-  const Vec3 origin = wrap.points[0];
-  for (std::size_t t = 0; t < wrap.tris.size(); ++t) {
-    const auto& [a, b, c] = wrap.tris[t];
-    volume[component[t]] +=
-        dot(wrap.points[a] - origin, cross(wrap.points[b] - origin, wrap.points[c] - origin));
-  }
+  for (std::size_t t = 0; t < wrap.tris.size(); ++t)
+    volume[component[t]] += volume6(wrap, (int)t, wrap.points[0]);
   for (int c = 0; c < r.components; ++c)
     if (!(volume[c] > 0))
       throw ContractMissed("component " + std::to_string(c) + " of the wrap is not outward");

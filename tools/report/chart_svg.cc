@@ -29,7 +29,7 @@ struct Triangles {
 template <class Point, class Chosen>
 SvgPath edges(const Frame& frame, const Triangles& mesh, Point point, Chosen chosen) {
   SvgPath path(digits);
-  for (int h = 0; h < 3 * static_cast<int>(mesh.tris.size()); ++h) {
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) {
     if (mesh.opposite[h] > h || !chosen(h)) continue;
     path.move_to(frame(point(origin(mesh.tris, h))));
     path.line_to(frame(point(target(mesh.tris, h))));
@@ -41,10 +41,7 @@ SvgPath edges(const Frame& frame, const Triangles& mesh, Point point, Chosen cho
 
 std::string chart_svg(const Chart& chart, const PlaneMesh& mesh, const std::string& title) {
   Vec2 low = chart.uv.at(0), high = low;
-  for (Vec2 p : chart.uv) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
+  for (Vec2 p : chart.uv) low = lower(low, p), high = upper(high, p);
   const double scale = side / std::max({high.x - low.x, high.y - low.y, 1e-300});
   const double width = scale * (high.x - low.x), height = scale * (high.y - low.y);
   const Frame left{low, high, scale, gap}, right{low, high, scale, 2 * gap + width};

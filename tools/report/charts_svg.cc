@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "tools/report/svg.h"
 
@@ -21,10 +21,7 @@ struct Box {
 
 Box box_of(const std::vector<Vec2>& uv) {
   Box box;
-  for (Vec2 p : uv) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
-  }
+  for (Vec2 p : uv) box.low = lower(box.low, p), box.high = upper(box.high, p);
   return box;
 }
 
@@ -142,8 +139,7 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
   }
   const double range = color_range(drawings);
   const double unit = std::min(0.48 * (page_width - 2 * gap) / widest, 0.8 * page_width / std::sqrt(area));
-  std::vector<int> order(charts.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = identity(charts.size());
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return drawings[a].height() > drawings[b].height(); });
 

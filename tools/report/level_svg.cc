@@ -139,10 +139,7 @@ void draw_map(Svg& svg, const Frame& frame, const CutMaps& maps, int l,
 void draw_enlarged(Svg& svg, const CutMaps& maps, int l, const std::vector<std::string>& names) {
   Vec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
   for (int child : maps.levels[l].children)
-    for (Vec2 p : maps.levels[child].border) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
+    for (Vec2 p : maps.levels[child].border) low = lower(low, p), high = upper(high, p);
   const double width = std::max(high.x - low.x, high.y - low.y);
   constexpr double inset = 260, close = 0.25;
   if (!(width > 0) || width > close) return;

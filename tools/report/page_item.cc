@@ -5,11 +5,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "formats/stream/line_tables.h"
 #include "lib/core/bvh.h"
+#include "lib/core/lists.h"
 #include "lib/draw/draw.h"
 #include "tools/report/page_meshes.h"
 #include "tools/report/png.h"
@@ -184,8 +184,7 @@ void list_offending(PageItem& item, const Mesh& mesh, const std::vector<double>&
 
 void list_triangles(PageItem& item, const Mesh& mesh, const std::vector<double>& kappas,
                     const Judgment* judgment) {
-  std::vector<int> order(kappas.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = identity(kappas.size());
   const std::size_t n = std::min<std::size_t>(worst_count, order.size());
   std::partial_sort(order.begin(), order.begin() + (std::ptrdiff_t)n, order.end(),
                     [&](int a, int b) { return std::pair(kappas[a], a) < std::pair(kappas[b], b); });

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 
 #include "formats/stream/line_tables.h"
 #include "formats/stream/plane_tables.h"
 #include "lib/check/check.h"
+#include "lib/core/lists.h"
 #include "lib/core/original_triangles.h"
 #include "lib/core/segments.h"
 #include "lib/core/union_find.h"
@@ -25,16 +25,13 @@ class Layout {
     for (const Chart& c : charts) {
       Vec2 low = c.uv.at(0), high = low;
       double plane = 0;
-      for (Vec2 p : c.uv)
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)},
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      for (Vec2 p : c.uv) low = lower(low, p), high = upper(high, p);
       for (const Tri& t : c.mesh.tris) plane += 0.5 * cross(c.uv[t[1]] - c.uv[t[0]], c.uv[t[2]] - c.uv[t[0]]);
       const double scale = plane > 0 ? std::sqrt(total_area(c.mesh) / plane) : 1;
       sheets_.push_back({low, scale * (high - low), {}, scale});
       area += sheets_.back().size.x * sheets_.back().size.y;
     }
-    std::vector<int> order(charts.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order = identity(charts.size());
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return sheets_[a].size.y > sheets_[b].size.y; });
     const double gap = 0.03 * std::sqrt(area), width = 1.5 * std::sqrt(area);
@@ -75,8 +72,7 @@ std::set<std::pair<int, int>> segments_of(const PartLines& parts) {
 }  // namespace
 
 Surface before_cuts(const Surface& reference) {
-  std::vector<int> whole(reference.tris.size());
-  std::iota(whole.begin(), whole.end(), 0);
+  std::vector<int> whole = identity(reference.tris.size());
   Surface before;
   if (reference.face.has("origin"))
     before = surface_of(recover_triangles(reference, reference.face.get<int>("origin"), &whole));
@@ -170,9 +166,7 @@ PlaneMeshes plane_meshes(const Stream& stream, const std::vector<Chart>& charts)
         space.points.push_back(point_of(lines.points[p.line_point], stream.surface));
         continue;
       }
-      const Tri& t = chart.tris[p.place.face];
-      space.points.push_back(p.place.b0 * chart.points[t[0]] + p.place.b1 * chart.points[t[1]] +
-                             p.place.b2 * chart.points[t[2]]);
+      space.points.push_back(value_at(p.place, chart.points, chart.tris));
     }
     for (const Tri& t : meshes[k].tris) {
       space.tris.push_back({first + t[0], first + t[1], first + t[2]});

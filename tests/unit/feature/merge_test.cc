@@ -41,7 +41,7 @@ Surface profile(double chamfer) {
 
 std::vector<int> merged(const Surface& s, double h) {
   PatchMerge m = no_merge(s);
-  merge_automatically(m, s, h, 20 * std::acos(-1) / 180);
+  merge_automatically(m, s, h);
   return m.into;
 }
 

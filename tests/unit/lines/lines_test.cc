@@ -409,7 +409,7 @@ TEST(Lines, EndWhereTheLabelChanges) {
   for (int h = 0; h < (int)tag.size(); ++h)
     if (opposite[h] < 0)
       tag[h] = 0.5 * (s.points[origin(s.tris, h)].x + s.points[target(s.tris, h)].x) < 0.5 ? 3 : 4;
-  const Lines lines = make_lines(s, flat_charts(s, 1), 0.7, &tag);
+  const Lines lines = make_lines(s, flat_charts(s, 1), &tag);
   ASSERT_EQ(lines.lines.size(), 6u);
   for (const Line& l : lines.lines)
     for (int i = l.first; i < l.first + l.count; ++i) {

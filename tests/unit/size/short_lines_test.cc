@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/size/junction_lines.h"
-
 #include <gtest/gtest.h>
+
+#include "lib/size/local_feature_size.h"
 
 using namespace meshpipe;
 
