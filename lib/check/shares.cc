@@ -2,7 +2,6 @@
 #include "lib/check/shares.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -57,9 +56,7 @@ void cut_check(const Mesh& result, const Mesh& reference, const std::vector<doub
   const double edge = size_for_count(area[1], n);
   Mesh both = result;
   append_halved(reference, longest * edge, both);
-  std::vector<int> all(both.tris.size());
-  std::iota(all.begin(), all.end(), 0);
-  const auto boxes = split_into_boxes(both, all, 2 * triangles);
+  const auto boxes = split_into_boxes(both, identity(both.tris.size()), 2 * triangles);
   const Lists around = around_tiles(both, boxes, reach, nullptr, reach * edge);
   const long long enough = ((long long)reference.tris.size() + n) / 4 + 500;
   const int effort = (most > 0 ? bounded_effort : free_effort) * samples;

@@ -2,8 +2,6 @@
 // The schedule of the optimization.
 #include "lib/relax/relax.h"
 
-#include <numeric>
-
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
@@ -32,8 +30,7 @@ void hold_seams(const std::vector<Vec3>& points, const std::vector<char>& on_bor
   for (int v = 0; v < n; ++v)
     if (on_border[v]) sum += size(v), ++count;
   if (count == 0) return;
-  std::vector<int> same(n);
-  std::iota(same.begin(), same.end(), 0);
+  std::vector<int> same = identity(n);
   merge_near(points, on_border, rules::open_seam * sum / (double)count, same);
   for (int v = 0; v < n; ++v)
     if (same[v] != v) hold[v] = hold[same[v]] = paired;
@@ -269,12 +266,6 @@ void finish_tile(State& s, const Ordered& ordered, Tile& tile) {
   tile.faces = {}, tile.rim.excess = {}, tile.corner = {};
 }
 
-std::vector<int> all_triangles(const Mesh& mesh) {
-  std::vector<int> all(mesh.tris.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 /// The tiles of a region of a mesh, to be cut one by one.
 struct Tiles {
   Tiles(const TiledMesh& mesh, const std::vector<int>& region, int most, const TiledRelax& relax, bool repair)
@@ -329,7 +320,7 @@ void relax_region(const TiledRelax& by, TiledMesh& whole, std::vector<int> regio
 Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& counts) {
   std::optional<Mesh> known;
   for (int round = 0;; ++round) {
-    const auto boxes = split_into_boxes(whole.mesh, all_triangles(whole.mesh), by.options.tile);
+    const auto boxes = split_into_boxes(whole.mesh, identity(whole.mesh.tris.size()), by.options.tile);
     Intersections found{crossings_of_boxes(whole.mesh, boxes, rules::around_seams)};
     if (found.pairs.empty()) return found;
     if (!known) known = contacts(by.reference, self_intersections(by.reference));
@@ -426,7 +417,7 @@ TilePass TiledRelax::pass(const TiledMesh& whole, bool repair) const {
 
 void TiledRelax::cut(const TiledMesh& whole, const TilePass& pass,
                      const std::function<void(Tile)>& take) const {
-  const Tiles tiles(whole, all_triangles(whole.mesh), options.tile, *this, pass.repair);
+  const Tiles tiles(whole, identity(whole.mesh.tris.size()), options.tile, *this, pass.repair);
   for (int i = 0; i < tiles.size(); ++i) take(tiles.cut(i));
 }
 
@@ -439,7 +430,7 @@ RelaxReport TiledRelax::finish(TiledMesh& whole, int passes, const RelaxCounts& 
   RelaxReport report;
   static_cast<RelaxCounts&>(report) = counts;
   for (int i = passes; i < 2; ++i)
-    relax_region(*this, whole, all_triangles(whole.mesh), pass(whole, i == 1), 0, report);
+    relax_region(*this, whole, identity(whole.mesh.tris.size()), pass(whole, i == 1), 0, report);
   const Intersections left = part_tiles(*this, whole, report);
   report.intersections = left.pairs, report.intersections_of_reference = left.of_reference;
   set_quality(report, whole.mesh);

@@ -33,22 +33,28 @@ constexpr std::size_t most_near = 16;   ///< if it is no more triangles for each
 constexpr double one_way = 0.7;  ///< least cosine between an axis and the normals of a sheet that is a graph
 constexpr double corner_turn = 0.35;  ///< radians: a line that turns by more may come near others there only
 
+/// A triangle and its box.
+struct Boxed {
+  int triangle;
+  Box box;
+};
+
 /// Looks at what is connected, in one place after the other.
 class Search {
  public:
   explicit Search(const Connectivity& surface) : surface_(surface), seen_(surface.n_tris(), 0) {}
 
   /// Whether these triangles are one sheet that is a graph over a plane, and have no edge on a line.
-  bool one_graph(const std::vector<int>& triangles, const std::vector<Vec3>& normal) {
+  bool one_graph(std::span<const Boxed> triangles, const std::vector<Vec3>& normal) {
     Vec3 axis;
-    for (int t : triangles) axis = axis + normal[t];
+    for (const Boxed& x : triangles) axis = axis + normal[x.triangle];
     axis = normalized(axis);
-    for (int t : triangles)
-      if (!(dot(normal[t], axis) > one_way)) return false;
+    for (const Boxed& x : triangles)
+      if (!(dot(normal[x.triangle], axis) > one_way)) return false;
     ++turn_;
-    for (int t : triangles) seen_[t] = turn_;
-    queue_.assign(1, triangles[0]);
-    seen_[triangles[0]] = 0;
+    for (const Boxed& x : triangles) seen_[x.triangle] = turn_;
+    queue_.assign(1, triangles[0].triangle);
+    seen_[queue_[0]] = 0;
     for (std::size_t i = 0; i < queue_.size(); ++i)
       for (int h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
         if (surface_.is_border(h) || surface_.is_model(h)) return false;
@@ -79,7 +85,8 @@ class Search {
     }
   }
 
-  long long work = 0;  ///< triangles that were looked at
+  long long work = 0;       ///< triangles that were looked at
+  std::vector<Boxed> near;  ///< lists of measure_sheets, one after the other
 
  private:
   const Connectivity& surface_;
@@ -317,9 +324,11 @@ void measure_edge(const Measure& measure, int h, Search& search, std::vector<Siz
 }
 
 /// Measures edges next to each other, on sheets within the gap of their middles; at once if what is near is
-/// one sheet. `near`: triangles, all that are near these edges among them; empty: the tree has them.
+/// one sheet. `first`, `last`: of a list in search.near that has all triangles that are near these edges;
+/// empty: the tree has them.
 void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Search& search,
-                    long long most_work, std::vector<SizeBound>& found, const std::vector<int>& near = {}) {
+                    long long most_work, std::vector<SizeBound>& found, std::size_t first = 0,
+                    std::size_t last = 0) {
   if (edges.empty() || search.work >= most_work) return;
   if (edges.size() == 1) return measure_edge(measure, edges[0].half_edge, search, found);
   Box box{edges[0].place, edges[0].place};
@@ -330,19 +339,25 @@ void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Se
   }
   const Vec3 margin{gap, gap, gap};
   const Box around{box.lo - margin, box.hi + margin};
-  std::vector<int> list;
-  if (near.empty() && norm(around.hi - around.lo) < most_reach * edges[0].size) {
+  std::vector<Boxed>& near = search.near;
+  const std::size_t most = first < last ? last - first : most_near * edges.size();
+  if (near.size() < last + most) near.resize(last + most);
+  std::size_t end = last;
+  if (first == last && norm(around.hi - around.lo) < most_reach * edges[0].size) {
     measure.tree().overlapping(around, [&](int t) {
       ++search.work;
-      if (list.size() <= most_near * edges.size()) list.push_back(t);
+      if (end - last < most) near[end] = {t, box_of(measure.surface().mesh, t)};
+      ++end;
     });
-    if (list.size() > most_near * edges.size()) list.clear();
+    if (end - last > most) end = last;
   }
-  for (int t : near)
-    if (overlap(box_of(measure.surface().mesh, t), around)) list.push_back(t);
-  if (!list.empty() && search.one_graph(list, measure.normals())) return;
+  for (; first < last; ++first) {  // without a branch, which could not be predicted
+    near[end] = near[first];
+    end += overlap(near[first].box, around);
+  }
+  if (end > last && search.one_graph(std::span(near).subspan(last, end - last), measure.normals())) return;
   for (auto part : {edges.first(edges.size() / 2), edges.subspan(edges.size() / 2)})
-    measure_sheets(measure, part, search, most_work, found, list);
+    measure_sheets(measure, part, search, most_work, found, last, end);
 }
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.

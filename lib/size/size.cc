@@ -70,8 +70,6 @@ std::vector<double> feature_size(const Connectivity& surface, const std::vector<
   return local_feature_size(surface, curvature.empty() ? face_curvature(surface, least) : curvature, size);
 }
 
-double edge_length(const Field& f, int h) { return edge_length(f.s, h); }
-
 /// Returns the size that a curvature asks for.
 double by_curvature(const SizeOptions& o, double k) {
   if (!(k > 0)) return infinity;
@@ -238,7 +236,7 @@ void make_sizes(Field& f) {
 /// Whether interpolation along the edge misses the field in its middle, on a scale that a mesh would show.
 bool bends(Field& f, int h) {
   const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
-  const double l = edge_length(f, h);
+  const double l = edge_length(f.s, h);
   if (l < 0.5 * std::min(f.size[a], f.size[b])) return false;
   const Vec3 middle = lerp(f.s.points[a], f.s.points[b], 0.5);
   double m =
@@ -263,8 +261,6 @@ bool bends(Field& f, int h) {
   return misses;
 }
 
-void connect(Field& f) { f.opposite = opposite_halfedges(f.s); }
-
 /// Splits the edges that pass the test; returns whether there were any.
 template <class Test>
 bool split(Field& f, const Test& test) {
@@ -273,7 +269,7 @@ bool split(Field& f, const Test& test) {
     if (f.opposite[h] < h) mark[h] = test(h);
   const std::vector<int> parent = split_edges({f.s, f.opposite}, std::move(mark), f.chart);
   if (parent.empty()) return false;
-  connect(f);
+  f.opposite = opposite_halfedges(f.s);
   if (!f.root.empty()) {
     std::vector<int> root;
     root.reserve(parent.size());
@@ -431,7 +427,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   int known = 0;  // edges between vertices below this one have been looked at
   auto bends = [&](int h) {
     if (std::max(origin(f.s.tris, h), target(f.s.tris, h)) < known) return false;
-    const double l = edge_length(f, h);
+    const double l = edge_length(f.s, h);
     if (l > longest_edge * f.diagonal) return true;
     const double a = column()[origin(f.s.tris, h)], b = column()[target(f.s.tris, h)];
     if (l < kind.factor() * std::min(a, b)) return false;
@@ -465,7 +461,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (o.size > 0) f.cap = std::min(f.cap, o.size);
   if (!(o.size > 0 || o.triangles > 0 || o.max > 0 || o.at || !o.data.empty()))
     f.cap = default_size * f.diagonal;
-  connect(f);
+  f.opposite = opposite_halfedges(f.s);
   if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature)) f.curvature = curvature_of(f);
   const std::size_t n_before = s.points.size();
   if (!o.data.empty()) f.sources.push_back({o.data, 1});
@@ -474,7 +470,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
                                Measured{"gap", o.gap, 2, 2, SheetDistance::outside}})
     if (kind.edges > 0) report.measured.push_back(measure_sheets(f, kind, may_split));
   if (may_split && o.at)
-    while (split(f, [&](int h) { return edge_length(f, h) > longest_edge * f.diagonal; })) {
+    while (split(f, [&](int h) { return edge_length(f.s, h) > longest_edge * f.diagonal; })) {
     }
   double limit = infinity;  // triangles
   auto follow_field = [&] {
