@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmultiscale: cut every part of large aspect ratio in two, through the levels of its Laplace maps.
+#include <algorithm>
 #include <filesystem>
 
 #include "formats/stream/part_table.h"
@@ -88,9 +89,11 @@ int main(int argc, char** argv) {
     options.keep_maps = !directory.empty();
     Stream& stream = io.read();
     if (!stream.surface.face.has("part")) throw NotAdmissible("no face column 'part'; run mpartition first");
-    count_parts(stream.surface);  // refuses what no partition has
+    const int given = count_parts(stream.surface);  // refuses what no partition has
     std::vector<MultiscaleCut> cuts;
-    std::vector<Topology> topology;
+    std::vector<Topology> topology = known_parts(stream.surface, given, stream.find("part"));
+    if (std::any_of(topology.begin(), topology.end(), [](const Topology& t) { return t.faces == 0; }))
+      topology.clear();
     std::vector<int> opposite;
     const int n_parts = multiscale_cut(stream.surface, options, &cuts, &topology, &opposite);
     if (options.keep_maps) draw_levels(directory, cuts);

@@ -5,45 +5,58 @@
 
 namespace meshpipe {
 
+namespace {
+/// Calls visit(name, member) for the columns of the table.
+template <class Visit>
+void for_each_column(Visit visit) {
+  visit("genus", &Topology::genus);
+  visit("loops", &Topology::loops);
+  visit("faces", &Topology::faces);
+  visit("area", &Topology::area);
+  visit("eta_cyl", &Topology::eta_cyl);
+  visit("eta_box", &Topology::eta_box);
+  visit("eta_geo", &Topology::eta_geo);
+}
+}  // namespace
+
 Table part_table(const std::vector<Topology>& parts) {
   Table table{"part", parts.size(), {}};
-  auto add = [&]<class T, class M>(const char* name, M member) {
+  for_each_column([&]<class T>(const char* name, T Topology::*member) {
     std::vector<T> column;
     for (const Topology& t : parts) column.push_back(t.*member);
     table.set<T>(name, std::move(column));
-  };
-  add.template operator()<int>("genus", &Topology::genus);
-  add.template operator()<int>("loops", &Topology::loops);
-  add.template operator()<int>("faces", &Topology::faces);
-  add.template operator()<double>("area", &Topology::area);
-  add.template operator()<double>("eta_cyl", &Topology::eta_cyl);
-  add.template operator()<double>("eta_box", &Topology::eta_box);
-  add.template operator()<double>("eta_geo", &Topology::eta_geo);
+  });
   return table;
 }
 
-Table part_table(const Surface& surface, int n, const Table* known) {
-  std::vector<int> part = surface.face.get<int>("part"), faces(n, 0);
-  std::vector<double> area(n, 0);
+std::vector<Topology> known_parts(const Surface& surface, int n, const Table* known) {
+  std::vector<Topology> parts(n), measured(n);
+  const std::vector<int>& part = surface.face.get<int>("part");
   for (std::size_t t = 0; t < part.size(); ++t) {
-    ++faces[part[t]];
-    area[part[t]] += triangle_area(surface, (int)t);
+    ++measured[part[t]].faces;
+    measured[part[t]].area += triangle_area(surface, (int)t);
   }
-  auto stays = [&](int p) {
-    return known && p < (int)known->rows && known->get<int>("faces")[p] == faces[p] &&
-           known->get<double>("area")[p] == area[p];
-  };
+  bool complete = known;
+  for_each_column([&](const char* name, auto) { complete = complete && known->has(name); });
+  for (int p = 0; complete && p < std::min(n, (int)known->rows); ++p) {
+    Topology row;
+    row.components = 1;
+    for_each_column(
+        [&]<class T>(const char* name, T Topology::*member) { row.*member = known->get<T>(name)[p]; });
+    if (row.faces == measured[p].faces && row.area == measured[p].area) parts[p] = row;
+  }
+  return parts;
+}
+
+Table part_table(const Surface& surface, int n, const Table* known) {
+  std::vector<Topology> parts = known_parts(surface, n, known);
+  std::vector<int> part = surface.face.get<int>("part");
   for (int& p : part)
-    if (stays(p)) p = -1;
-  Table table = part_table(topology_of_parts(surface, part, n));
-  for (Column& c : table.columns)
-    std::visit(
-        [&]<class T>(std::vector<T>& values) {
-          for (int p = 0; p < n; ++p)
-            if (stays(p)) values[p] = known->get<T>(c.name)[p];
-        },
-        c.data);
-  return table;
+    if (parts[p].faces > 0) p = -1;
+  const std::vector<Topology> measured = topology_of_parts(surface, part, n);
+  for (int p = 0; p < n; ++p)
+    if (parts[p].faces == 0) parts[p] = measured[p];
+  return part_table(parts);
 }
 
 }  // namespace meshpipe

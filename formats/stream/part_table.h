@@ -10,5 +10,7 @@ Table part_table(const std::vector<Topology>& parts);
 /// The table of the parts that face column `part` names, 0..n-1. Rows of `known`, if given, stay for parts
 /// that still have their number of faces and their area.
 Table part_table(const Surface& surface, int n, const Table* known = nullptr);
+/// Returns those rows; of no triangles for other parts.
+std::vector<Topology> known_parts(const Surface& surface, int n, const Table* known);
 
 }  // namespace meshpipe

@@ -96,7 +96,8 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
   for (std::size_t t = 0; t < label.size(); ++t) only[t] = label[t] == part ? 0 : -1;
   SubMesh mesh = std::move(split_by_label(surface, only, 1)[0]);
   const std::vector<double> mass = vertex_areas(mesh);
-  if (!(std::accumulate(mass.begin(), mass.end(), 0.0) > 0)) return false;
+  const double area = std::accumulate(mass.begin(), mass.end(), 0.0);
+  if (!(area > 0)) return false;
   Factorization<double> laplacian = free_laplacian(mesh, mass);
   std::vector<std::vector<double>> fields;
   // the part's own numbers follow its triangles, which cuts of its neighbors split
@@ -117,12 +118,9 @@ bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std
     double cost;
     std::size_t field;
     double level;
-    bool operator<(const Line& l) const {
-      return std::tie(cost, field, level) < std::tie(l.cost, l.field, l.level);
-    }
+    auto operator<=>(const Line&) const = default;
   };
   std::vector<Line> lines;
-  double area = std::accumulate(mass.begin(), mass.end(), 0.0);
   for (std::size_t f = 0; f < fields.size(); ++f) {
     // levels by the share of the area below them
     const auto& field = fields[f];
@@ -169,12 +167,13 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   work.face.set("whole", only);
   for (int& label : only) label = label == part ? 0 : -1;
   MultiscaleOptions options;
-  options.max_aspect = 0.9 * topology_of(split_by_label(work, only, 1)[0]).eta_geo;
+  std::vector<Topology> topology{topology_of(split_by_label(work, only, 1)[0])};
+  options.max_aspect = 0.9 * topology[0].eta_geo;
   options.most_parts = limit::limb_parts;
   work.face.set("part", std::move(only));
   int pieces = 0;
   try {
-    pieces = multiscale_cut(work, options);
+    pieces = multiscale_cut(work, options, nullptr, &topology);
   } catch (const GoalMissed&) {
     return n_parts;
   }

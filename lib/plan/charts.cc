@@ -36,9 +36,7 @@ int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts,
     ParamReport report;
     try {
       map_part(half, options, report);
-    } catch (const GoalMissed&) {
-      return n_parts;
-    } catch (const NotAdmissible&) {
+    } catch (const Error&) {
       return n_parts;
     }
     if (report.anisotropy_median - 1 > limit::limb_gain * (whole.anisotropy_median - 1) ||

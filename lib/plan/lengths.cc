@@ -22,9 +22,10 @@ struct Work {
   const MultiscaleOptions& options;
   std::vector<MultiscaleCut>* cuts;
   std::vector<int> opposite;
-  std::vector<Topology> is;           ///< of each part
+  std::vector<Topology> is;           ///< of each part, as it was before its neighbors were cut
   std::vector<char> was_cut;          ///< of each part
   std::vector<std::set<int>> near{};  ///< of each part: those that share a vertex with it
+  bool current = true;                ///< has no neighbor been cut, and no part joined?
   int parts() const { return (int)is.size(); }
 };
 
@@ -36,8 +37,6 @@ struct Halves {
   int loops = 0;  ///< of both together; 0 if they are not parts as the stream wants them
 };
 
-bool is_disk_with_holes(const Topology& t) { return t.components == 1 && t.genus == 0 && t.loops >= 1; }
-
 /// Measures the two sides of a cut.
 void measure_halves(Halves& halves) {
   try {
@@ -45,7 +44,7 @@ void measure_halves(Halves& halves) {
   } catch (const NotAdmissible&) {  // a pinched vertex, where the line was snapped to one twice
     return;
   }
-  if (is_disk_with_holes(halves.is[0]) && is_disk_with_holes(halves.is[1]))
+  if (admissible(halves.is[0], infinity) && admissible(halves.is[1], infinity))
     halves.loops = halves.is[0].loops + halves.is[1].loops;
 }
 
@@ -130,8 +129,8 @@ void cut_part(Work& work, Task& task, std::vector<Task>& tasks) {
   for (std::size_t t = 0; t < label.size(); ++t)
     if (made.side[t] == 1) label[t] = other;
   put_back(task.near, {work.surface, work.opposite});
-  work.is.resize(other + 1);
-  work.was_cut.resize(other + 1, 0);
+  work.is.resize(other + 1), work.was_cut.resize(other + 1, 0);
+  work.current &= work.near[task.part].empty();
   work.near.push_back(work.near[task.part]);
   work.near[other].insert(task.part);
   for (int p : work.near[other]) work.near[p].insert(other);
@@ -202,6 +201,7 @@ void join_parts(Work& work) {
     for (MultiscaleCut& c : *work.cuts)
       for (int* p : {&c.part, &c.halves[0], &c.halves[1]}) *p = number[becomes[*p]];
   work.is.assign(n, {});
+  work.current = false;
 }
 
 }  // namespace
@@ -211,13 +211,14 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
   const std::vector<int>& given = surface.face.get<int>("part");
   const int given_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
   Work work{surface, options, cuts, opposite_halfedges(surface), {}, {}};
-  work.is = topology_of_parts({surface, work.opposite}, given, given_parts);
+  if (topology) work.is = std::move(*topology);
+  if (work.is.empty()) work.is = topology_of_parts({surface, work.opposite}, given, given_parts);
   work.was_cut.assign(given_parts, 0);
   std::vector<Task> tasks;
   double faces = 0;
   for (int p = given_parts - 1; p >= 0; --p) {
     const Topology& t = work.is[p];
-    if (!is_disk_with_holes(t))
+    if (!admissible(t, infinity))
       throw NotAdmissible("part " + std::to_string(p) + " has " + std::to_string(t.components) +
                           " components, genus " + std::to_string(t.genus) + " and " +
                           std::to_string(t.loops) +
@@ -241,8 +242,9 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
     cut_part(work, task, tasks);
   }
   if (work.parts() > std::max(given_parts, 2)) join_parts(work);
-  const bool any = std::count(work.was_cut.begin(), work.was_cut.end(), 1) > 0;
-  if (topology) *topology = any ? topology_of_parts({surface, work.opposite}, given, work.parts()) : work.is;
+  if (topology && !work.current)
+    work.is = topology_of_parts({surface, work.opposite}, surface.face.get<int>("part"), work.parts());
+  if (topology) *topology = work.is;
   if (neighbors) *neighbors = std::move(work.opposite);
   return work.parts();
 }

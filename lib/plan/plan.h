@@ -46,8 +46,9 @@ struct MultiscaleCut {
 /// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, then
 /// joins halves to neighbors where the union is admissible. Triangles of no part (-1) are left alone, and
 /// then nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts; `cuts`,
-/// `topology` and `opposite` receive, if given, what was done in order, and the result's. Requires: parts of
-/// genus 0 with a border. Throws NotAdmissible; GoalMissed if more than most_parts are needed.
+/// `topology` and `opposite` receive, if given, what was done in order, and the result's; `topology`
+/// may bring that of the given parts. Requires: parts of genus 0 with a border. Throws NotAdmissible;
+/// GoalMissed if more than most_parts are needed.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
                    std::vector<int>* opposite = nullptr);

@@ -222,6 +222,30 @@ TEST(Multiscale, TrianglesOfNoPartAreLeftAloneAndStayConforming) {
   EXPECT_NEAR(total_area(s) - parts(s, 2)[0].area - parts(s, 2)[1].area, 2 * pi, 0.5);
 }
 
+// with triangles of no part nothing is joined; the ends stay, but get vertices on their borders
+TEST(Multiscale, TheTopologyIsThatOfTheResultWhateverIsKnown) {
+  Surface s = tube(24, 16);
+  std::vector<int> part;
+  for (const Tri& t : s.tris) {
+    const double z = (s.points[t[0]].z + s.points[t[1]].z + s.points[t[2]].z) / 3;
+    part.push_back(z < 1 ? -1 : z < 4 ? 1 : z > 21 ? 2 : 0);
+  }
+  s.face.set("part", part);
+  for (std::vector<Topology> known : {std::vector<Topology>(), topology_of_parts(s, part, 3)}) {
+    Surface cut = s;
+    const int n = multiscale_cut(cut, {}, nullptr, &known);
+    ASSERT_GT(n, 3);
+    const std::vector<Topology> measured = topology_of_parts(cut, cut.face.get<int>("part"), n);
+    ASSERT_EQ((int)known.size(), n);
+    for (int p = 0; p < n; p++) {
+      EXPECT_EQ(known[p].faces, measured[p].faces);
+      EXPECT_EQ(known[p].loops, measured[p].loops);
+      EXPECT_EQ(known[p].area, measured[p].area);
+      EXPECT_EQ(known[p].eta_geo, measured[p].eta_geo);
+    }
+  }
+}
+
 TEST(Multiscale, TwoRunsGiveTheSame) {
   Surface a = tube(25, 16), b = tube(25, 16);
   multiscale_cut(a);
