@@ -83,6 +83,7 @@ void join_and_split(Repair& r, const std::vector<Vec3>& points, const CleanOptio
 bool make_manifold(Repair& r, const std::vector<Vec3>& points, const CleanOptions& options,
                    CleanReport& report) {
   join_and_split(r, points, options, report);
+  if (options.keep_flat) return true;
   FlatCounts flat = remove_flat(r, points);
   bool changed = !flat.removed.empty();
   for (int t : flat.removed) {
@@ -372,7 +373,8 @@ CleanReport clean(Surface& surface, const CleanOptions& options) {
 
 void split_sheets(Surface& surface) {
   const std::size_t n = surface.tris.size();
-  const CleanReport r = clean(surface, {.weld = 0, .open_flips = true, .sheets = CleanOptions::split});
+  const CleanReport r =
+      clean(surface, {.weld = 0, .open_flips = true, .keep_flat = true, .sheets = CleanOptions::split});
   if (surface.tris.size() != n || r.flipped || r.degenerate || r.duplicate)
     throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
                         std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +

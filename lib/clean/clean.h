@@ -20,6 +20,7 @@ struct CleanOptions {
   int keep_components = 0;   ///< the largest by area; 0: all
   int fill_holes = 0;        ///< fill border loops of at most this many edges; 0: none
   bool cap_patches = false;  ///< give each filled hole a patch of its own
+  bool keep_flat = false;    ///< leave triangles of zero area, and fill no holes
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices; or paired unless they, or solids within
   /// solids, divide space into regions (lib/solids/solids.h) or pairs leave borders, and else kept.

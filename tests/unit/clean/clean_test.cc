@@ -247,6 +247,14 @@ TEST(Clean, KeepsSheetsJoinedOnRequest) {
   EXPECT_EQ(s.face.get<int>("patch"), (std::vector<int>{7, 8, 9}));
 }
 
+TEST(Clean, SplitSheetsLeavesFlatTriangles) {
+  // one of zero area at the border, which clean would drop
+  Surface s = surface({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 2, 3}, {2, 1, 3}, {0, 1, 2}});
+  const std::vector<Tri> before = s.tris;
+  split_sheets(s);
+  EXPECT_EQ(s.tris, before);
+}
+
 TEST(Clean, TwoTetrahedraOnOneEdgeStayClosed) {
   std::vector<Vec3> p = tetra_points;
   p.push_back({0, -1, 0});
