@@ -123,7 +123,7 @@ std::vector<Operation> independent(const EditMesh& m, const std::vector<Vec3>& p
 
 }  // namespace
 
-void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing,
+void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing, double least,
                     const std::function<bool(const Mesh&, int)>& allowed) {
   const int n_points = (int)mesh.points.size();
   EditMesh m(mesh.tris, n_points, {});
@@ -152,7 +152,7 @@ void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing,
       std::vector<std::uint8_t> wanted(now.tris.size());
       for (std::size_t t = 0; t < number.size(); ++t) wanted[t] = by[number[t]] >= 0;
       const auto met = triangles_that_meet(now, wanted, soup),
-                 others = triangles_that_meet_others(now, wanted);
+                 others = triangles_that_meet_others(now, wanted, least);
       std::vector<char> bad(chosen.size(), 0);
       for (std::size_t t = 0; t < number.size(); ++t)
         if (by[number[t]] >= 0 && (met[t] || others[t] || !allowed(now, (int)t))) bad[by[number[t]]] = 1;

@@ -15,24 +15,16 @@ constexpr int last_step = (int)std::size(back) - 1;
 /// Rounds of moving points back before all of them go: more have not been seen to be needed than 12.
 constexpr int most_rounds = 60;
 
-/// Do two triangles with a common edge fold back on each other, other than at a convex ridge? A wrap has no
-/// cracks so narrow. Slivers do not count: they may face anywhere.
-bool folds_back(const Mesh& mesh, int s, int t) {
-  constexpr double most_turn = -0.9, ridge = 0.1, least_kappa = 0.05;  // 154 degrees; opening of 6 degrees
-  const Tri &a = mesh.tris[s], &b = mesh.tris[t];
-  auto is_of = [](int v, const Tri& f) { return v == f[0] || v == f[1] || v == f[2]; };
-  if (is_of(b[0], a) + is_of(b[1], a) + is_of(b[2], a) < 2) return false;
-  auto normal = [&](const Tri& f) {
-    return normalized(area_vector(mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]));
-  };
+/// Are triangles s and t the sides of a fin or a crack narrower than this? Slivers may face anywhere.
+bool are_too_close(const Mesh& mesh, int s, int t, double least) {
+  constexpr double most_cosine = -0.9, least_kappa = 0.05;  // 154 degrees
+  const Vec3 p = centroid(mesh, t), way = closest_point(mesh, s, p) - p;
+  const Vec3 normal = normalized(area_vector(mesh, t)), other = normalized(area_vector(mesh, s));
   auto is_sliver = [&](const Tri& f) {
     return kappa(mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]) < least_kappa;
   };
-  if (dot(normal(a), normal(b)) > most_turn || is_sliver(a) || is_sliver(b)) return false;
-  const int apex = !is_of(b[0], a) ? b[0] : !is_of(b[1], a) ? b[1] : b[2];
-  const int shared = is_of(a[0], b) ? a[0] : a[1];
-  const Vec3 up = mesh.points[apex] - mesh.points[shared];
-  return dot(up, normal(a)) > -ridge * norm(up);
+  return norm(way) < least && std::abs(dot(way, normal)) > -most_cosine * norm(way) &&
+         dot(normal, other) < most_cosine && !is_sliver(mesh.tris[s]) && !is_sliver(mesh.tris[t]);
 }
 
 /// Both meshes as one, the soup's triangles and points after the wrap's.
@@ -100,22 +92,23 @@ std::vector<std::uint8_t> triangles_that_meet(const Mesh& wrap, const std::vecto
 }
 
 std::vector<std::uint8_t> triangles_that_meet_others(const Mesh& mesh,
-                                                     const std::vector<std::uint8_t>& wanted) {
+                                                     const std::vector<std::uint8_t>& wanted, double least) {
   const Bvh tree(mesh);
+  const Vec3 margin{least, least, least};
   const int n = (int)mesh.tris.size();
   std::vector<std::vector<int>> met(n);
 #pragma omp parallel for schedule(dynamic, 256)
-  for (int t = 0; t < n; ++t)
-    if (wanted[t])
-      tree.overlapping(box_of(mesh, t), [&](int s) {
-        if (s != t && !(wanted[s] && s < t) && (triangles_intersect(mesh, s, t) || folds_back(mesh, s, t)))
-          met[t].push_back(s);
-      });
-  std::vector<std::uint8_t> marked(n, 0);
   for (int t = 0; t < n; ++t) {
-    if (!met[t].empty()) marked[t] = 1;
-    for (int s : met[t]) marked[s] = 1;
+    if (!wanted[t]) continue;
+    const Box box = box_of(mesh, t);
+    tree.overlapping({box.lo - margin, box.hi + margin}, [&](int s) {
+      if (s != t && (triangles_intersect(mesh, s, t) || are_too_close(mesh, s, t, least)))
+        met[t].push_back(s);
+    });
   }
+  std::vector<std::uint8_t> marked(n, 0);
+  for (int t = 0; t < n; ++t)
+    for (int s : met[t]) marked[s] = marked[t] = 1;
   return marked;
 }
 
@@ -147,13 +140,13 @@ bool InsideTest::inside(Vec3 p) const {
   return dot(p - near, normal) < 0;
 }
 
-int keep_valid(Mesh& mesh, const std::vector<Vec3>& base, const Mesh& soup, double reach) {
+int keep_valid(Mesh& mesh, const std::vector<Vec3>& base, const Mesh& soup, double reach, double least) {
   const std::vector<Vec3> fitted = mesh.points;
   const int n = (int)mesh.points.size(), n_tris = (int)mesh.tris.size();
   std::vector<std::uint8_t> step(n, 0), wanted(n_tris, 1);
   for (int round = 0;; ++round) {
     std::vector<std::uint8_t> bad = triangles_that_meet(mesh, wanted, soup);
-    const std::vector<std::uint8_t> others = triangles_that_meet_others(mesh, wanted);
+    const std::vector<std::uint8_t> others = triangles_that_meet_others(mesh, wanted, least);
     for (int t = 0; t < n_tris; ++t) bad[t] |= others[t];
     if (std::none_of(bad.begin(), bad.end(), [](std::uint8_t b) { return b; }))
       bad = triangles_near_lost_points(mesh, soup, reach);

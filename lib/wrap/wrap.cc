@@ -15,6 +15,9 @@ namespace {
 /// Divisions of a triangle that bound its distance to two percent of its size.
 constexpr int pieces = 6;
 
+/// Of the spacing, of fins and cracks: sides that are closer would intersect when they are meshed again.
+constexpr double least_width = 0.25;
+
 /// Bounds the distance of a triangle from the soup: at most that of its middle and the radius around it;
 /// where that is not enough the triangle is divided in four, `depth` times at most.
 double farthest_from(const Bvh& tree, Vec3 a, Vec3 b, Vec3 c, double enough, int depth) {
@@ -102,8 +105,9 @@ Mesh wrap(const Mesh& soup, const WrapOptions& options, WrapReport& report) {
   mesh.points = fitted_points(boundary, soup, tree, options.offset, report.spacing);
   mesh.tris = divided(boundary, mesh.points, soup, tree, options.offset);
   const Mesh solid = with_area(soup, 1e-6 * report.spacing);
-  report.held = keep_valid(mesh, boundary.points, solid, options.offset + 3 * report.spacing);
-  remove_slivers(mesh, solid, report.spacing, [&](const Mesh& m, int t) {
+  const double least = std::min(options.offset, least_width * report.spacing);
+  report.held = keep_valid(mesh, boundary.points, solid, options.offset + 3 * report.spacing, least);
+  remove_slivers(mesh, solid, report.spacing, least, [&](const Mesh& m, int t) {
     const auto& [a, b, c] = m.tris[t];
     return farthest_from(tree, m.points[a], m.points[b], m.points[c], report.farthest_allowed, pieces) <=
            report.farthest_allowed;

@@ -8,6 +8,7 @@
 
 #include "lib/core/error.h"
 #include "lib/shape/shape.h"
+#include "lib/wrap/valid.h"
 
 namespace meshpipe {
 namespace {
@@ -130,6 +131,17 @@ TEST(wrap, enters_holes_wider_than_alpha_only) {
   // as documented: always if it is wider than 2.1 alpha plus twice the offset
   const double open = volume(wrapped(box_with_hole(2.1 * alpha + 2 * offset), alpha, offset).mesh);
   EXPECT_LT(open, 30);
+}
+
+TEST(wrap, closed_gaps_end_in_no_fins) {
+  // between the nearest edges of two boxes, where the gap is narrower than alpha
+  Mesh soup;
+  add_box(soup, {0, 0, 0}, {1, 1, 1});
+  add_box(soup, {1.1, 1.1, 0}, {2, 2, 1});
+  const auto [mesh, r] = wrapped(soup, 0.2, 0.04);
+  const auto thin =
+      triangles_that_meet_others(mesh, std::vector<std::uint8_t>(mesh.tris.size(), 1), 0.25 * r.spacing);
+  EXPECT_EQ(std::count(thin.begin(), thin.end(), 1), 0);
 }
 
 TEST(wrap, components_stay_apart_and_cavities_are_filled) {
