@@ -177,17 +177,18 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
   const Surface& surface = reference.surface;
   const std::vector<Vec3>& p = surface.points;
   std::vector<Sample> samples(p.size());
-  for (int t = 0; t < (int)surface.tris.size(); ++t)
-    for (int i = 0; i < 3; ++i)
-      samples[surface.tris[t][i]] = {{t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0}};
+  const int n = 3 * (int)surface.tris.size();
+  for (int e = 0; e < n; ++e)
+    samples[origin(surface.tris, e)] = {{e / 3, 1.0 * (e % 3 == 0), 1.0 * (e % 3 == 1), 1.0 * (e % 3 == 2)}};
   std::erase_if(samples, [](const Sample& s) { return s.place.face < 0; });  // of no triangle
-  for (int t = 0; t < (int)surface.tris.size(); ++t) {
-    const Tri& v = surface.tris[t];
-    const Vec3 area = area_vector(p[v[0]], p[v[1]], p[v[2]]);
-    for (int i = 0; i < 3; ++i) {
-      const int a = v[i], b = v[(i + 1) % 3];
+  constexpr int chunk = 1 << 14;
+  std::vector<std::vector<Sample>> inside((n + chunk - 1) / chunk);  // of edges
+  parallel_for((int)inside.size(), [&](int c) {
+    for (int e = c * chunk; e < std::min(n, (c + 1) * chunk); ++e) {
+      const int a = origin(surface.tris, e), b = target(surface.tris, e), i = e % 3;
       const double length = norm(p[b] - p[a]) / h;
       if (a > b || rules::samples_per_edge * length <= 1) continue;
+      const Vec3 area = area_vector(surface, e / 3);
       // triangles of this height per size, where edges are long: a bend spread over them counts as one
       const double across = rules::samples_per_flat_edge * length > 1 ? length * h * h / norm(area) : 1;
       auto bends_at = [&](int w) {
@@ -198,11 +199,14 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
       for (int k = 1; k < pieces; ++k) {
         double at[3] = {0, 0, 0};
         at[(i + 1) % 3] = (double)k / pieces, at[i] = 1 - at[(i + 1) % 3];
-        samples.push_back({{t, at[0], at[1], at[2]}});
+        inside[c].push_back({{e / 3, at[0], at[1], at[2]}});
       }
     }
-  }
-  samples.shrink_to_fit();
+  });
+  std::size_t all = samples.size();
+  for (const auto& list : inside) all += list.size();
+  samples.reserve(all);
+  for (const auto& list : inside) samples.insert(samples.end(), list.begin(), list.end());
   return samples;
 }
 

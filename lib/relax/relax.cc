@@ -164,23 +164,18 @@ struct Ordered {
   std::optional<Reference> on;
 
   Ordered(LiftedMesh& lifted, const Surface& original) {
-    parallel_for(
-        2,
-        [&](int side) {
-          if (side == 1) {
-            mesh = rearrange_lifted(lifted);
-            return;
-          }
-          reference = spatial_order(original);
-          surface = rearranged_surface(original, reference);
-          on.emplace(surface);
-        },
-        original.tris.size() > rules::half_edges_worth_threads / 3);
+    auto rearrange_side = [&](int side) {
+      if (side == 1)
+        mesh = rearrange_lifted(lifted);
+      else
+        reference = spatial_order(original), surface = rearranged_surface(original, reference);
+    };
+    parallel_for(2, rearrange_side, original.tris.size() > rules::half_edges_worth_threads / 3);
+    on.emplace(surface);  // on all threads
     const std::vector<int> row = new_rows(reference.tris);
     for (Place& p : lifted.place) p.face = row[p.face];
   }
-  template <class T>
-  std::vector<T> of_points(const std::vector<T>& column) const {
+  std::vector<char> of_points(const std::vector<char>& column) const {
     return column.empty() ? column : rearranged(column, reference.vertices);
   }
 };
