@@ -100,7 +100,7 @@ constexpr double doubtful = 0.4;    // of the bearable, walked to: from there al
 constexpr int most_halvings = 400;  // of a triangle, to find its largest distance
 constexpr double first_step = 0.5;  // of the size: of the climb to it
 constexpr double last_step = 0.05;  // of the first step
-constexpr double failing_kappa = 0.11;                      // a margin over the limit of mcheck
+constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
 constexpr double leaning = 0.85;      // of the isosceles triangle's kappa: what leaning ones have

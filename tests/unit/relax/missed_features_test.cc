@@ -87,6 +87,24 @@ TEST(Faults, NoPlaceOfTheReferenceStaysFartherThanHalfTheSize) {
   }
 }
 
+// at 3.1 degrees the isosceles triangle has kappa 0.105: a leaning one that has less is at fault
+TEST(Faults, ANeedleAtACornerIsNoWorseThanTheContractAllows) {
+  Mesh mesh;
+  const double slope = std::tan(3.1 * std::numbers::pi / 180);
+  mesh.points = {{0, 0, 0}, {10, 0, 0}, {9.8, 9.8 * slope, 0}, {20, 0, 0}, {20, 20 * slope, 0}};
+  mesh.tris = {{0, 1, 2}, {1, 4, 2}, {1, 3, 4}};
+  Surface surface = surface_of(mesh);
+  surface.vertex.set("size", std::vector<double>(5, 10));
+  Drawn m(surface);
+  for (int v = 0; v < 5; ++v) m.s.hold[v] = v == 2 ? slides : fixed;
+  Samples samples{feature_samples(m.reference, 1000), {}};
+  remove_faults(m.s, samples);
+  for (const auto& [a, b, c] : m.s.mesh.tris)
+    if (a == 0 || b == 0 || c == 0) {
+      EXPECT_GT(kappa(m.s.points[a], m.s.points[b], m.s.points[c]), 0.1);
+    }
+}
+
 TEST(Faults, AFarPlaceBetweenSamplesIsFound) {
   // a roof, and a mesh that goes across below the middle of its ridge c-d
   Surface roof = drawn_surface({"    b    ",  //
