@@ -268,9 +268,8 @@ bool is_forced(const State& s, int t, double k) {
     const double half = std::sin(0.5 * angle(s.points[m.to(h)] - p, s.points[m.apex(h)] - p));
     const double isosceles = 4 * half * (1 - half);
     const double least = isosceles > rules::failing_kappa ? rules::failing_kappa : rules::needed_kappa;
-    if (half < rules::sharp_half && k >= rules::leaning * isosceles &&
-        (k > least || isosceles <= rules::needed_kappa))
-      return true;
+    if (half >= rules::sharp_half || k < rules::leaning * isosceles) continue;
+    if (k > least || isosceles <= rules::needed_kappa) return true;
   }
   return false;
 }
