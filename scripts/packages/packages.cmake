@@ -7,9 +7,8 @@ if(Python3_FOUND)
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${completions}
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/scripts/packages/completions.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${completions}
     COMMAND ${CMAKE_COMMAND} -E touch ${completions}/done
-    DEPENDS ${programs} ${CMAKE_SOURCE_DIR}/scripts/packages/completions.py ${CMAKE_SOURCE_DIR}/scripts/mremesh)
+    DEPENDS ${programs} ${CMAKE_SOURCE_DIR}/scripts/packages/completions.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/mremesh)
   add_custom_target(completions ALL DEPENDS ${completions}/done)
-  add_dependencies(completions scripts)
   set(MESHPIPE_ZSH_DIR ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING "where zsh looks for completions")
   install(DIRECTORY ${completions}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(DIRECTORY ${completions}/zsh/ DESTINATION ${MESHPIPE_ZSH_DIR})
