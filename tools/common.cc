@@ -21,7 +21,7 @@
 #include "lib/core/junctions.h"
 #include "tools/files.h"
 #include "tools/progress_line.h"
-#include "tools/report/way_out.h"
+#include "tools/rounds/way_out.h"
 
 namespace meshpipe {
 namespace {

@@ -10,7 +10,7 @@
 #include "tools/common.h"
 #include "tools/compare.h"
 #include "tools/report/verdict.h"
-#include "tools/round_file.h"
+#include "tools/rounds/round_file.h"
 
 using namespace meshpipe;
 

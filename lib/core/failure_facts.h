@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facts about a failure in addition to its message, by which a way out is chosen (tools/report/way_out.h).
+// Facts about a failure in addition to its message, by which a way out is chosen (tools/rounds/way_out.h).
 #pragma once
 #include <exception>
 #include <string>

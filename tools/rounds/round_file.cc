@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/round_file.h"
+#include "tools/rounds/round_file.h"
 
 #include <cstdio>
 #include <filesystem>

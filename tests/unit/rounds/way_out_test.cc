@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/way_out.h"
+#include "tools/rounds/way_out.h"
 
 #include <gtest/gtest.h>
 

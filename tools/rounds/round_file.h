@@ -4,8 +4,8 @@
 #include <string>
 
 #include "tools/io.h"
-#include "tools/report/rounds.h"
 #include "tools/report/summary.h"
+#include "tools/rounds/rounds.h"
 
 namespace meshpipe {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/rounds.h"
+#include "tools/rounds/rounds.h"
 
 #include <gtest/gtest.h>
 
