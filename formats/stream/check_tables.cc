@@ -134,7 +134,7 @@ Stream stream_of(int number, int all, ShareFindings f) {
   stream.set(std::move(sides));
   stream.set(pair_table("checked_ratio", "triangle", "ratio", f.ratios));
   stream.set(pair_table("checked_vertex", "vertex", "distance", f.off));
-  stream.set(pair_table("checked_crossing", "a", "b", f.crossings));
+  stream.set(pair_table("checked_crossing", "a", "b", f.intersections));
   Table folds{"checked_fold", 0, {}};
   folds.set("half_edge", std::move(f.folds));
   stream.set(std::move(folds));
@@ -165,11 +165,12 @@ std::pair<int, ShareFindings> read_findings(const Stream& stream, const Surface&
   }
   f.ratios = pairs_of<int, double>(stream, "checked_ratio", "triangle", "ratio");
   f.off = pairs_of<int, double>(stream, "checked_vertex", "vertex", "distance");
-  f.crossings = pairs_of<int, int>(stream, "checked_crossing", "a", "b");
+  f.intersections = pairs_of<int, int>(stream, "checked_crossing", "a", "b");
   f.folds = stream.need("checked_fold", "mcheck").get<int>("half_edge");
   for (const auto& [t, ratio] : f.ratios) expect_row(t, n_tris, "triangle");
   for (const auto& [v, off] : f.off) expect_row(v, static_cast<long long>(result.points.size()), "vertex");
-  for (const auto& [a, b] : f.crossings) expect_row(a, n_tris, "triangle"), expect_row(b, n_tris, "triangle");
+  for (const auto& [a, b] : f.intersections)
+    expect_row(a, n_tris, "triangle"), expect_row(b, n_tris, "triangle");
   for (int h : f.folds) expect_row(h, 3 * n_tris, "half-edge");
   return {table.get<int>("number")[0], std::move(f)};
 }

@@ -29,7 +29,7 @@ struct Findings {
   std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
   int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
-  int reference_crossings = 0;                         ///< of these, pairs without a corner in the same place
+  int reference_proper_intersections = 0;              ///< of these, pairs without a corner in the same place
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
@@ -124,8 +124,8 @@ enum Offense {
 Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
 /// Returns the result's sizes per vertex, reduced where it is farther from the reference than the contract
-/// allows, and next to offending faces. Returns them unchanged if the reference has more pairs of crossing
-/// triangles than triangles: smaller sizes do not help then. Requires: vertex column `size`.
+/// allows, and next to offending faces. Returns them unchanged if the reference has more pairs of
+/// intersecting triangles than triangles: smaller sizes do not help then. Requires: vertex column `size`.
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 

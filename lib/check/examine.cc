@@ -182,7 +182,7 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
   const auto old = before_tree ? find(joined[1], before, *before_tree) : self_intersections(before);
   const Mesh& reference = sheets_meet ? joined[1] : before;
   f.reference_intersections = (int)old.size();
-  f.reference_crossings = (int)std::count_if(old.begin(), old.end(), [&](const auto& pair) {
+  f.reference_proper_intersections = (int)std::count_if(old.begin(), old.end(), [&](const auto& pair) {
     const Tri &a = reference.tris[pair.first], &b = reference.tris[pair.second];
     return std::none_of(a.begin(), a.end(), [&](int v) {
       return std::any_of(b.begin(), b.end(),

@@ -8,7 +8,7 @@ namespace {
 
 /// Pairs of triangles that cross, and do not only touch, for each triangle: a reference with more is a tangle
 /// that no size unravels.
-constexpr double most_crossings = 1;
+constexpr double most_pairs = 1;
 
 /// Returns per triangle an error for refined_size with limit 1, at and next to offending faces, else 0.
 /// Deviation does not count.
@@ -33,7 +33,7 @@ std::vector<double> errors_at_faults(const Surface& offending, const Mesh& mesh)
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference) {
   std::vector<double> size = result.vertex.get<double>("size"), errors;
-  if (findings.reference_crossings > most_crossings * reference.tris.size()) return size;
+  if (findings.reference_proper_intersections > most_pairs * reference.tris.size()) return size;
   auto is_distance = [](const Requirement& r) { return r.name == "hausdorff" || r.name == "deviation"; };
   if (std::any_of(contract.begin(), contract.end(), is_distance))
     errors = triangle_errors(reference, Bvh(reference), result, Bvh(result));

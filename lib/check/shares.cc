@@ -140,7 +140,7 @@ void measure_result(const CheckShare& share, const Side& result, const Side& ref
     for (int v : share.mesh.tris[t])
       if (!std::exchange(used[v], 1)) f.off.push_back({share.vertices[v], off[v]});
   for (const auto& [s, t] : self_intersections(share.mesh, *result.tree, share.own))
-    f.crossings.push_back(std::minmax(share.triangles[s], share.triangles[t]));
+    f.intersections.push_back(std::minmax(share.triangles[s], share.triangles[t]));
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& res
     }
     for (const auto& [t, ratio] : f.ratios) deviation.ratio[t] = std::max(deviation.ratio[t], ratio);
     for (const auto& [v, off] : f.off) m.off[v] = std::min(m.off[v], off);
-    m.intersections.insert(m.intersections.end(), f.crossings.begin(), f.crossings.end());
+    m.intersections.insert(m.intersections.end(), f.intersections.begin(), f.intersections.end());
     m.folds.insert(m.folds.end(), f.folds.begin(), f.folds.end());
   }
   deviation.allowed = std::move(allowed);

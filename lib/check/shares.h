@@ -23,12 +23,12 @@ struct CheckShare {
 
 /// What was measured; rows are those of the result.
 struct ShareFindings {
-  std::array<double, 2> area{0, 0};            ///< of the own triangles of the reference, of the result
-  std::array<OneWay, 2> distance;              ///< from them, without `deviation.ratio`
-  std::vector<std::pair<int, double>> ratios;  ///< triangles with a deviation that is not small
-  std::vector<std::pair<int, double>> off;     ///< distances of vertices
-  std::vector<std::pair<int, int>> crossings;  ///< pairs of triangles that intersect
-  std::vector<int> folds;                      ///< half-edges
+  std::array<double, 2> area{0, 0};                ///< of the own triangles of the reference, of the result
+  std::array<OneWay, 2> distance;                  ///< from them, without `deviation.ratio`
+  std::vector<std::pair<int, double>> ratios;      ///< triangles with a deviation that is not small
+  std::vector<std::pair<int, double>> off;         ///< distances of vertices
+  std::vector<std::pair<int, int>> intersections;  ///< pairs of triangles
+  std::vector<int> folds;                          ///< half-edges
 };
 
 /// Takes a share, its number, and that of all.

@@ -316,7 +316,7 @@ Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& co
   std::optional<Mesh> known;
   for (int round = 0;; ++round) {
     const auto boxes = split_into_boxes(whole.mesh, identity(whole.mesh.tris.size()), by.options.tile);
-    Intersections found{crossings_of_boxes(whole.mesh, boxes, rules::around_seams)};
+    Intersections found{tile_intersections(whole.mesh, boxes, rules::around_seams)};
     if (found.pairs.empty()) return found;
     if (!known) known = contacts(by.reference, self_intersections(by.reference));
     const int all = (int)found.pairs.size();

@@ -98,7 +98,7 @@ Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& ref
   return t;
 }
 
-std::vector<std::pair<int, int>> crossings_of_boxes(const Mesh& mesh,
+std::vector<std::pair<int, int>> tile_intersections(const Mesh& mesh,
                                                     const std::vector<std::vector<int>>& boxes,
                                                     double reach) {
   std::vector<int> near = around_tiles(mesh, boxes, reach, nullptr).row;

@@ -16,7 +16,7 @@ Tile cut_tile(const TiledMesh& whole, const Lists& at_vertex, const Surface& ref
               const Lists& others, int tile);
 
 /// Returns the pairs of triangles that intersect and may be in different boxes, sorted.
-std::vector<std::pair<int, int>> crossings_of_boxes(const Mesh& mesh,
+std::vector<std::pair<int, int>> tile_intersections(const Mesh& mesh,
                                                     const std::vector<std::vector<int>>& boxes, double reach);
 
 /// Returns the triangles that are up to `rings` vertices away from one of these, ascending.

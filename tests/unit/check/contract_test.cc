@@ -208,7 +208,7 @@ TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
   const std::vector<double> size = smaller_sizes(contract, f, result, spiked);
   EXPECT_LT(size[tip], 0.05);
   EXPECT_GT(std::count(size.begin(), size.end(), 0.1), 900);
-  f.reference_crossings = (int)spiked.tris.size() + 1;
+  f.reference_proper_intersections = (int)spiked.tris.size() + 1;
   EXPECT_EQ(smaller_sizes(contract, f, result, spiked), result.vertex.get<double>("size")) << "a tangle";
 }
 

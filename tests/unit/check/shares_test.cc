@@ -117,7 +117,7 @@ TEST(Shares, AreStreams) {
   const auto joined = join_checks(whole, {"mcheck", "", ""}, names, read);
   ASSERT_EQ(joined.size(), direct.size());
   for (std::size_t i = 0; i < joined.size(); ++i) {
-    EXPECT_EQ(joined[i].crossings, direct[i].crossings);
+    EXPECT_EQ(joined[i].intersections, direct[i].intersections);
     EXPECT_EQ(joined[i].folds, direct[i].folds);
     EXPECT_EQ(joined[i].off, direct[i].off);
     for (int side : {0, 1}) EXPECT_EQ(joined[i].distance[side].largest, direct[i].distance[side].largest);

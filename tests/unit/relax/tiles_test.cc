@@ -240,9 +240,9 @@ TEST(Tiles, CrossingsOfBoxesAreFound) {
       {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, -1}, {1, 1, 1}, {4, 1, 0}, {9, 9, 9}, {9, 8, 9}, {9, 9, 8}},
       {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}};
   const std::vector<std::pair<int, int>> expected{{0, 1}};
-  EXPECT_EQ(crossings_of_boxes(mesh, {{0}, {1}, {2}}, 1), expected);
+  EXPECT_EQ(tile_intersections(mesh, {{0}, {1}, {2}}, 1), expected);
   mesh.points[5] = {1, 4, 0}, mesh.points[3].z = 0.5;
-  EXPECT_TRUE(crossings_of_boxes(mesh, {{0}, {1}, {2}}, 1).empty());
+  EXPECT_TRUE(tile_intersections(mesh, {{0}, {1}, {2}}, 1).empty());
 }
 
 TEST(Tiles, TrianglesNearComeRingByRing) {
