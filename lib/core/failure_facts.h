@@ -10,20 +10,18 @@
 namespace meshpipe {
 
 struct FailureFacts {
-  double least_size = 0;    ///< sizes from here on can be met, with a margin; 0: unknown
-  double strip_width = 0;   ///< strips narrower than this ask for too many triangles; 0: none do
-  std::string requirement;  ///< of the contract, the first that is missed,
-  double value = 0;         ///< and what was reached of it
-  Vec3 place{};             ///< where it failed, if `reach` is above 0,
-  double reach = 0;         ///< and the lengths of edges there
-  bool in_plane = false;    ///< `place` is u v 0 of a chart
+  double least_size = 0;      ///< sizes from here on can be met, with a margin; 0: unknown
+  double strip_width = 0;     ///< strips narrower than this ask for too many triangles; 0: none do
+  double tube_width = 0;      ///< mean way around parts that ask for too many triangles; 0: none do
+  bool far_off = false;       ///< the coordinates are too coarse, and finer near the origin
+  std::string requirement{};  ///< of the contract, the first that is missed,
+  double value = 0;           ///< and what was reached of it
+  Vec3 place{};               ///< where it failed, if `reach` is above 0,
+  double reach = 0;           ///< and the lengths of edges there
+  bool in_plane = false;      ///< `place` is u v 0 of a chart
 };
 
-inline FailureFacts sizes_from(double least) {
-  FailureFacts facts;
-  facts.least_size = least;
-  return facts;
-}
+inline FailureFacts sizes_from(double least) { return {.least_size = least}; }
 
 /// A failure that carries its facts; caught as the failure it is.
 template <class Failure>

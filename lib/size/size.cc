@@ -368,10 +368,11 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
     if (around < narrowest) narrowest = around, place = 0.5 * (box[c].lo + box[c].hi);
   }
   if (asked <= most_times * std::max(triangles, few_triangles)) return;
-  throw GoalMissed("slender parts ask for " + shown(std::round(asked)) + " triangles instead of " +
-                   shown(std::round(triangles)) + ": the size is " + shown(size) +
-                   ", and the mean way around one is " + shown(narrowest) + ", its middle at " +
-                   shown(place));
+  throw Informed<GoalMissed>("slender parts ask for " + shown(std::round(asked)) + " triangles instead of " +
+                                 shown(std::round(triangles)) + ": the size is " + shown(size) +
+                                 ", and the mean way around one is " + shown(narrowest) + ", its middle at " +
+                                 shown(place),
+                             {.tube_width = narrowest});
 }
 
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
@@ -528,11 +529,11 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
     const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     const double spacing = std::nextafter(far, infinity) - far;
     if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
-    throw Informed<GoalMissed>(
-        "vertex " + std::to_string(v) + " has size " + shown(size[v]) + ", but coordinates there are " +
-            shown(spacing) + " apart, and sizes of at least " + shown(least_spacings * spacing) +
-            " are expected; move the surface to the origin by mconvert --center, or ask for larger sizes",
-        sizes_from(2 * least_spacings * spacing));
+    throw Informed<GoalMissed>("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
+                                   ", but coordinates there are " + shown(spacing) +
+                                   " apart, and sizes of at least " + shown(least_spacings * spacing) +
+                                   " are expected",
+                               {.least_size = 2 * least_spacings * spacing, .far_off = far > diagonal(mesh)});
   }
 }
 

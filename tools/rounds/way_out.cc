@@ -77,6 +77,10 @@ const Row table[] = {
                      c.found.spikes == 1 ? "a vertex sticks out of the surface"
                                          : std::to_string(c.found.spikes) + " vertices stick out of it"};
      }},
+    {[](const Case& c) { return c.facts.far_off; },
+     [](const Case&) {
+       return WayOut{"mconvert --center", "coordinates are closer together near the origin"};
+     }},
     {[](const Case& c) { return c.facts.least_size > 0; },
      [](const Case& c) {
        return WayOut{"--min " + at_least(c.facts.least_size), "smaller sizes cannot be met"};
@@ -93,7 +97,9 @@ const Row table[] = {
      [](const Case& c) {
        return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "the distance that was reached"};
      }},
-    {[](const Case& c) { return c.status >= goal_missed && c.found.weld > 0 && !c.used("mclean", "--weld"); },
+    {[](const Case& c) {
+       return c.status >= goal_missed && c.found.weld > c.facts.tube_width && !c.used("mclean", "--weld");
+     },
      [](const Case& c) {
        return WayOut{"mclean --weld " + at_least(c.found.weld),
                      std::to_string(c.found.short_edges) +

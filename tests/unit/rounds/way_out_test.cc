@@ -36,6 +36,18 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   EXPECT_EQ(named(missed, {}, found), "mclean --drop-spikes 5");
 }
 
+TEST(WayOut, NamesWhatHelpsWhereSizesFailed) {
+  Diagnosis found;
+  found.weld = 1e-7;
+  FailureFacts facts;
+  facts.tube_width = 3;  // what is to be welded is not what is slender
+  EXPECT_EQ(named(unreached, facts, found), "mwrap");
+  facts = sizes_from(4);
+  EXPECT_EQ(named(unreached, facts, found), "--min 4");
+  facts.far_off = true;
+  EXPECT_EQ(named(unreached, facts, found), "mconvert --center");
+}
+
 TEST(WayOut, ManyCrossingsAreForAWrap) {
   Diagnosis found;
   found.spikes = 1;
