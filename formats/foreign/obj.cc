@@ -205,10 +205,18 @@ void ObjReader::set_patches(Sorting& sorting) {
 bool is_obj(std::string_view bytes) {
   static constexpr const char* keywords[] = {"v", "vt", "vn", "vp", "f",      "l",
                                              "p", "g",  "o",  "s",  "usemtl", "mtllib"};
+  const auto known = [&](std::string_view w) {
+    return std::any_of(std::begin(keywords), std::end(keywords), [&](const char* k) { return w == k; });
+  };
   Text text(bytes, "", '#');
   if (!text.next_line()) return false;
-  std::string_view w = text.word();
-  return std::any_of(std::begin(keywords), std::end(keywords), [&](const char* k) { return w == k; });
+  if (known(text.word())) return true;
+  // after lines of other words, a vertex must stand: words such as "s" are common
+  for (int line = 0; line < 1000 && text.next_line(); ++line) {
+    double x;
+    if (text.word() == "v" && parse_number(text.word(), x) && parse_number(text.word(), x)) return true;
+  }
+  return false;
 }
 
 Stream read_obj(std::string_view bytes, const std::string& where) { return ObjReader(bytes, where).read(); }

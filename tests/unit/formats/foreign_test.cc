@@ -216,6 +216,14 @@ TEST(Stl, SizesThatDisagreeWithTheCount) {
             "obj); as a binary stl of 5 triangles it would have 334 bytes, but it has 284");
 }
 
+TEST(Obj, IsRecognizedAfterLinesOfOtherWords) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(
+      read_any("# cow\n$ Contributed by somebody\n\n" + vertices + "f 1 2 3\n", "in").surface.tris.size(),
+      1u);
+  EXPECT_THROW(read_any("$ a list of words\ns 1\nf 1 2 3\nv and so on\n", "in"), BadInput);
+}
+
 TEST(Sol, BinaryAndTextAreTheSame) {
   Stream s = squares();
   s.surface.vertex.set<double>("size", {1, 2, 3, 4, 5, 6, 7, 0.1});
