@@ -11,13 +11,6 @@ double walk_near(const State& s, Vec3 p, int& t, double enough) {
   return walk_to(p, s.points, s.mesh.tris, s.mesh.opp, t, enough);
 }
 
-/// The point of triangle t nearest to p.
-Vec3 nearest_point(const State& s, int t, Vec3 p) {
-  const Tri& v = s.mesh.tris[t];
-  const auto b = closest_on_triangle(p, s.points[v[0]], s.points[v[1]], s.points[v[2]]);
-  return b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
-}
-
 /// For each triangle of the reference a triangle of the mesh that should not be far: of a vertex on it, or on
 /// a triangle around it.
 std::vector<int> first_guesses(const State& s) {

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "lib/core/bvh.h"
 #include "lib/relax/junctions.h"
 
 namespace meshpipe {
@@ -19,6 +20,11 @@ std::vector<int> vertices_of(const EditMesh& mesh, const std::vector<int>& trian
 /// Is v inside, so that it or its neighbors may change?
 bool loosely_held(const State& s, int v) { return s.hold[v] == loose || s.hold[v] == anchored; }
 
+/// May triangles at v be expected to be acute? Between lines inside the surface often is no room for that.
+bool may_be_acute(const State& s, int v) {
+  return loosely_held(s, v) || (s.acute && s.hold[v] != frozen && s.mesh.on_border(v));
+}
+
 }  // namespace
 
 double quality(const State& s, int t) {
@@ -34,11 +40,17 @@ double quality(const State& s, int t) {
   // angles that are good with a margin need not be known
   if (2 * area <= rules::tangent_with_margin * least)
     good = std::min(good, std::atan2(2 * area, least) / rules::good_angle);
-  const bool inside = loosely_held(s, a) && loosely_held(s, b) && loosely_held(s, c);
-  if (inside && largest <= rules::cotangent_with_margin * 2 * area)
+  const bool acute = may_be_acute(s, a) && may_be_acute(s, b) && may_be_acute(s, c);
+  if (acute && largest <= rules::cotangent_with_margin * 2 * area)
     good = std::min(
         good, (std::numbers::pi - std::atan2(2 * area, largest)) / (std::numbers::pi - rules::acute_angle));
   return good;
+}
+
+Vec3 nearest_point(const State& s, int t, Vec3 p) {
+  const Tri& v = s.mesh.tris[t];
+  const auto b = closest_on_triangle(p, s.points[v[0]], s.points[v[1]], s.points[v[2]]);
+  return b[0] * s.points[v[0]] + b[1] * s.points[v[1]] + b[2] * s.points[v[2]];
 }
 
 int irregularity(const State& s, int v) {
@@ -136,7 +148,7 @@ State extract(const State& s, const std::vector<int>& triangles) {
   const int n = (int)vertices.size();
   State patch(*s.reference, EditMesh(std::move(tris), n, model), pick(s.points), pick(s.place), pick(s.size));
   patch.normal = pick(s.normal), patch.refinement = pick(s.refinement), patch.hold = pick(s.hold);
-  patch.keep_border = s.keep_border;
+  patch.keep_border = s.keep_border, patch.acute = s.acute;
   patch.recording = true;
   for (int h = 0; h < (int)patch.mesh.opp.size(); ++h)
     if (patch.mesh.opp[h] < 0 && s.mesh.opp[3 * triangles[h / 3] + h % 3] >= 0)

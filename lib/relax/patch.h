@@ -17,8 +17,11 @@ struct Trial {
   State state;
 };
 
-/// 1 for a triangle that is good enough: kappa 0.75 and 35 degrees; 0 for one that is folded over.
+/// 1 for a triangle that is good enough: kappa 0.75, 35 degrees and, where it may be asked, 86; 0 for one
+/// that is folded over.
 double quality(const State& s, int t);
+/// The point of triangle t nearest to p.
+Vec3 nearest_point(const State& s, int t, Vec3 p);
 /// By how much the valence of an inside vertex is off 5, 6 or 7.
 int irregularity(const State& s, int v);
 /// What trials make small: a sum over triangles that counts the worst most, and none that is good with a

@@ -21,13 +21,33 @@ bool slide_end(State& s, int h, int v, double at) {
   return !places.empty();
 }
 
+/// Lets an anchored vertex go (`at` 1), or moves it by a share of a step of smoothing and holds it there.
+bool release(State& s, int v, double at) {
+  const Vec3 p = s.points[v];
+  s.hold[v] = loose;
+  const bool moves = at == 1 || move_vertex(s, v);
+  if (at < 1) s.hold[v] = anchored;
+  if (at < 1 && moves) {
+    const Place place = s.reference->walk.closest(s.place[v], lerp(p, s.points[v], at));
+    put(s, v, place, s.reference->walk.point(place), s.reference->normal(place));
+  }
+  mark_edited(s, v);
+  return moves;
+}
+
+/// May a trial take a vertex of the edge of h out? Those of lines are as the lines ask for.
+bool may_thin(const State& s, int h) {
+  return s.mesh.opp[h] < 0 ? s.acute && !s.keep_border : !s.mesh.hard[h];
+}
+
 /// Makes a change if it may be made; else nothing is changed.
 bool try_edit(State& s, const Edit& edit, bool may_fold) {
   if (edit.kind == Edit::split)
     return split_edge(s, edit.h, edit.at) || (may_fold && split_edge(s, edit.h, edit.at, true));
+  if (edit.kind == Edit::release) return release(s, edit.end, edit.at);
   if (edit.kind == Edit::slide) return slide_end(s, edit.h, edit.end, edit.at);
   if (edit.kind == Edit::collapse)
-    return (may_fold || (s.mesh.opp[edit.h] >= 0 && !s.mesh.hard[edit.h]) || is_shared(s, edit.end)) &&
+    return (may_fold || may_thin(s, edit.h) || is_shared(s, edit.end)) &&
            collapse_edge(s, edit.h, edit.end, may_fold ? rules::at_fault : rules::on_trial);
   const bool may = may_flip(s, edit.h);
   if (may) flip_edge(s, edit.h);
@@ -63,7 +83,7 @@ void add_slides_at_corners(const State& s, int t, std::vector<Edit>& edits) {
 
 /// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
 /// share a vertex with it.
-std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
+std::vector<Edit> edits_around(const State& s, int t, bool wide, const Judge& judge) {
   const EditMesh& m = s.mesh;
   std::vector<int> halfedges;
   for (int u : wide ? triangles_around(s, t, 1) : std::vector<int>{t})
@@ -73,8 +93,11 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide, bool all) {
       if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
     }
   std::vector<Edit> edits;
-  add_aligned_splits(s, t, all, edits);
+  add_aligned_splits(s, t, judge.may_fold, edits);
   add_slides_at_corners(s, t, edits);
+  for (int h = 3 * t; h < 3 * t + 3; ++h)
+    if (s.acute && !judge.may_fold && s.hold[m.from(h)] == anchored)
+      for (double at : rules::releases) edits.push_back({Edit::release, h, m.from(h), at});
   for (int h : halfedges) {
     edits.push_back({Edit::collapse, h, m.from(h)});
     edits.push_back({Edit::collapse, h, m.to(h)});
@@ -108,6 +131,19 @@ std::vector<Trial> try_all(State from, const std::vector<Edit>& edits, const Jud
   for (Trial& t : trials) settle(t.state, 1);
   keep_best(trials, rules::promising, judge);
   return trials;
+}
+
+/// Is the mesh still near to the features at which vertices of it were anchored before?
+bool stays_near(const State& before, const State& after) {
+  for (int v = 0; v < (int)before.hold.size(); ++v) {
+    const Vec3 p = before.points[v];
+    if (before.hold[v] != anchored || (after.mesh.out[v] >= 0 && after.points[v] == p)) continue;
+    double least = 1e300;
+    for (int t = 0; t < (int)after.mesh.tris.size(); ++t)
+      if (!after.mesh.dead(t)) least = std::min(least, norm(nearest_point(after, t, p) - p));
+    if (least > rules::missed * before.target(v)) return false;
+  }
+  return true;
 }
 
 /// Was a change tried at the first of these triangles without success, when their edges were what they are?
@@ -160,17 +196,20 @@ std::vector<int> bad_triangles(const State& s, Repairs& memory) {
 }  // namespace
 
 std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough,
-                              const Judge& judge) {
+                              const Judge& given) {
   if (has_double_edge(s.mesh, triangles)) return {};
   const State before = extract(s, triangles);
+  Judge judge = given;
+  if (s.acute && !given.may_fold)
+    judge.of = [&](const State& patch) { return stays_near(before, patch) ? given.of(patch) : 1e300; };
   const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
-  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough, judge.may_fold), judge);
+  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough, judge), judge);
   if (trials.empty()) return {};
   Trial best = trials.front();
   for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {
     if (best.objective <= good_enough) break;
     const State& from = trials[i].state;
-    for (Trial& second : try_all(from, edits_around(from, worst(from), false, judge.may_fold), judge))
+    for (Trial& second : try_all(from, edits_around(from, worst(from), false, judge), judge))
       if (second.objective < best.objective) best = std::move(second);
   }
   if (best.objective > good_enough) return {};
@@ -180,6 +219,11 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
 void repair_worst(State& s, Repairs& memory) {
   const int most = rules::repairs + s.mesh.live / rules::triangles_per_repair;
   int before = 0, first = 0;
+  if (memory.time < 0) {
+    s.acute = true;
+    s.acute = (double)bad_triangles(s, memory).size() <= rules::few_bad * s.mesh.live;
+    if (!s.acute) memory.quality.clear();
+  }
   for (int round = 0; round < (memory.forced ? 1 : rules::repair_rounds); ++round) {
     std::vector<int> triangles = bad_triangles(s, memory), irregular;
     const int count = (int)triangles.size();

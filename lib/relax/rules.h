@@ -78,7 +78,9 @@ constexpr double irregular_vertex = 1e-3;          // of the objective: a tie-br
 constexpr double gain_share = 0.1, gain = 0.05;    // of the objective: the smaller of both is worth a change
 constexpr int promising = 8, promising_pairs = 5;  // trials that go on, of about 100
 constexpr double promising_at_once = 0.3;          // of the trials go on after a sweep
-constexpr double sharp_turn = 0.5;    // radians, between model edges: a needle unless both are as long
+constexpr double sharp_turn = 0.5;  // radians, between model edges: a needle unless both are as long
+constexpr double releases[] = {0.25, 0.5, 1};  // of a step of smoothing: what anchored vertices move; 1: free
+constexpr double few_bad = 0.005;     // of the triangles: smooth surfaces have at most a half, others double
 constexpr double least_piece = 0.02;  // of a segment: shorter pieces are needles themselves
 constexpr int rings = 2, thorough_rings = 3;  // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100

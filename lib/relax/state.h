@@ -49,9 +49,9 @@ struct Reference {
 
 /// A change of connectivity: of the edge of half-edge h.
 struct Edit {
-  enum Kind { flip, split, collapse, slide } kind;
+  enum Kind { flip, split, collapse, slide, release } kind;
   int h;
-  int end = -1;     ///< the vertex that a collapse takes out, or that slides
+  int end = -1;     ///< the vertex that a collapse takes out, that slides, or that is no longer anchored
   double at = 0.5;  ///< where a split is tried, as in split_edge; how far a slide goes, see slide_end
 };
 
@@ -120,6 +120,7 @@ struct State {
   Schedule schedule;
   RelaxCounts counts;
   bool keep_border = false;  ///< no new vertex on the border
+  bool acute = false;  ///< are so few triangles bad that those at borders and anchors are to be acute, too?
   OfWhole whole;
   bool recording = false;
   std::vector<Edit> edits;  ///< while recording

@@ -39,6 +39,28 @@ TEST(Repair, TheBestEditIsFoundAndAdopted) {
   EXPECT_NEAR(m.area(), 48, 1e-12);
 }
 
+// a vertex anchored off the middle of its hexagon, in the plane that it was to reach
+TEST(Repair, AnAnchorThatSpoilsTrianglesIsGivenUpWhereNoFeatureIsMissed) {
+  for (double height : {0.0, 10.0}) {
+    Drawn m(drawn_surface({"  e   d  ",  //
+                           "         ",  //
+                           "f     g c",  //
+                           "         ",  //
+                           "  a   b  "},
+                          "abg bcg cdg deg efg fag"));
+    hold_rim(m.s);
+    const Vec3 middle = 0.5 * (m.s.points[2] + m.s.points[5]);
+    m.s.hold[6] = anchored;
+    m.s.acute = true;
+    m.s.points[6].z = height;  // at 10 the mesh, which stays on the reference, would miss it
+    const std::optional<State> best = repaired(m.s, triangles_around(m.s, worst(m.s), 2), false);
+    EXPECT_EQ(best.has_value(), height == 0);
+    if (best) {
+      EXPECT_LT(norm(best->points[6] - middle), 0.5);
+    }
+  }
+}
+
 //  a sharp corner a, where b is a corner as well and c is on a line
 //                  _____e
 //         ___c_----     |
@@ -70,14 +92,16 @@ TEST(Repair, NoBadTriangleIsLeft) {
   EXPECT_NEAR(m.area(), 48, 1e-12);
 }
 
-TEST(Repair, TrianglesInsideAreAcute) {
+TEST(Repair, TrianglesInsideAndAtBordersAreAcute) {
   // 95 degrees at c, and no angle below 42
   Drawn m(drawn_surface({"  c  ", "a       b"}, "abc"));
   m.s.points[2] = {4, 3.7, 0};
   for (int v = 0; v < 3; ++v) m.s.hold[v] = loose;
   EXPECT_LT(quality(m.s, 0), 0.95);
-  m.s.hold[0] = slides;  // model edges may force it
+  m.s.hold[0] = slides;  // the border may force it
   EXPECT_GT(quality(m.s, 0), 1);
+  m.s.acute = true;
+  EXPECT_LT(quality(m.s, 0), 0.95);
   m.s.hold[0] = loose;
   m.s.points[2] = {4, 4.4, 0};  // 85 degrees
   EXPECT_GT(quality(m.s, 0), 1);
