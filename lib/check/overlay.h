@@ -8,9 +8,9 @@
 
 namespace meshpipe {
 
-/// Follows the surface from triangle `face` to all triangles that are above or below a triangle: if they have
-/// its orientation and do not end there, they cover it, and no point of it is farther than the highest of
-/// them. Returns that height, or infinity if it is not proved to be within `enough`.
+/// Follows the surface from its triangle `face` to all that are above or below `triangle`: if they have its
+/// orientation and do not end there, they cover it, and none of its points is farther than the highest of
+/// them. Returns that height, or infinity if it is not proved (by at most 48) to be within `enough`.
 double sheet_height(const Connectivity& surface, int face, const std::array<Vec3, 3>& triangle,
                     double enough);
 

@@ -49,7 +49,7 @@ std::vector<std::array<int, 2>> solids_of_patches(const Repair& r, const Surface
 /// whether all have single precision.
 double coordinate_noise(const Mesh& mesh, const std::vector<char>& used);
 
-/// Flags the ends of edges no longer than `tolerance`; empty if there is none. `same` as in first_equal.
+/// Flags same[v] (see first_equal) of the ends v of edges of at most `tolerance`, not 0; empty if none is.
 std::vector<char> ends_of_short_edges(const Mesh& mesh, const std::vector<int>& same, double tolerance);
 
 /// Merges candidates no farther apart than `tolerance`, as merge_near, where all edges that leave the merged

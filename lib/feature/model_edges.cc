@@ -72,6 +72,8 @@ ModelSegments segments_after_ends(const ModelSegments& segments, const Mesh& bef
   std::vector<char> gone(segments.tris.size(), 0);
   for (int h = 0; h < (int)under.size(); ++h)
     if (under[h] >= 0 && opposite[h] < 0) gone[under[h]] = 1;
+  for (int s : segments_under(after, segments))
+    if (s >= 0) gone[s] = 0;
   ModelSegments kept;
   kept.points = segments.points;
   for (int i = 0; i < (int)gone.size(); ++i) {

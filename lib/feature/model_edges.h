@@ -21,8 +21,9 @@ std::vector<int> segments_under(const Mesh& mesh, const ModelSegments& segments)
 ModelSegments moved_segments(const ModelSegments& segments, const std::vector<int>& under, const Mesh& after,
                              const std::vector<int>& under_after);
 
-/// Returns the segments for a surface whose open ends were treated (lib/cap): those on rims move with them;
-/// where triangles were cut or split they are gone. The rims of caps are model edges in any case.
+/// Returns the segments for a surface whose open ends were treated (lib/cap): if `after` begins with the
+/// triangles of `before`, moved with them; else without those on rims of `before` that `after` has no edges
+/// on. The rims of caps are model edges in any case. Throws: like opposite_halfedges.
 ModelSegments segments_after_ends(const ModelSegments& segments, const Mesh& before, const Mesh& after);
 
 }  // namespace meshpipe

@@ -67,9 +67,10 @@ struct MidPoints {
   int straight = 0;              ///< edges kept straight, since a triangle of second order would fold
 };
 
-/// Computes a node within every edge: its midpoint moved to the nearest point of the reference (of the
-/// reference's borders and model edges, for those) and on to the smooth surface, if that is not null. Edges
-/// of triangles that would fold keep their midpoints. Throws: like opposite_halfedges.
+/// Computes a node within every edge: its midpoint moved to the nearest point of the reference that a walk
+/// from the ends reaches without crossing model edges (for borders and model edges: along the reference's),
+/// and on to the smooth surface, if that is not null. All edges of triangles that would fold keep their
+/// midpoints. Throws: like opposite_halfedges.
 MidPoints mid_points(const LiftedMesh& mesh, const Surface& reference, const CurvedSurface* surface);
 
 }  // namespace meshpipe

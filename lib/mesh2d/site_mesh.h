@@ -13,7 +13,7 @@ struct SiteMesh {
   std::vector<Site> site;
   int line_points;          ///< vertices below this number, on lines or to be kept, do not move
   std::size_t most_points;  ///< insertion beyond this number of points is refused
-  Cavity cavity;            ///< of the last vertex inserted
+  Cavity cavity;            ///< its fan() is that of the last vertex inserted
 };
 
 /// How near a new vertex may be to others, over the size at it.
@@ -24,7 +24,7 @@ struct Spacing {
 
 /// Inserts a vertex at p, known to be at `there`, by Bowyer and Watson's cavity in the metric there; p lies
 /// in triangle t. The new triangles are mesh.cavity.fan().
-/// Returns: false, with nothing changed, if p is on a vertex or a fixed edge or too near to others.
+/// Returns: false, with only cavity.rim() changed, if p is on a vertex or fixed edge or too near to others.
 /// Throws: GoalMissed if the mesh has most_points already.
 bool insert_site(SiteMesh& mesh, Vec2 p, const Site& there, int t, Spacing spacing);
 

@@ -17,7 +17,7 @@ int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv);
 /// winding numbers around it, which is then at most 1.
 bool border_is_simple(const Connectivity& c, const std::vector<Vec2>& uv);
 
-/// True if the closed polygon does not meet itself and runs counter-clockwise.
+/// Returns whether a closed polygon, not empty, meets itself nowhere and runs counter-clockwise.
 bool polygon_is_simple(const std::vector<Vec2>& polygon);
 
 /// Origins of the pairs of border edges that meet elsewhere than at a common end.

@@ -21,7 +21,7 @@ std::string part_fault(const Connectivity& mesh, const std::vector<int>& part);
 std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
                                int max_faces);
 
-/// An edge that bends by more is a crease, marked or not.
+/// An edge, not of the border, that bends by more is a crease to cuts, marked by mfeature or not.
 constexpr double sharp_edge = 40 * std::numbers::pi / 180;
 bool is_crease(const Connectivity& mesh, int h);
 

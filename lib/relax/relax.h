@@ -124,9 +124,9 @@ void add(RelaxCounts& sum, const RelaxCounts& counts);
 std::vector<int> remove_region(TiledMesh& whole, const std::vector<int>& region);
 /// Makes room for that many rows in all.
 void reserve(TiledMesh& whole, std::size_t points, std::size_t triangles);
-/// Appends a tile, relaxed. `number`: the row of each vertex of the mesh that it was cut from, -1: none yet.
-/// `seams` gets the vertices that are added for its rim: they were frozen only since other tiles have them.
-/// Throws: BadInput if its rim is not that of other tiles.
+/// Appends a tile, relaxed. `number`, updated: the row in `whole` of each vertex of the mesh that it was cut
+/// from, -1: none yet. `seams` gets the rows that are added for its rim: they were frozen only since other
+/// tiles have them. Throws: BadInput if its rim is not, to the last bit, that of other tiles.
 void append_tile(TiledMesh& whole, const Tile& tile, std::vector<int>& number, std::vector<int>& seams);
 
 }  // namespace meshpipe

@@ -9,7 +9,7 @@
 
 namespace meshpipe {
 
-/// Tube of diameter 1 along z and height `aspect`, n vertices around; `closed` caps both ends by flat disks.
+/// Makes a tube of diameter 1 from z = 0 to `aspect`, n >= 3 vertices around; `closed`: with flat disks.
 Mesh tube(double aspect, int n, bool closed);
 /// Sphere of radius 1: an icosahedron whose faces are split into k^2 each, at least n triangles.
 Mesh sphere(int n);

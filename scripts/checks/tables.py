@@ -16,7 +16,7 @@ LIMITS = {
     "functions": (0, "functions of more than 80 lines"),
     "comments": (0, "comments on a declaration of more than 8 lines"),
     "words": (0, "words with a better one in scripts/checks/tables.py"),
-    "lib-lines": (37187, "lines in lib/"),
+    "lib-lines": (37191, "lines in lib/"),
     "cutting-lines": (3594, "lines of the modules that cut: partition, multiscale, plan"),
     "cutting-in-param": (0, "includes of those in lib/param"),
     "eigen": (0, "includes of Eigen outside lib/numeric"),
