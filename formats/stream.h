@@ -33,13 +33,13 @@ struct Stream {
   bool ascii = false;                ///< encoding of the input, and by default of the output
 
   const Table* find(std::string_view table) const;
-  /// Returns the table. Throws NotAdmissible if it is missing: "no section 'chart_vertex'; run mparam first"
-  /// for `writer` mparam.
+  /// Returns the table. Throws: NotAdmissible if it is missing; for `writer` mparam "no section
+  /// 'chart_vertex'; run mparam first".
   const Table& need(std::string_view table, std::string_view writer) const;
   /// Replaces the table of this name, or appends it.
   void set(Table table);
   void erase(std::string_view table);
-  /// Returns the name of a patch or line, or an empty string.
+  /// Returns the name of a patch (dim 2) or line (dim 1), or "".
   std::string name_of(int dim, int tag) const;
 };
 
@@ -47,18 +47,18 @@ struct Stream {
 /// leaves in its place.
 bool is_stream(std::string_view bytes);
 
-/// The bytes of a file, from the first to the last, of which only some need to be in memory.
+/// The bytes of a file in order, of which only some need to be in memory.
 class Source {
  public:
   virtual ~Source() = default;
-  /// Returns what comes next: n bytes or more, or all that are left; until the next call.
+  /// Returns the bytes that come next: at least n, or all that are left. They stay valid until the next call.
   virtual std::string_view next(std::size_t n) = 0;
   virtual void drop(std::size_t n) = 0;
-  /// Drops n bytes or all that are left, of which none need to be in memory.
+  /// Drops n bytes, or all that are left, without reading them all into memory.
   virtual void skip(std::size_t n) {
     for (std::size_t some; n > 0 && (some = std::min(n, next(1).size())) > 0; n -= some) drop(some);
   }
-  /// Returns how many bytes are left at most.
+  /// Returns an upper bound of the number of bytes left.
   virtual std::size_t most_left() const = 0;
 };
 
@@ -71,22 +71,22 @@ struct MemorySource : Source {
   std::size_t most_left() const override { return left.size(); }
 };
 
-/// Returns whether a column of a table is to be read; of `vertex` x stands for the points, and of `face`
-/// vertex_indices for the triangles. Empty: all are.
+/// Returns whether a column of a table is to be read; column x of `vertex` stands for the points, and
+/// vertex_indices of `face` for the triangles. Empty: all columns are.
 using Wanted = std::function<bool(std::string_view table, std::string_view column)>;
 
-/// Reads a stream and checks it as formats/mply.md specifies. `where` is the name of the file for messages.
-/// Nothing may follow; where there may be `several`, as in a shard, another stream. Columns that are not
+/// Reads a stream and checks it as formats/mply.md specifies. `where`: the name of the file for messages.
+/// After it nothing may follow, or with `several`, as in a shard, another stream. Columns that are not
 /// `wanted` are left out, and not checked.
 /// Throws: BadInput with the line (ascii) or byte (binary); UpstreamFailed for "mply-failed PROGRAM STATUS".
 Stream read_stream(Source& source, const std::string& where, bool several = false, const Wanted& wanted = {});
 Stream read_stream(std::string_view bytes, const std::string& where);
 
-/// Returns the stream in bytes: ascii with the shortest numbers that read back the same, or binary.
+/// Returns the stream as bytes: ascii with the shortest numbers that read back the same, or binary.
 std::string write_stream(const Stream& stream, bool ascii);
 /// Takes the bytes of a file piece by piece.
 using Sink = std::function<void(std::string_view)>;
-/// Writes the same bytes in pieces of about a megabyte.
+/// Passes the same bytes to `sink` in pieces of about a megabyte.
 void write_stream(const Stream& stream, bool ascii, const Sink& sink);
 
 /// Thrown when a program before this one in the pipe failed and reported why.

@@ -45,9 +45,9 @@ class Io : public CommonOptions {
   void expect_report(const std::string& option, const std::string& path, bool mesh = false);
   /// Prints a line after the program's name on standard error, unless -q.
   void say(const std::string& line) const;
-  /// The same, even with -q.
+  /// Prints such a line even with -q.
   void warn(const std::string& line) const;
-  /// The same, only with -v.
+  /// Prints such a line only with -v.
   void detail(const std::string& line) const;
 
   std::string program;

@@ -10,7 +10,7 @@ namespace meshpipe {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// Returns the value at `at`, which need not be aligned; its bytes are reversed if `swap`.
+/// Returns the value whose bytes begin at `at`, which need not be aligned; the bytes are reversed if `swap`.
 template <class T>
 T load(const char* at, bool swap = false) {
   char bytes[sizeof(T)];

@@ -8,13 +8,14 @@
 
 namespace meshpipe {
 
-/// Collects the colors of the rows of a table; they are kept if all rows have one.
+/// Collects the colors of a table's rows; they are kept if all rows have one.
 class Colors {
  public:
   /// Adds the color of the next row: the first three of n = 3 or 4 numbers, up to 255 if they are `whole`,
   /// else up to 1. Any other n means none.
   void add(const double* c, std::size_t n, bool whole);
-  /// Adds the columns to the table; or a remark if only some rows have a color.
+  /// Adds the columns red green blue to the table of `rows` rows; if only some rows have a color, adds a
+  /// remark to the stream instead.
   void give(Stream& stream, Table& table, std::size_t rows);
 
  private:

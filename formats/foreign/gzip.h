@@ -8,8 +8,8 @@ namespace meshpipe {
 
 bool is_gzip(std::string_view bytes);
 
-/// Returns what was compressed; of several members in a row all. `where` as in read_any.
-/// Throws: BadInput if the bytes are damaged or end early, or if there are more than 4 GiB in them.
+/// Returns the uncompressed bytes, of all members if there are several. `where`: as in read_any. Throws:
+/// BadInput if the bytes are damaged or end early, or if the result has more than 4 GiB.
 std::string unzip(std::string_view bytes, const std::string& where);
 
 }  // namespace meshpipe

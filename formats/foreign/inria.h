@@ -11,15 +11,16 @@ bool is_inria(std::string_view bytes);
 /// become columns `corner` and `required`; SolAtVertices becomes `size` if it is one positive number each,
 /// else `sol`. Volumes, normals and tangents are left out.
 Stream read_inria(std::string_view bytes, const std::string& where);
-/// Adds the values of a .sol or .solb file to the vertices. Throws BadInput if their numbers differ.
+/// Adds the values of a .sol or .solb file to the vertices. Throws: BadInput if there is not one for each
+/// vertex.
 void read_sol(Stream& stream, std::string_view bytes, const std::string& where);
 
-/// Write text (.mesh) and binary of version 3 (.meshb), whatever `ascii` is. Model edges become edges, with
+/// Writes text (.mesh), or binary of version 3 (.meshb); `ascii` is ignored. Model edges become edges, with
 /// the label of their line as reference, and ridges.
 std::string write_mesh(const Stream& stream, bool ascii);
 std::string write_meshb(const Stream& stream, bool ascii);
-/// Write vertex column `size` as mmg reads it, in text (.sol) or binary (.solb). Throw NotAdmissible without
-/// it.
+/// Writes vertex column `size` as mmg reads it, in text (.sol) or binary (.solb). Throws: NotAdmissible
+/// without it.
 std::string write_sol(const Stream& stream, bool ascii);
 std::string write_solb(const Stream& stream, bool ascii);
 

@@ -11,12 +11,13 @@ bool is_msh(std::string_view bytes);
 /// line, is the physical tag; elements without one have their elementary tag, counted on from the largest
 /// physical one. $NodeData and $ElementData become columns if all nodes or faces have a value.
 Stream read_msh(std::string_view bytes, const std::string& where);
-/// Write versions 2.2 and 4.1. Patches become physical and elementary tags with their names, shifted so that
+/// Writes version 2.2, or 4.1. Patches become physical and elementary tags with their names, shifted so that
 /// the smallest is at least 1; so do labels of lines above 0. Columns become $NodeData and $ElementData.
 std::string write_msh2(const Stream& stream, bool ascii);
 std::string write_msh4(const Stream& stream, bool ascii);
 
-/// Encodes a name for double quotes: `"` as %22, and a % that would begin such a code as %25; and decodes it.
+/// Encodes a name for double quotes: `"` as %22, and a % that would begin such a code as %25; the second
+/// decodes it.
 std::string quotable(std::string_view name);
 std::string unescaped(std::string_view name);
 

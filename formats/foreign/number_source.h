@@ -9,7 +9,7 @@
 
 namespace meshpipe {
 
-/// Takes numbers as words of a text or from bytes. Failures are BadInput with the line, or the byte.
+/// Takes numbers as words of a text or from bytes. Every failure throws BadInput with the line, or the byte.
 class NumberSource {
  public:
   NumberSource(std::string_view bytes, const std::string& where, char comment = 0)
@@ -23,22 +23,24 @@ class NumberSource {
     text.skip(sizeof(T));
     return value;
   }
-  /// Take the next value: a word of the line in a text, 4 or 8 bytes in a binary file.
+  /// Takes the next value: a word of the line in a text, 4 or 8 bytes in a binary file. `what` is for the
+  /// message.
   int integer(const char* what) { return binary ? get<int>(what) : text.integer(what); }
   long long wide(const char* what) { return binary ? get<long long>(what) : text.wide(what); }
   double real(const char* what);
   Vec3 point();
-  /// Takes a count of things of at least that many bytes each; in 8 bytes if `is_wide`.
+  /// Takes a count of things of at least that many bytes each, or fails if the file cannot hold them; of 8
+  /// bytes if `is_wide`.
   int count(const char* what, bool is_wide, std::size_t least_binary, std::size_t least_text);
-  /// Leaves n bytes of a binary file.
+  /// Skips n bytes of a binary file.
   void skip(std::size_t n, const char* what);
 
-  /// Bytes after the current line of a text, or the value last taken.
+  /// Returns the number of bytes after the current line of a text, or after the value last taken.
   std::size_t left() const { return text.after().size(); }
-  /// Position of the next byte of a binary file.
+  /// Returns the position of the next byte of a binary file.
   std::size_t position() const { return bytes_.size() - left(); }
   [[noreturn]] void fail(const std::string& what) const;
-  /// Fails unless `x`, which was just taken, is finite.
+  /// Returns `x`, which was just taken; fails unless it is finite.
   double finite(double x, const char* what) const;
 
   Text text;

@@ -17,7 +17,7 @@ struct PatchGroup {
 /// Reads one group per line: patches by name, or number if they have none, separated by blanks, after "NAME
 /// =" if the group gets a name of its own. Words in double quotes may hold blanks; * ? [ ] are wildcards as
 /// in the shell. Lines that begin with # are comments. Words may name patches that have lost all faces.
-/// Throws: BadInput with the line, for words that name no patch and names of groups that are used twice.
+/// Throws: BadInput with the line for words that name no patch and names of groups that are used twice.
 std::vector<PatchGroup> read_groups(std::string_view bytes, const std::string& where, const Stream& stream);
 
 }  // namespace meshpipe

@@ -9,8 +9,9 @@
 
 namespace meshpipe {
 
-/// Makes a size field of the vertex column `column`; if that is empty, of `size`, `h` or the only column.
-/// Throws: BadInput with the columns there are, or the vertex whose value is not positive.
+/// Makes a size field of the vertex column `column`; if that is "", of `size`, `h` or the only column.
+/// `where`: the file's name for messages. Throws: BadInput naming the columns there are, or the vertex whose
+/// value is not positive.
 SizeField size_field_of(const Stream& mesh, const std::string& column, const std::string& where);
 
 /// Returns whether a text is a table: its first row, or its second after a line of names, begins with

@@ -8,7 +8,7 @@ namespace meshpipe {
 /// Writes text with patches as markers of facets, and a point in each region between sheets, whose label is
 /// its attribute (tetgen -A). Output only.
 std::string write_poly(const Stream& stream, bool ascii);
-/// The same with a line per facet.
+/// Writes the same with one line per facet (.smesh).
 std::string write_smesh(const Stream& stream, bool ascii);
 
 }  // namespace meshpipe

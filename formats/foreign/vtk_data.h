@@ -11,7 +11,7 @@ namespace meshpipe {
 
 constexpr int vtk_triangle = 5, vtk_strip = 6, vtk_polygon = 7, vtk_quadratic_triangle = 22;
 
-/// A data set as it is read.
+/// A data set of VTK while it is read.
 struct VtkData {
   std::vector<Vec3> points;
   Polygons polygons;
@@ -30,7 +30,8 @@ struct VtkData {
 /// whose number of rows is not that of points or cells are left out, with a remark.
 Stream vtk_surface(VtkData data);
 
-/// Returns names as meshio has them: an array of that name with the tag and the dimension.
+/// Returns names of patches and lines as meshio has them: per name an array of that name with the tag and the
+/// dimension.
 std::vector<Array> field_of_names(const Stream& stream);
 
 }  // namespace meshpipe

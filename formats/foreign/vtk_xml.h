@@ -11,7 +11,7 @@ bool is_vtk_xml(std::string_view bytes);
 /// data as columns; points, lines and volumes are left out.
 Stream read_vtk_xml(std::string_view bytes, const std::string& where);
 
-/// Write triangles with vertex columns as point arrays and face columns as cell arrays; components of an
+/// Writes triangles with vertex columns as point arrays and face columns as cell arrays; components of an
 /// array, and red green blue as `color`, are joined again. Names of patches are field data (field_of_names).
 /// Text, or base64 of zlib.
 std::string write_vtu(const Stream& stream, bool ascii);

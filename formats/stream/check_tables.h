@@ -15,16 +15,16 @@ struct CheckJob {
 /// Returns whether the stream is a share to be measured: table `check_share`.
 inline bool is_check_share(const Stream& stream) { return stream.find("check_share") != nullptr; }
 
-/// The share as a stream, without history: its mesh is the surface.
+/// Returns the share as a stream, without history: its mesh is the surface.
 Stream stream_of(CheckJob job);
-/// Takes a share out of its stream. Throws: BadInput, NotAdmissible for another one.
+/// Takes a share out of its stream. Throws: BadInput or NotAdmissible for any other stream.
 CheckJob take_share(Stream stream);
-/// What was measured of a share, as a stream without a surface or history.
+/// Returns what was measured of a share as a stream without a surface or history.
 Stream stream_of(int number, int all, ShareFindings found);
 
-/// Returns what was measured of a stream's result in all shares, in their order.
-/// Throws: BadInput, with a shard's name, for one that is none of this result, or was not made by `by`, and
-/// for shares that are missing or doubled.
+/// Returns what was measured of a stream's result in all shares, in their order. `names`: of the shards'
+/// files. Throws: BadInput, with a shard's name, for one that is none of this result or was not made by `by`,
+/// and for shares that are missing or doubled.
 std::vector<ShareFindings> join_checks(const Stream& whole, const Provenance& by,
                                        const std::vector<std::string>& names, const ReadShard& read);
 

@@ -34,9 +34,9 @@ struct Element {
   std::size_t stride = 0;  ///< bytes per row of a binary stream
 };
 
-/// The words of a line, separated by blanks.
+/// Returns the words of a line, separated by blanks.
 std::vector<std::string_view> words(std::string_view line);
-/// Parses the whole of a word as a whole number.
+/// Parses the whole of a word as a number; returns whether it is one.
 template <class T>
 bool parse(std::string_view word, T& value) {
   const auto r = from_chars(word.data(), word.data() + word.size(), value);

@@ -6,19 +6,19 @@
 
 namespace meshpipe {
 
-/// Takes a mesh with each vertex's place on the reference, of `faces` triangles and with `lines` lines, out
-/// of a surface: what it has the surface has no longer. Throws: NotAdmissible if mlift has not run; BadInput
-/// with the row of a wrong index or weight.
+/// Moves a mesh with each vertex's place out of a surface, on a reference of `faces` triangles and with
+/// `lines` lines; the surface loses these columns. Throws: NotAdmissible if mlift has not run; BadInput with
+/// the row of a wrong index or weight.
 LiftedMesh take_lifted(Surface& surface, int faces, int lines);
-/// The mesh as a surface with its columns.
+/// Returns the mesh as a surface with its columns.
 Surface surface_from(LiftedMesh mesh);
 
 /// Replaces `vertex` and `face` by the mesh and drops table mid_vertex. Vertex data of the input is
-/// interpolated from the reference. Requires write_reference before.
+/// interpolated from the reference. Requires: write_reference was called before.
 void write_lifted(Stream& stream, LiftedMesh mesh);
 
 /// Reads the surface that the mesh was lifted to, with face columns patch, part, origin and model, and
-/// `curved` if vertices lie on the smooth surface above it. Throws NotAdmissible if mlift has not run.
+/// `curved` if vertices lie on the smooth surface above it. Throws: NotAdmissible if mlift has not run.
 Surface read_reference(const Stream& stream);
 
 /// Adds the tables ref_vertex, with the surface's vertex data, and ref_face. Missing columns become 0

@@ -5,9 +5,9 @@
 
 namespace meshpipe {
 
-/// Columns x, y, z.
+/// Returns the points as a table of this name with columns x, y, z.
 Table point_table(const char* name, const Mesh& mesh);
-/// Columns a, b, c.
+/// Returns the triangles as a table of this name with columns a, b, c.
 Table triangle_table(const char* name, const Mesh& mesh);
 
 Mesh mesh_from(const Table& points, const Table& triangles);

@@ -5,12 +5,14 @@
 
 namespace meshpipe {
 
-/// The stream's table `part`, one row per part: int genus loops faces; double area eta_cyl eta_box eta_geo.
+/// Returns the stream's table `part`, one row per part: int genus loops faces; double area eta_cyl eta_box
+/// eta_geo.
 Table part_table(const std::vector<Topology>& parts);
-/// The table of the parts that face column `part` names, 0..n-1. Rows of `known`, if given, stay for parts
-/// that still have their number of faces and their area.
+/// Measures the parts 0..n-1 that face column `part` names, and returns their table. Rows of `known`, if
+/// given, are used for parts that still have their number of faces and their area.
 Table part_table(const Surface& surface, int n, const Table* known = nullptr);
-/// Returns those rows; of no triangles for other parts.
+/// Returns the rows of `known` for parts that still have their number of faces and their area; a row without
+/// triangles for others.
 std::vector<Topology> known_parts(const Surface& surface, int n, const Table* known);
 
 }  // namespace meshpipe

@@ -6,15 +6,15 @@
 
 namespace meshpipe {
 
-/// Returns whether sheets of the stream meet: then border vertices at the same place are one.
+/// Returns whether sheets of the stream meet: then border vertices with the same coordinates are one.
 bool has_sheets(const Stream& stream);
-/// Throws: NotAdmissible, with the reason, if they do along an edge or at a vertex.
+/// Throws NotAdmissible, with the reason, if sheets of the stream meet along an edge or at a vertex.
 void expect_no_sheets(const Stream& stream, const std::string& why);
 /// Returns table `sheet`, by patch; empty if the stream has none.
 /// Throws: BadInput for a patch that is there twice.
 std::vector<SheetPatch> read_sheets(const Stream& stream);
 Table sheet_table(const std::vector<SheetPatch>& sheets);
-/// Sets both tables.
+/// Sets tables `sheet` and `region`. `label`, `volume`: per region.
 void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const std::vector<int>& label,
                    const std::vector<double>& volume);
 
@@ -22,24 +22,24 @@ void write_regions(Stream& stream, const std::vector<SheetPatch>& sheets, const 
 /// before.
 void update_volumes(Stream& stream);
 
-/// Returns the labels of both sides of each triangle, that other programs write: face columns
-/// boundary_labels.0 and .1 (VTK's, PyVista's; or BoundaryLabels); empty if there are none.
+/// Returns per triangle the labels of both sides that other programs write: face columns boundary_labels.0
+/// and .1 (VTK's, PyVista's; or BoundaryLabels). Empty if there are none.
 std::vector<std::array<int, 2>> side_labels(const Surface& surface);
 
 /// Returns the stream as other formats have it: sheets share their vertices, and face columns
 /// boundary_labels.0 and .1 hold the regions in front and behind.
 Stream with_sheets_joined(const Stream& stream);
 
-/// A point in each region of a surface with face columns boundary_labels, and its label.
+/// A point in each region, and the region's label.
 struct RegionSeeds {
   std::vector<Vec3> point;
   std::vector<int> label;
 };
 RegionSeeds region_seeds(const Surface& surface);
 
-/// Returns each region's whole boundary, oriented away from it, as a patch of its own, region-LABEL: what
-/// two regions share is there twice. `labels`: only these; empty: all.
-/// Throws: NotAdmissible if the stream has no sheets, or not one of these labels.
+/// Returns each region's whole boundary, oriented away from it, as a patch of its own, region-LABEL:
+/// triangles between two regions are there twice. `labels`: only these; empty: all. Throws: NotAdmissible if
+/// the stream has no sheets, or not one of these labels.
 Stream region_boundaries(const Stream& stream, const std::vector<int>& labels);
 
 }  // namespace meshpipe

@@ -9,21 +9,21 @@ namespace meshpipe {
 /// Adds or replaces the table mid_vertex.
 void write_mid_points(Stream& stream, const std::vector<MidPoint>& points);
 
-/// Changes the vertices of table mid_vertex, if there is one, to their new numbers; of equal edges the first
-/// stays. Throws: BadInput for a vertex that is not there.
+/// Renumbers the vertices of table mid_vertex, if there is one (`number`: the new row of each); of equal
+/// edges the first stays. Throws: BadInput for a vertex that does not exist.
 void renumber_mid_points(Stream& stream, const std::vector<int>& number);
 
 /// Views a stream as elements of first or second order, for writers.
 class SecondOrder {
  public:
-  /// Keeps a reference to the stream. Throws BadInput if table mid_vertex is not in order or lacks an edge.
+  /// Keeps a reference to the stream. Throws: BadInput if table mid_vertex is not in order or lacks an edge.
   explicit SecondOrder(const Stream& stream);
   /// Returns whether the stream has the table.
   explicit operator bool() const { return table_ != nullptr; }
-  /// Returns the stream's surface; with the table, nodes within edges follow the vertices. Their data is the
-  /// mean of the ends of the edge for doubles, else that of the first end.
+  /// Returns the stream's surface; with the table, nodes within edges follow the vertices. The data of a node
+  /// is the mean of the ends of its edge for doubles, else that of the first end.
   const Surface& surface() const { return table_ ? surface_ : stream_.surface; }
-  /// Returns the node within an edge. Requires the table.
+  /// Returns the row of the node within an edge. Requires: the table.
   int node(int a, int b) const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace meshpipe {
 
-/// Rows of the whole, by those of a shard; all but line points ascend. And the shard's lines.
+/// Rows of the whole, by those of a shard (all but line points ascend), and the shard's lines.
 struct ShardNumbers {
   std::vector<int> parts, faces, vertices, line_points;
   Lines lines;
@@ -15,8 +15,8 @@ struct ShardNumbers {
 /// Returns whether the stream is a shard: table `shard` has the number in the whole of each of its parts.
 inline bool is_shard(const Stream& stream) { return stream.find("shard") != nullptr; }
 
-/// Flags per vertex those that the mesh has too, although they are on no line (sharp_peaks); in a shard those
-/// of its table `kept_vertex`, which has them from the whole. Requires: vertex column `size`.
+/// Flags the vertices that the mesh has too, although they are on no line (sharp_peaks); in a shard, those of
+/// its table `kept_vertex`, which are known from the whole. Requires: vertex column `size`.
 std::vector<char> kept_vertices(const Stream& stream);
 
 /// Distributes the parts to `count` shards (fewer if there are fewer parts), each with almost the same number
@@ -29,33 +29,34 @@ std::vector<std::vector<int>> share_out(const Stream& whole, int count);
 /// line of its own, which no part uses, with two points there. Requires: parts ascending.
 ShardNumbers number_shard(const Stream& whole, std::vector<int> parts);
 
-/// Returns the shard as a stream: its surface with the rows of its parts in the tables of maps and lines.
+/// Returns the shard as a stream: its surface, with the rows of its parts in the tables of maps and lines.
 /// `kept`: kept_vertices of the whole; empty if sizes are not known yet.
 Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::vector<char>& kept);
 
-/// Drops what join_shards takes from the whole: the surface, and tables other than `shard`, `part` and these.
+/// Drops from a shard all that join_shards takes from the whole: the surface, and tables other than `shard`,
+/// `part` and `tables`.
 void keep_made(Stream& shard, std::initializer_list<std::string_view> tables);
 
-/// Reads the file of this name, and hands the streams in it over one by one.
+/// Reads the file of this name, and passes the streams in it on one by one.
 using ReadShard = std::function<void(const std::string&, const std::function<void(Stream)>&)>;
 
-/// Returns a table that has this number of rows. Throws: BadInput if it has others; as Stream::need.
+/// Returns a table that has this number of rows. Throws: BadInput if it has another; as Stream::need.
 const Table& need_rows(const Stream& stream, const char* table, const char* writer, std::size_t rows);
 inline const Table& need_row(const Stream& stream, const char* table, const char* writer) {
   return need_rows(stream, table, writer, 1);
 }
 
-/// Throws: BadInput if a shard with history `made` is not what `by`, in any version, has made of one of the
-/// whole.
+/// Throws BadInput unless a shard with history `made` is what `by`, in any version, has made of a shard of
+/// the whole.
 void expect_made_of(const Stream& whole, const std::vector<Provenance>& made, const Provenance& by);
 
-/// Calls `take`, whose errors get the name of a shard in front. Throws: BadInput.
+/// Calls `take`; errors get the name of the shard in front. Throws: BadInput.
 void of_shard(const std::string& name, const std::function<void()>& take);
 
-/// Adds to the whole what a program has made of its shards, as it makes it of the whole: plane meshes, else
-/// charts, without those that are missing. `read` returns a shard by its name.
-/// Throws: BadInput, with a shard's name, for one that is none of the whole, parts that are missing, doubled
-/// or cut, and shards that were not made by `by`, in any version.
+/// Adds to the whole what a program has made of its shards, as it would make it of the whole: plane meshes,
+/// else charts, without those that are missing. `read` returns a shard by its name. Throws: BadInput, with a
+/// shard's name, for one that is none of the whole, parts that are missing, doubled or cut, and shards that
+/// were not made by `by`, in any version.
 void join_shards(Stream& whole, const std::vector<std::string>& names, const Provenance& by,
                  const std::function<Stream(const std::string&)>& read);
 

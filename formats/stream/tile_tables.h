@@ -28,9 +28,9 @@ struct TileJob {
 /// Returns whether the stream is a tile: table `tile`.
 inline bool is_tile(const Stream& stream) { return stream.find("tile") != nullptr; }
 
-/// The tile as a stream, without history: its mesh is the surface.
+/// Returns the tile as a stream, without history: its mesh is the surface.
 Stream stream_of(TileJob job);
-/// Takes a tile out of its stream. Throws: BadInput, NotAdmissible for another one.
+/// Takes a tile out of its stream. Throws: BadInput or NotAdmissible for any other stream.
 TileJob take_tile(Stream stream);
 
 /// The mesh that relaxed tiles were joined to.
@@ -40,10 +40,9 @@ struct JoinedTiles {
   RelaxCounts counts;      ///< of the tiles, and before them
   std::vector<int> seams;  ///< see append_tile
 };
-/// Joins the tiles from all shards of a stream, of which only the history is needed, with a reference of
-/// `faces` triangles.
-/// Throws: BadInput, with a shard's name, for one that is none of this stream, tiles that are missing,
-/// doubled or not relaxed, and shards that were not made by `by`.
+/// Joins the tiles from all shards of a stream, whose history is read, with a reference of `faces` triangles.
+/// `names`: of the shards' files. Throws: BadInput, with a shard's name, for one that is none of this stream,
+/// tiles that are missing, doubled or not relaxed, and shards that were not made by `by`.
 JoinedTiles join_tiles(const Stream& whole, int faces, const Provenance& by,
                        const std::vector<std::string>& names, const ReadShard& read);
 

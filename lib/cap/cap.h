@@ -8,7 +8,7 @@
 
 namespace meshpipe {
 
-/// A border loop, or two of which one lies within the other, as at the end of a thick wall.
+/// An open end: a border loop, or two of which one lies within the other, as at the end of a thick wall.
 struct End {
   std::string name;
   /// Vertices of each loop, the outer one first; it is counterclockwise as seen from outside.
@@ -21,12 +21,12 @@ struct End {
   double planarity = 0;  ///< largest distance of a rim's vertex from the plane of `center` and `normal`
 };
 
-/// Reverses all triangles if the surface, with its ends closed, has a negative volume. Returns whether it
-/// has. Throws like find_ends.
+/// Reverses all triangles if the surface, its ends closed, has a negative volume; returns whether. Throws: as
+/// find_ends.
 bool orient_outward(Surface& surface);
 
-/// Returns the ends by area, the largest first, named inlet, outlet_1, outlet_2 ...
-/// Throws: NotAdmissible unless the surface is an oriented manifold without pinched vertices.
+/// Returns the ends, the largest area first, named inlet, outlet_1, outlet_2 ... Throws: NotAdmissible unless
+/// the surface is an oriented manifold without pinched vertices.
 std::vector<End> find_ends(const Mesh& mesh);
 
 /// A name for the end nearest to a place, or for the next in the order of area.
@@ -35,25 +35,26 @@ struct EndName {
   bool placed = false;
   Vec3 place{};
 };
-/// Names ends: first those with a place, then the others in order; the rest keep their names, with another
-/// number if that is taken. Throws: NotAdmissible if there are more names than ends, or two for one end.
+/// Names ends: first the nearest to each name with a place, then the others in order; ends left keep their
+/// names, with another number if that is taken. Throws: NotAdmissible if more names than ends, or two for
+/// one.
 void name_ends(std::vector<End>& ends, const std::vector<EndName>& names);
 
-/// Flags the ends in a list of names and numbers from 1, such as "inlet,3". Throws: NotAdmissible with what
-/// is no end.
+/// Flags the ends in a list of names and numbers from 1, such as "inlet,3". Throws: NotAdmissible for others.
 std::vector<char> ends_in(const std::vector<End>& ends, const std::string& list);
 
-/// Returns "end 3, outlet_2, at (x, y, z)" for messages; `i` counts from 0.
+/// Returns "end 3, outlet_2, at x y z" for messages; `i` counts from 0.
 std::string title_of(const std::vector<End>& ends, int i);
 
-/// The first and the last of the patches that were added, for the stream: "capped FIRST LAST".
+/// The first and the last of the patches that were added; last < first: none.
 struct CapPatches {
   int first = 0, last = -1;
 };
+/// Returns the remark for the stream: "capped FIRST LAST".
 std::string remark_of(const CapPatches& patches);
-/// What a remark says; nothing of other texts.
+/// Returns the patches that a remark names; none for other texts.
 CapPatches parse_caps(const std::string& remark);
-/// Flags the triangles of those of these patches that are plane, for what must keep them so.
+/// Flags triangles of the patches that are plane to 1e-9 of the diagonal. Requires: face column `patch`.
 std::vector<char> plane_triangles(const Surface& surface, const CapPatches& patches);
 
 struct CapOptions {
@@ -76,12 +77,11 @@ struct EndReport {
   std::string why_not;                     ///< why the rim could not be made plane, if that was asked for
 };
 
-/// Trims, flattens, extends and caps the ends, as far as asked; rims that can be neither moved into a plane
-/// nor cut become stubs of the wall. Extensions and caps are new patches; their borders are model edges (face
-/// column `model`). Measures of the ends follow. Face column `patch` is added if missing. Throws:
-/// NotAdmissible naming the end and the place where a rim crosses itself, where trimming would remove a
-/// branch, and where an extension or a cap would meet the surface; with all ends that cannot be trimmed or
-/// extended.
+/// Trims, flattens, extends and caps the ends, as far as asked, and measures them again. Rims that can be
+/// neither moved into a plane nor cut get stubs of the wall. Extensions and caps are new patches (face column
+/// `patch`, added if missing), bounded by model edges (face column `model`). Returns a report per end.
+/// Throws: NotAdmissible naming the end and the place where a rim crosses itself, trimming would remove a
+/// branch, or an extension or a cap would meet the surface.
 std::vector<EndReport> treat_ends(Surface& surface, std::vector<End>& ends, const CapOptions& options);
 
 }  // namespace meshpipe

@@ -47,27 +47,27 @@ struct Findings {
   std::optional<SheetFindings> sheets;    ///< where they meet; see compare_sheets
 };
 
-/// Of the local size: an edge that is farther off cuts through what it should follow; a limb or component
-/// that one of the two lacks is, too. (Three edges that stand for a circle deviate by 0.29 of their length.)
-/// Unit of Deviation::ratio.
+/// The distance between the surfaces that is allowed, over the local size; the unit of Deviation::ratio. An
+/// edge that is farther off cuts through what it should follow, or a limb is missing. (Three edges that stand
+/// for a circle deviate by 0.29 of their length.)
 constexpr double most_deviation = 0.5;
 
 /// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex
-/// columns `size` and `ref_face`, and of both surfaces face column `model`; the reference is compared as it
-/// was before cuts (face column `origin`), and as the smooth surface where face column `curved` is there.
-/// `lines`: those that the result was made with, or null. `samples`, `most`: see distance_between.
-/// `sheets_meet`: border vertices at the same place are one. No size counts as smaller than `least_size`.
-/// `shares`: what was measured in shares, or null.
+/// columns `size` and `ref_face`, and face column `model` of both surfaces; the reference is compared as it
+/// was before cuts (face column `origin`), and as the smooth surface where it has face column `curved`.
+/// `lines`: those that the result was made with, or null. `samples`, `most`: as in distance_between.
+/// `sheets_meet`: border vertices with the same coordinates are one. `least_size`: allowed distances are
+/// those of sizes from it on. `shares`: what was measured in shares, or null.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
                  double most = infinity, bool sheets_meet = false, double least_size = 0,
                  const std::vector<ShareFindings>* shares = nullptr);
 
 /// Cuts the measurements of examine that take most time and memory into shares of at most `triangles`, which
-/// may be separate jobs, and calls `take` for each: what `measure` returns for them is for examine.
+/// may be separate jobs, and calls `take` for each. examine takes what `measure` returns for them.
 void cut_examination(const Surface& result, const Surface& reference, int triangles, int samples, double most,
                      const TakeShare& take);
 
-/// Finds the half-edges, one of each edge, at which the result is folded: see lib/core/fold.h.
+/// Returns the smaller half-edge of each edge at which the result is folded (lib/core/fold.h).
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
 
 /// One figure of the report; NaN where a mesh has none.
@@ -76,9 +76,9 @@ struct Figure {
   int decimals;  ///< or one of the two below
   double reference, result;
 };
-/// Instead of decimals: a whole number; three significant digits.
+/// Instead of a number of decimals: a whole number; three significant digits.
 constexpr int count_figure = -1, short_figure = -2;
-/// Returns all figures, in the order of the table; distances over the reference's diagonal.
+/// Returns all figures, in the order of the table. Distances are over the reference's diagonal.
 std::vector<Figure> figures(const Findings& findings);
 
 constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
@@ -92,12 +92,12 @@ using Contract = std::vector<Requirement>;
 /// What mcheck requires by default.
 extern const char* const default_contract;
 
-/// Parses a list such as "topology,intersections,kappa=0.1". Throws: BadUsage naming what is wrong in it.
+/// Parses a list such as "topology,intersections,kappa=0.1". Throws: BadUsage naming the item that is wrong.
 Contract parse_contract(const std::string& list);
 
-/// Returns whether a requirement's figure must be above its limit (kappa, angles), not within it.
+/// Returns whether a requirement's figure must be above its limit (kappa, angles), and not at most as large.
 bool is_lower_limit(const Requirement& requirement);
-/// Returns the figure that a requirement bounds; NaN if it has none, as topology.
+/// Returns the figure that a requirement bounds; NaN if it has none (topology), or it was not measured.
 double reached(const Requirement& requirement, const Findings& findings);
 
 /// A requirement that is not met. Figures are NaN where it has none.
@@ -107,7 +107,7 @@ struct Failure {
   int triangle = -1;  ///< the worst or the first, -1: none
   Vec3 place{no_figure, no_figure, no_figure};
 };
-/// Returns what fails, in the order of the contract.
+/// Returns the requirements that are not met, in the order of the contract. `mesh`: the result.
 std::vector<Failure> judge(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
 /// What a face offends against: bits.
@@ -119,13 +119,13 @@ enum Offense {
   offends_vertices = 16,
   offends_deviation = 32
 };
-/// Returns the faces in which the contract fails, with face columns int `triangle` (number in the mesh) and
-/// uchar `fault` (bits of Offense). Vertices stay, some unused.
+/// Returns the faces of the result at which the contract fails, with face columns int `triangle` (row in the
+/// result) and uchar `fault` (bits of Offense). Vertices stay, some unused.
 Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh);
 
 /// Returns the result's sizes per vertex, reduced where it is farther from the reference than the contract
-/// allows, and next to offending faces. Returns them unchanged if the reference has more pairs of
-/// intersecting triangles than triangles: smaller sizes do not help then. Requires: vertex column `size`.
+/// allows, and next to offending faces. Returns them unchanged if the reference has more pairs that properly
+/// intersect than triangles: smaller sizes do not help then. Requires: vertex column `size`.
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 

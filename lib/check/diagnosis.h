@@ -20,8 +20,8 @@ struct Diagnosis {
   bool at_border = false, at_patch_border = false, at_crease = false;
 };
 
-/// Measures a surface, all but `spikes` and `sheets`. `place` and `reach`: where something failed, and the
-/// lengths of edges there; reach 0: unknown. Reads, where present, face columns `patch` and `model`.
+/// Measures a surface: all but `spikes` and `sheets`. `place` and `reach`: where something failed, and the
+/// edge length there; reach 0: unknown. Reads, where present, face columns `patch` and `model`.
 Diagnosis diagnose(const Surface& surface, Vec3 place, double reach);
 
 }  // namespace meshpipe

@@ -8,7 +8,7 @@
 
 namespace meshpipe {
 
-/// Distances over those that are allowed at each triangle of the mesh.
+/// Distances between the surfaces at each triangle of the mesh, in units of the distance allowed there.
 struct Deviation {
   std::vector<double> allowed;  ///< per triangle, as given; empty: any
   std::vector<double> ratio;    ///< per triangle, the largest found
@@ -28,7 +28,7 @@ struct Distance {
   Deviation deviation;
 };
 
-/// What distance_between finds in one direction; lengths.
+/// What distance_from finds; lengths.
 struct OneWay {
   double largest = 0;        ///< found
   Vec3 place;                ///< of it
@@ -42,37 +42,38 @@ struct OneWayOptions {
   double most;           ///< a length: a distance below it is bounded by it; 0: none
   bool allowed_of_from;  ///< is `allowed` per triangle of the surface that is measured from?
 };
-/// Measures how far some triangles of a surface are from another one. Requires: neighbors in space are close
-/// together among them; they are some, and `to` has some.
+/// Measures how far these triangles of a surface, in an order in which neighbors are close together, are from
+/// another surface. `allowed`: the distance per triangle of one of the surfaces, see OneWayOptions; empty:
+/// any. Requires: both have triangles.
 OneWay distance_from(const Mesh& from, std::span<const int> triangles, const Connectivity& to,
                      const Bvh& to_tree, const OneWayOptions& options, std::span<const double> allowed);
 
 /// Computes mean and RMS from at most `samples` evenly spread points on each surface, and bounds the
-/// Hausdorff distance by branch and bound with at most 8 `samples` more points a side: to 5 % or to 1e-4 of
-/// the diagonal, where these suffice, and to the distance `allowed` at each triangle of the mesh (none: any).
-/// `most`, over the diagonal: a distance below it is bounded by it, with up to 64 `samples`.
-/// Deterministic at any thread count. Requires: both have triangles.
+/// Hausdorff distance by branch and bound with at most 8 `samples` more points per side: to 5 % or to 1e-4 of
+/// the diagonal, where these suffice. Bounds it also by `allowed`, a length per triangle of the mesh (empty:
+/// none), and by `most`, over the diagonal: a distance below it is bounded only by it, with up to 64
+/// `samples` (infinity: none). The same at any number of threads. Requires: both have triangles.
 Distance distance_between(const Connectivity& reference, const Bvh& reference_tree, const Connectivity& mesh,
                           const Bvh& mesh_tree, int samples, std::span<const double> allowed, double most);
 
-/// Returns the distance of each vertex of these triangles from a surface (0 for others), of which `tree` is.
-/// Neighbors in space should be close together among them, as in Bvh::order.
+/// Returns per vertex of the mesh its distance from a surface, of which `tree` is; 0 for vertices not of
+/// these triangles. Faster if neighbors in space are close in the list, as in Bvh::order.
 std::vector<double> vertex_distances(const Mesh& mesh, std::span<const int> triangles,
                                      const Connectivity& surface, const Bvh& tree);
 
-/// Returns for each triangle of the mesh how far the surfaces are apart there, a length: the largest distance
-/// of its seven sample points (corners, edge midpoints, center) from the reference, and of those of the
-/// reference's triangles to which it is the nearest.
+/// Returns per triangle of the mesh the distance of the surfaces there, a length: the largest one of its
+/// seven sample points (corners, edge midpoints, centroid) from the reference, and of those sample points of
+/// the reference to which it is the nearest triangle.
 std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_tree, const Mesh& mesh,
                                     const Bvh& mesh_tree);
 
-/// Reduces the size per vertex where a triangle's error is above 0.6 `limit`, in proportion to the error and
-/// at most fourfold; elsewhere it stays. (The error of a smooth surface falls with the square of the size,
-/// but on ridges only linearly.)
+/// Returns the sizes per vertex, reduced where a triangle's error is above 0.6 `limit`, in proportion to the
+/// error and at most fourfold, and at the neighbors. (The error of a smooth surface falls with the square of
+/// the size, but on ridges only linearly.)
 std::vector<double> refined_size(const Mesh& mesh, const std::vector<double>& size,
                                  const std::vector<double>& errors, double limit);
 
-/// Appends the half-edges with wanted(h) as degenerate triangles (a, b, b), which a Bvh handles as segments.
+/// Appends the half-edges h with wanted(h) as degenerate triangles (a, b, b), which a Bvh treats as segments.
 template <class Wanted>
 void add_segments(Mesh& segments, const Mesh& mesh, const Wanted& wanted) {
   for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) {

@@ -7,31 +7,31 @@
 
 namespace meshpipe {
 
-/// The triangles between two successive feature edges (borders and model edges) at a vertex; or all of a
-/// vertex without any.
+/// The triangles between successive feature edges (borders, model edges) at a vertex; all if it has none.
 struct Sector {
   int first;      ///< half-edge from the vertex, the first counter-clockwise
   int triangles;  ///< their number
   double angle;   ///< radians over the surface, or between the two edges if that is less
   bool whole;     ///< the vertex has no feature edges
 
-  /// The apex of the isosceles triangle that fills the sector; three of them where it is whole.
+  /// Returns the apex angle of an isosceles triangle that fills the sector; of each of three if it is whole.
   double apex() const { return whole ? angle / 3 : angle; }
 };
 
-/// Finds the sectors in which kappa is 0.1 at best, times `scale` in their angle: those of less than 3
-/// degrees, or 9 where they are whole.
+/// Returns the sectors with an angle below 3 degrees times `scale`, below 9 times `scale` where they are
+/// whole: with 1, those that no triangle with kappa above 0.1 fills.
 std::vector<Sector> needle_sectors(const Connectivity& surface, double scale = 1);
 
-/// Flags the triangles with kappa up to 0.1 that corners of the reference force to be so: in a needle sector
-/// of the vertex that stands for the corner, and with at least half the kappa of the isosceles triangle of
-/// its angle. A strip beyond the corner is not forced: two triangles across it may be as small as it is
-/// narrow.
+/// Flags the triangles (`kappas`: per triangle) with kappa up to 0.1 that a sharp corner of the reference
+/// forces: those in a needle sector of the vertex that stands for the corner, with at least half the kappa of
+/// the isosceles triangle that fills it. A strip beyond the corner is not forced: two triangles across it may
+/// be as small as it is narrow.
 std::vector<char> forced_needles(const Connectivity& result, const std::vector<float>& kappas,
                                  const Connectivity& reference);
 
-/// Returns the smallest kappa of the triangles two rings away from every sharp feature corner (feature edges
-/// meet at less than 40 degrees over the surface); 1 if there are none. `worst` becomes the triangle, or -1.
+/// Returns the smallest kappa of the triangles of which no corner is at, or joined by a triangle to, a sharp
+/// feature corner (feature edges meet at less than 40 degrees over the surface); 1 if there are none. `worst`
+/// becomes the triangle, or -1.
 double kappa_off_corners(const Connectivity& surface, const Quality& quality, int& worst);
 
 }  // namespace meshpipe

@@ -8,15 +8,16 @@
 
 namespace meshpipe {
 
-/// Follows the surface from its triangle `face` to all that are above or below `triangle`: if they have its
-/// orientation and do not end there, they cover it, and none of its points is farther than the highest of
-/// them. Returns that height, or infinity if it is not proved (by at most 48) to be within `enough`.
+/// Bounds the distance of a triangle from a surface: follows the surface from its triangle `face` to all
+/// triangles above or below `triangle`. If they have its orientation and do not end there, they cover it, and
+/// none of its points is farther than the highest of them. Returns that height, or infinity if 48 of them do
+/// not prove it to be within `enough`.
 double sheet_height(const Connectivity& surface, int face, const std::array<Vec3, 3>& triangle,
                     double enough);
 
-/// Projects the part of the surface with the same orientation onto a triangle: if it covers the triangle
-/// once, no point of the triangle is farther than the highest corner of the overlay. Returns that height, or
-/// infinity.
+/// Bounds the distance in the same way by all triangles of the surface with the same orientation in the box
+/// of the triangle, widened by `enough`: if, projected onto the triangle, they cover it once, returns the
+/// height of the highest corner of the overlay; else infinity.
 double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec3, 3>& triangle,
                       double enough);
 

@@ -10,7 +10,7 @@
 
 namespace meshpipe {
 
-/// A patch as its user knows it: all triangles of one name.
+/// All triangles with patches of one name; lengths and areas in the units of the surface.
 struct Patch {
   std::string name;
   double area = 0;
@@ -21,22 +21,22 @@ struct Patch {
 };
 
 /// Measures the patches of a surface, sorted by name; none without face column `patch`. `opposite` may be
-/// empty. `name` gives that of a label.
+/// empty. `name(label)` returns the name of a label.
 std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& opposite,
                               const std::function<std::string(int)>& name);
 
-/// Says which patches of the reference are lost in the result, and which have another extent: a bounding box
-/// off by more than their longest edge, or an area by more than half of it and half that edge along the
-/// border.
+/// Returns a sentence for each patch of the reference that is lost in the result or has another extent: a
+/// bounding box off by more than its longest edge, or an area by more than half of it plus half that edge
+/// along the border.
 std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
                                          const std::vector<Patch>& result);
 
-/// Returns the half-edges, one per edge, between two patches that are not model edges.
+/// Returns the smaller half-edge of each edge between patches (per triangle) that is no model edge.
 std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector<int>& patch);
 
-/// Returns a triangle of each component that is inconsistently oriented with the nearest part of the
-/// reference, by the vote of evenly spread triangles and their areas. `tree`: of the reference; null: one of
-/// what is around these triangles is enough.
+/// Returns the first triangle of each component oriented against the nearest part of the reference: by the
+/// vote of evenly spread triangles, weighted by area. `tree`: of the reference; null: one is made, of what is
+/// near.
 std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree);
 
 }  // namespace meshpipe

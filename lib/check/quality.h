@@ -19,10 +19,10 @@ struct Quality {
   std::vector<float> kappas;         ///< of every triangle
 };
 
-/// Measures any mesh; `size` per vertex, or empty.
+/// Measures the shapes of triangles and lengths of edges. `size`: per vertex, or empty.
 Quality quality_of(const Connectivity& surface, const std::vector<double>& size);
 
-/// Counts the values in each of n equal intervals of [low, high]; others are left out.
+/// Counts the values in each of n equal intervals of [low, high]; values outside are left out.
 std::vector<int> bins(std::span<const float> values, double low, double high, int n);
 
 }  // namespace meshpipe

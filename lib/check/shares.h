@@ -31,14 +31,15 @@ struct ShareFindings {
   std::vector<int> folds;                          ///< half-edges
 };
 
-/// Takes a share, its number, and that of all.
+/// Receives a share, its number, and the number of all shares.
 using TakeShare = std::function<void(CheckShare, int, int)>;
 /// Cuts the check of a result into shares of at most `triangles` of each surface on average, and calls `take`
-/// for each. `reference`: as examine compares with. `allowed` and `samples`: as for distance_between; `most`:
-/// a length, or 0.
+/// for each. `reference`: as examine compares with. `allowed` (per triangle of the result) and `samples`: as
+/// for distance_between; `most`: a length, or 0.
 void cut_check(const Mesh& result, const Mesh& reference, const std::vector<double>& allowed, int triangles,
                int samples, double most, const TakeShare& take);
 
+/// Measures the distances, intersections and folds of a share.
 ShareFindings measure(const CheckShare& share);
 
 /// Joins what was measured by all shares. Distances over the diagonal of the reference.
@@ -48,6 +49,7 @@ struct Measured {
   std::vector<std::pair<int, int>> intersections;
   std::vector<int> folds;
 };
+/// Joins what was measured in all shares. `diagonal`: of the reference; `allowed`: as for cut_check.
 Measured join_findings(const std::vector<ShareFindings>& shares, const Mesh& result, double diagonal,
                        std::vector<double> allowed);
 

@@ -30,9 +30,10 @@ struct SheetFindings {
   std::vector<int> unmatched;
 };
 
-/// Compares where sheets meet (by patch, or by their number if patches are not `named` alike) and, if
-/// `solid`, what they enclose; where sheets intersect that is not known. Both surfaces have sheets apart,
-/// with the same coordinates where they meet.
+/// Compares the lines where sheets meet (by their patches, or by the number of sheets if patches are not
+/// `named` alike) and, if `solid`, the regions that they enclose, which are unknown where sheets intersect.
+/// In both surfaces sheets are apart, with the same coordinates where they meet. `sheets`: the regions on
+/// both sides of each patch of the result.
 SheetFindings compare_sheets(const Surface& reference, const Surface& result,
                              const std::vector<SheetPatch>& sheets, bool named, bool solid);
 

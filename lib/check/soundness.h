@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// One triangle for each fault, in an order that depends on the mesh only; and what a sound mesh is made of.
+/// Faults of a mesh, one triangle for each, in an order that depends on the mesh only; and its counts.
 struct Soundness {
   int vertices = 0, edges = 0, faces = 0;  ///< vertices that are used
   std::vector<int> degenerate;             ///< triangles with a repeated vertex
@@ -24,7 +24,7 @@ struct Soundness {
   int small_component = -1;  ///< a triangle of the smallest component
 };
 
-/// Examines any triangles; never throws.
+/// Examines any triangles; never throws. Requires: corners are rows of `points`.
 Soundness soundness_of(const Mesh& mesh);
 
 }  // namespace meshpipe

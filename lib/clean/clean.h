@@ -91,28 +91,29 @@ struct CleanReport {
 
 /// Repairs a surface in this order: welds vertices; drops degenerate and duplicate triangles; orients each
 /// component, or cuts it open where that is impossible; splits non-manifold edges and vertices; removes
-/// triangles of zero area; drops small components; fills holes. With `resolve`, self-intersections come next
-/// (`outer` tries them first, after welding), then the repair again. A sound surface stays bit for bit the
-/// same; a repaired one loses face column `model`; kept sheets share vertices, with a patch each. Throws:
-/// NotAdmissible, with the surface unchanged, if its coordinates are too large or small, if no triangle is
-/// left (the report has the offending faces), or as resolve does.
+/// triangles of zero area; drops small components; fills holes. With `resolve`, resolves self-intersections
+/// after that (`outer`: first tried right after welding), then repairs again. A sound surface stays bit for
+/// bit the same; a repaired one loses face column `model`; kept sheets share vertices, with a patch each.
+/// Throws: NotAdmissible, with the surface unchanged, if its coordinates are too large or small, if no
+/// triangle is left (the report has the offending faces), or as resolve does.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
 
-/// Moves each vertex whose neighbors are all farther from it than `extents` times the diagonal of their box
-/// among them. Returns the number; equal vertices are one.
+/// Moves each vertex whose neighbors are all farther away than `extents` times the diagonal of the neighbors'
+/// bounding box to the mean of its neighbors. Equal vertices count as one. Returns the number moved.
 int flatten_spikes(Surface& surface, double extents);
 
 struct Spikes {
   int count = 0;
   Vec3 longest{};  ///< where the longest ends
-  /// What a remark in the stream says, "spikes COUNT"; 0 of other texts.
+  /// Returns the count of a remark of the stream, "spikes COUNT"; 0 for other texts.
   static int parse(const std::string& remark);
 };
-/// Finds vertices of a welded surface that stick out by 5 of those extents; none if they are many.
+/// Finds the vertices of a welded surface whose neighbors are all farther away than 5 diagonals of the
+/// neighbors' bounding box; none if they are more than 0.1 % of the vertices.
 Spikes find_spikes(const Surface& surface);
 
-/// Makes copies of vertices that keep sheets and fans apart: an oriented manifold of the same triangles.
+/// Copies vertices so that sheets and fans no longer share them: an oriented manifold of the same triangles.
 /// Throws: NotAdmissible if the surface needs any other repair.
 void split_sheets(Surface& surface);
 
@@ -126,10 +127,10 @@ struct RegionReport {
   Vec3 free_at{};                         ///< middle of the first
 };
 
-/// Takes kept sheets apart: copies of vertices, bit by bit at the same place, make them a manifold with
-/// borders where they meet; edges on which one would close again are divided. Patches have one region on
-/// either side, and sheets next to the outside are oriented towards it; there are none if sheets only flip.
-/// `given`: labels as in labels_of; empty: 1, 2 ... Throws: as labels_of, with edges divided; split_sheets.
+/// Takes kept sheets apart: copies of vertices, with the same coordinates, make them a manifold with borders
+/// where they meet; edges at which a sheet would close again are divided. Gives each patch one region on
+/// either side, and orients sheets next to the outside towards it; there are no regions if sheets only flip.
+/// `given`: labels per triangle as in labels_of; empty: 1, 2 ... Throws: as labels_of and split_sheets.
 RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given = {});
 
 /// A row of the table of repairs: its key in reports, the number of cases, and a phrase.
@@ -138,19 +139,21 @@ struct RepairRow {
   int count;
   std::string what;
 };
+/// Returns the rows of the table of repairs, those with count 0 too.
 std::vector<RepairRow> table_of(const CleanReport& report, const CleanOptions& options);
 
-/// Returns what the topology of the result does not show, for its verification: "clean opened EDGES split
-/// VERTICES dropped TRIANGLES"; empty if all are 0.
+/// Returns the remark for the stream on what the result's topology does not show: "clean opened EDGES split
+/// VERTICES dropped TRIANGLES"; "" if all are 0.
 std::string remark_of(const CleanReport& report);
 /// What a remark says; all 0 of other texts.
 struct Remark {
   int opened = 0, split = 0, dropped = 0;
 };
+/// Returns the counts of such a remark; all 0 for other texts.
 Remark parse_remark(const std::string& text);
 
-/// Returns a triangle for each fault that one has, on the input's points. Face column `patch` is the fault,
-/// counted from 1 as in fault_names; `origin` is the triangle's number in the input.
+/// Returns a triangle of the input for each fault (report.offending), some several times. Face column `patch`
+/// is the fault, counted from 1 as in fault_names; `origin` is the triangle's row in the input.
 Surface offending_faces(const CleanReport& report, const Mesh& input);
 
 }  // namespace meshpipe

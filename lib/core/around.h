@@ -9,16 +9,16 @@
 
 namespace meshpipe {
 
-/// Sorts the half-edges of an edge counterclockwise around it, seen against the direction from its smaller to
-/// its larger vertex. `above(t, v)` is the side of triangle t on which vertex v lies: +1 where its normal
-/// points to, -1 the other, 0 in its plane. Sides are numbered: 2 t is the one in front of t, 2 t + 1 the
-/// other.
+/// Sorts the half-edges of one edge around it: counterclockwise, seen against the direction from the edge's
+/// smaller to its larger vertex, from the first one on. `above(t, v)` returns the side of triangle t on which
+/// vertex v lies: +1 where the normal points to, -1 the other, 0 in its plane. The sides of triangle t have
+/// numbers: 2 t is the one in front, 2 t + 1 the one behind.
 template <class Above>
 class Around {
  public:
   Around(const std::vector<Tri>& tris, Above above) : tris_(tris), above_(std::move(above)) {}
   bool forward(int h) const { return origin(tris_, h) < target(tris_, h); }
-  /// The side of triangle h / 3 that is seen from further on, or with `back` from before.
+  /// Returns the side of triangle h / 3 towards the triangles after it in that order, with `back` before it.
   int side(int h, bool back = false) const { return 2 * (h / 3) + (forward(h) == back); }
   void sort(std::vector<int>& edge) const {
     const int first = edge[0];
@@ -35,7 +35,7 @@ class Around {
   }
 
  private:
-  /// +1 if g is within half a turn after h, -1 if before.
+  /// Returns +1 if g is within half a turn after h, -1 if before, 0 if in its plane.
   int turn(int h, int g) const {
     const int s = above_(h / 3, origin(tris_, prev(g)));
     return forward(h) ? s : -s;

@@ -9,11 +9,12 @@
 
 namespace meshpipe {
 
-/// Closest point of triangle abc to p, as barycentric coordinates (the regions of Ericson, Real-Time
-/// Collision Detection, 5.1.5). A triangle without area counts as its three edges.
+/// Returns the barycentric coordinates of the point of triangle abc that is closest to p; a triangle without
+/// area counts as its three edges. Source: Ericson, Real-Time Collision Detection, 5.1.5.
 std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
-/// The same for triangle t of a mesh.
+/// Returns the place on triangle t of the mesh that is closest to p.
 Place closest_place(const Mesh& mesh, int t, Vec3 p);
+/// Returns the point of triangle t of the mesh that is closest to p.
 Vec3 closest_point(const Mesh& mesh, int t, Vec3 p);
 
 /// A box with sides along the axes.
@@ -26,9 +27,9 @@ inline Box box_of(const Mesh& mesh, int t) {
              &c = mesh.points[mesh.tris[t][2]];
   return {lower(lower(a, b), c), upper(upper(a, b), c)};
 }
-/// The box of all triangles. Requires: there is one.
+/// Returns the box of all triangles. Requires: there is one.
 Box box_of(const Mesh& mesh);
-/// Without branches, as they could not be predicted.
+/// Returns whether two boxes have a point in common. Without branches, which could not be predicted.
 inline bool overlap(const Box& a, const Box& b) {
   return (a.lo.x <= b.hi.x) & (a.hi.x >= b.lo.x) & (a.lo.y <= b.hi.y) & (a.hi.y >= b.lo.y) &
          (a.lo.z <= b.hi.z) & (a.hi.z >= b.lo.z);
@@ -47,19 +48,18 @@ class Bvh {
     double distance = 0;
     Place place;
   };
-  /// Nearest point of the mesh, or any that is within `enough`; `bound` is an upper bound on the distance
-  /// that is already known.
+  /// Returns the nearest point of the mesh, or the first found within the distance `enough`. `bound`: an
+  /// upper bound on the distance, if one is known; too small a bound costs time only.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
-  /// The same among the triangles that have no mark in `left_out` (empty: all); face -1 if none is within
-  /// `bound`.
+  /// Returns the same among triangles with left_out[t] == 0 (empty: all); face -1 if none is within `bound`.
   Hit nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const;
   struct RayHit {
     double distance = 0;  ///< in lengths of the direction
     int face = -1;        ///< -1: none
     double b1 = 0, b2 = 0;
   };
-  /// First triangle that the ray from p meets from behind (side 1: along its normal) or from the front (-1).
-  /// Those of the other side do not stop the ray; one through an edge may slip between its triangles.
+  /// Returns the first triangle that the ray from p leaves through (side 1: along its normal) or enters
+  /// through (-1: against it). Others do not stop the ray, which may slip through an edge.
   RayHit first_hit(Vec3 p, Vec3 direction, int side) const;
   /// Calls visit(t) for every triangle whose box overlaps the given one, and for some whose box nearly does.
   template <class Visit>
@@ -69,7 +69,7 @@ class Bvh {
   /// the reach from there on, which may not grow.
   template <class Visit>
   void in_cone(Vec3 p, Vec3 axis, double cosine, double reach, Visit&& visit) const;
-  /// The triangles, neighbors in space close together.
+  /// Returns the triangles in an order in which neighbors in space are close together.
   const std::vector<int>& order() const { return order_; }
 
  private:

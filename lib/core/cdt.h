@@ -10,7 +10,7 @@
 
 namespace meshpipe {
 
-/// A straight edge that must be in the triangulation; `border` segments bound the region.
+/// A straight edge between two points that the triangulation must have; those with `border` bound the region.
 struct FixedEdge {
   int a, b;
   bool border;
@@ -27,56 +27,57 @@ struct Cdt {
   std::vector<int> at;              ///< a triangle of each vertex, -1 for vertices that were collapsed
   std::vector<int> version;         ///< per triangle: counts how often it was replaced
 
-  /// Computes the constrained Delaunay triangulation of the region that the border segments bound (odd parity
-  /// from outside).
-  /// Throws: GoalMissed naming a point where two points coincide, segments cross or touch, or the borders are
-  /// not closed.
+  /// Computes the constrained Delaunay triangulation of the region that the border segments bound: what an
+  /// odd number of them separates from infinity. Vertex i is points[i].
+  /// Throws: GoalMissed naming a point where two points coincide, segments cross or touch, a border is not
+  /// closed, or a point lies outside.
   Cdt(std::vector<Vec2> points, const std::vector<FixedEdge>& segments);
 
   int origin(int h) const { return tris[h / 3][h % 3]; }
   int target(int h) const { return tris[h / 3][(h + 1) % 3]; }
   int apex(int h) const { return tris[h / 3][(h + 2) % 3]; }
 
-  /// Returns the triangle that holds p, walking from t without crossing a fixed edge of kind `barrier` or
-  /// above; -1 if one is in the way.
+  /// Returns the triangle that holds p, walking from triangle t; -1 if p is outside, or if an edge with
+  /// fixed[h] >= `barrier` is in the way.
   int walk(Vec2 p, int t, std::uint8_t barrier = inner_segment) const;
-  /// Returns the half-edge from a to b, or -1.
+  /// Returns the half-edge from vertex a to b, or -1 if there is none.
   int half_edge(int a, int b) const;
 
-  /// Is the quadrilateral around h strictly convex and the edge free?
+  /// Returns whether the edge of h is free and its two triangles form a strictly convex quadrilateral.
   bool can_flip(int h) const;
-  /// Turns the diagonal; the new one runs between the former apexes and is half-edge 3 * (h / 3).
+  /// Replaces the edge of h by the other diagonal of its two triangles, which becomes half-edge 3 * (h / 3).
+  /// Requires: can_flip(h).
   void flip(int h);
-  /// Does the origin of h lie inside, on no fixed edge, and do its triangles stay positive when it moves to
-  /// the target of h?
+  /// Returns whether the origin of h lies inside and on no fixed edge, and its triangles stay positive when
+  /// it moves to the target of h.
   bool can_collapse(int h) const;
-  /// Moves the origin of h onto its target and removes the two triangles of the edge; the last triangles take
-  /// their numbers. Requires: can_collapse(h).
+  /// Moves the origin of h onto its target and removes the two triangles of the edge; the last triangles of
+  /// the list take their numbers. Requires: can_collapse(h).
   void collapse(int h);
-  /// Calls visit(h) for the half-edges that start at v, all around (or from border to border).
+  /// Calls visit(h) for every half-edge that starts at v.
   template <class Visit>
   void around(int v, Visit visit) const;
 
-  /// Sets the corners of triangle t, with its version and the triangle of each corner.
+  /// Sets the corners of triangle t, counts its version up, and makes it the triangle `at` each corner.
   void set(int t, Tri corners);
-  /// Puts `outer` across h, or the border if it is -1.
+  /// Makes h and `outer` opposite half-edges (-1: h is on the border), and sets fixed[h].
   void link(int h, int outer, std::uint8_t kind);
-  /// Removes a triangle that nothing links to; the last one takes its number.
+  /// Removes a triangle to which no half-edge is linked; the last triangle of the list takes its number.
   void erase(int t);
 };
 
 /// The triangles that a new point replaces, and the fan that replaces them. Keeps its memory between points.
 class Cavity {
  public:
-  /// Collects the triangles around p (which lies in t) for which conflict(triangle) holds, as far as p sees
-  /// them without crossing fixed edges. False if p lies on a vertex or on a fixed edge.
+  /// Collects triangles from t, which holds p, over their free edges: those for which conflict(triangle)
+  /// holds and whose union with the others p sees completely. False if p lies on a vertex or fixed edge.
   template <class Conflict>
   bool grow(const Cdt& cdt, Vec2 p, int t, Conflict conflict);
-  /// Half-edges of its border, each in a triangle inside.
+  /// Returns the half-edges of the cavity's border, each in a triangle inside.
   const std::vector<int>& rim() const { return rim_; }
-  /// Replaces the triangles by the fan of a new vertex at p, which it returns.
+  /// Replaces the collected triangles by the fan of a new vertex at p, the last vertex, which it returns.
   int fill(Cdt& cdt, Vec2 p);
-  /// The triangles of the new vertex, which is their third corner.
+  /// Returns the triangles of the new vertex, which is their third corner.
   const std::vector<int>& fan() const { return fan_; }
 
  private:

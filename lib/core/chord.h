@@ -7,17 +7,17 @@
 
 namespace meshpipe {
 
-/// Does the segment from p to q leave p along the triangle p, y, z: between its sides, at an angle to its
-/// plane of no more than this sine?
+/// Returns whether the segment from p to q leaves p along triangle p, y, z: between the sides py and pz, at
+/// an angle to the triangle's plane whose sine is at most `sine`.
 inline bool leaves_along(Vec3 p, Vec3 q, Vec3 y, Vec3 z, double sine) {
   const Vec3 e = q - p, n = cross(y - p, z - p);
   return std::abs(dot(e, n)) <= sine * norm(e) * norm(n) && dot(cross(y - p, e), n) >= 0 &&
          dot(cross(e, z - p), n) >= 0 && dot(n, n) > 0;
 }
 
-/// Returns a triangle around the origin p of half-edge `spoke` along which the segment from p to q leaves, of
-/// those that hard edges separate from the spoke's triangle; -1 if there is none.
-/// `opposite(h)`: -1 at borders; `hard(h)`: is the edge of h a model edge or a border?
+/// Returns a triangle along which the segment from p, the origin of half-edge `spoke`, to q leaves
+/// (leaves_along), of those at p that a hard edge separates from the spoke's triangle; -1 if there is none.
+/// `opposite(h)`: the opposite half-edge, -1 at borders; `hard(h)`: whether h is on a model edge or border.
 template <class Opposite, class Hard>
 int triangle_along(const std::vector<Tri>& tris, const std::vector<Vec3>& points, Opposite opposite,
                    Hard hard, int spoke, Vec3 q, double sine) {

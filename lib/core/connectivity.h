@@ -6,23 +6,23 @@
 
 namespace meshpipe {
 
-/// Length of half-edge h.
+/// Returns the length of half-edge h.
 inline double edge_length(const Mesh& mesh, int h) {
   return norm(mesh.points[target(mesh.tris, h)] - mesh.points[origin(mesh.tris, h)]);
 }
-/// Twice the area of triangle t, along its normal.
+/// Returns the normal of triangle t with twice its area as length.
 inline Vec3 area_vector(const Mesh& mesh, int t) {
   const Tri& v = mesh.tris[t];
   return area_vector(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
 }
 inline double triangle_area(const Mesh& mesh, int t) { return 0.5 * norm(area_vector(mesh, t)); }
-/// Mean of the corners of triangle t.
+/// Returns the mean of the corners of triangle t.
 inline Vec3 centroid(const Mesh& mesh, int t) {
   const Tri& v = mesh.tris[t];
   return (1.0 / 3) * (mesh.points[v[0]] + mesh.points[v[1]] + mesh.points[v[2]]);
 }
 
-/// Returns six times the volume between triangle t and a point, positive behind the triangle.
+/// Returns six times the volume of the tetrahedron of triangle t and p, positive if p is behind t.
 inline double volume6(const Mesh& mesh, int t, Vec3 p) {
   const Tri& v = mesh.tris[t];
   return dot(mesh.points[v[0]] - p, cross(mesh.points[v[1]] - p, mesh.points[v[2]] - p));
@@ -47,20 +47,20 @@ struct Connectivity {
   Vec3 point(int v) const { return mesh.points[v]; }
 
   bool is_border(int h) const { return opposite[h] < 0; }
-  /// Is h marked as a model edge in its own triangle?
+  /// Returns whether h is marked as a model edge in its own triangle.
   bool is_model(int h) const { return !model.empty() && (model[h / 3] >> (h % 3) & 1); }
   double length(int h) const { return edge_length(mesh, h); }
-  /// Twice the area of triangle t, along its normal.
+  /// Returns the normal of triangle t with twice its area as length.
   Vec3 area_vector(int t) const { return meshpipe::area_vector(mesh, t); }
 
-  /// As for_each_spoke in lib/core/fan.h.
+  /// Calls visit(g) for the half-edges around the origin of h, as for_each_spoke in lib/core/fan.h.
   template <class Visit>
   bool for_each_spoke(int h, Visit visit) const {
     return meshpipe::for_each_spoke(opposite, h, visit);
   }
 };
 
-/// The face column `model` of a surface; empty if it has none.
+/// Returns the face column `model` of a surface; an empty column if it has none.
 const std::vector<std::uint8_t>& model_of(const Surface& surface);
 
 /// A surface that is cut, and its opposite half-edges, which follow; owns neither.
@@ -77,7 +77,7 @@ struct ConnectedPart : SubMesh {
   Connectivity connectivity() const { return {*this, opposite, model}; }
 };
 
-/// Copies the triangles with label `l` (per triangle) into a part; edges to others become border.
+/// Copies the triangles with label `l` (`label`: per triangle) to a part; edges to others become border.
 ConnectedPart select_part(const Connectivity& whole, std::vector<int> label, int l);
 
 }  // namespace meshpipe

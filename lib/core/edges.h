@@ -14,9 +14,9 @@ namespace meshpipe {
 using EdgeUse = std::uint64_t;
 inline int half_edge(EdgeUse e) { return (int)(std::uint32_t)e; }
 
-/// Calls visit(std::span<const EdgeUse>) once for every edge, with its half-edges of either direction in
-/// ascending order; edges come by smaller, then by larger vertex. Only those whose smaller vertex is at least
-/// `first` and below `last`. Linear: half-edges go into the bucket of their smaller vertex, of about three.
+/// Calls visit(std::span<const EdgeUse>) once for every edge whose smaller vertex is at least `first` and
+/// below `last`, with its half-edges of either direction, ascending. Edges come by their smaller, then their
+/// larger vertex. Linear: half-edges go into the bucket of their smaller vertex, of about three.
 template <class Visit>
 void for_each_edge(const std::vector<Tri>& tris, int first, int last, Visit visit) {
   const int n = (int)tris.size(), n_vertices = last - first;
@@ -58,7 +58,7 @@ void for_each_edge(const std::vector<Tri>& tris, int first, int last, Visit visi
     }
   }
 }
-/// The same for all edges.
+/// Calls visit for all edges in this way.
 template <class Visit>
 void for_each_edge(const std::vector<Tri>& tris, int n_vertices, Visit visit) {
   for_each_edge(tris, 0, n_vertices, visit);

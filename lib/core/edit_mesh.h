@@ -7,8 +7,8 @@
 
 namespace meshpipe {
 
-/// An oriented manifold with borders. Triangles and vertices removed stay as gaps (tris[t][0] < 0, out[v] <
-/// 0). Operations keep every invariant; their preconditions are the caller's to check.
+/// An oriented manifold with borders. Triangles and vertices that are removed stay as gaps (tris[t][0] < 0,
+/// out[v] < 0). Operations keep every invariant if their preconditions, which the caller checks, hold.
 struct EditMesh {
   std::vector<Tri> tris;
   std::vector<int> opp;  ///< opposite half-edge, -1 on the border
@@ -18,9 +18,9 @@ struct EditMesh {
   std::vector<int> degree;  ///< number of edges at each vertex
   int live = 0;             ///< triangles that are not gaps
 
-  /// Throws like opposite_halfedges.
+  /// Takes triangles and the bits of their model edges (empty: none). Throws: as opposite_halfedges.
   EditMesh(std::vector<Tri> triangles, int n_vertices, const std::vector<std::uint8_t>& model);
-  /// The same where the neighbors are known.
+  /// Copies a mesh whose opposite half-edges are known.
   explicit EditMesh(const Connectivity& c);
 
   int from(int h) const { return tris[h / 3][h % 3]; }
@@ -29,7 +29,7 @@ struct EditMesh {
   bool dead(int t) const { return tris[t][0] < 0; }
   bool on_border(int v) const { return opp[out[v]] < 0; }
 
-  /// Calls f(h) for every half-edge leaving v within a triangle, counterclockwise.
+  /// Calls f(h) for every half-edge that leaves v, counterclockwise.
   template <class F>
   void star(int v, F&& f) const {
     int h = out[v], first = h;
@@ -38,30 +38,30 @@ struct EditMesh {
       h = opp[prev(h)];
     } while (h >= 0 && h != first);
   }
-  /// Calls f(w) for every vertex joined to v, counterclockwise.
+  /// Calls f(w) for every vertex joined to v by an edge, counterclockwise.
   template <class F>
   void neighbors(int v, F&& f) const {
     int last = 0;
     star(v, [&](int h) { f(to(h)), last = h; });
     if (opp[prev(last)] < 0) f(apex(last));
   }
-  /// Number of edges at v.
+  /// Returns the number of edges at v.
   int valence(int v) const { return degree[v]; }
-  /// Is there an edge between a and b?
+  /// Returns whether an edge joins a and b.
   bool joined(int a, int b) const;
 
-  /// Turns the edge of h within its two triangles: from a-b to c-d. Requires: not hard, c and d not joined.
+  /// Replaces the edge of h by the other diagonal of its two triangles. Requires: the edge is not hard, and
+  /// no edge joins the new ends.
   void flip(int h);
-  /// Puts a new vertex (the next number) on the edge of h, splitting its one or two triangles; the halves of
-  /// a hard edge are hard. Triangle n, the next number, is split off triangle h/3, n+1 off triangle opp[h]/3.
-  /// Returns the vertex.
+  /// Puts a new vertex on the edge of h and splits its one or two triangles; the halves of a hard edge are
+  /// hard. Triangle n, the next number, is split off h/3, and n+1 off opp[h]/3. Returns the vertex, the last.
   int split(int h);
-  /// Contracts the edge of h: one of its vertices (`gone`) becomes the other, and the edge's one or two
-  /// triangles go. Requires: can_collapse(h, gone).
+  /// Contracts the edge of h: its vertex `gone` becomes the other one, and the edge's one or two triangles
+  /// go. Requires: can_collapse(h, gone).
   void collapse(int h, int gone);
-  /// `gone` has no hard edge, or two of which h is one (it is taken out of its line), and the result is a
-  /// manifold of the same topology (link condition). With `merge`, any number of hard edges may meet in
-  /// `gone`.
+  /// Returns whether `gone` may be merged into the other vertex of h: it has no hard edge, or two and h is
+  /// one of them (with `merge`, any number); if on the border, h is, too; it has 3 to 64 edges; and the
+  /// result is a manifold of the same topology (link condition).
   bool can_collapse(int h, int gone, bool merge = false) const;
 
  private:

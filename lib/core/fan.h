@@ -7,10 +7,10 @@
 
 namespace meshpipe {
 
-/// Calls visit(g) for every half-edge g that leaves the origin of h in its fan, h first and counterclockwise;
-/// where a border ends this, clockwise from h to the fan's other end. If `visit` returns bool, false stops
-/// the walk. `beyond` holds the opposite of each half-edge: -1 at what bounds fans.
-/// Returns: whether all of a closed fan was visited.
+/// Calls visit(g) for every half-edge g that leaves the origin of h in its fan: h, then counterclockwise;
+/// where the fan is open, then clockwise from h to the fan's other end. If `visit` returns bool, false stops
+/// the walk. `beyond` holds the opposite of each half-edge, -1 at what bounds fans. Returns whether the fan
+/// is closed and all of it was visited.
 template <class Visit>
 bool for_each_spoke(const std::vector<int>& beyond, int h, Visit visit) {
   auto goes_on = [&](int g) {
@@ -31,7 +31,7 @@ bool for_each_spoke(const std::vector<int>& beyond, int h, Visit visit) {
 }
 
 /// Calls visit(v) for the vertices joined to the origin of h by an edge of its fan, in the order of
-/// for_each_spoke; where the fan is open, the last one counterclockwise comes after its own spoke.
+/// for_each_spoke; where the fan is open, the last one counterclockwise follows the vertex before it.
 template <class Visit>
 void for_each_neighbor(const std::vector<Tri>& tris, const std::vector<int>& beyond, int h, Visit visit) {
   for_each_spoke(beyond, h, [&](int g) {
@@ -40,13 +40,13 @@ void for_each_neighbor(const std::vector<Tri>& tris, const std::vector<int>& bey
   });
 }
 
-/// Names all triangles.
+/// Holds for every triangle.
 struct Everywhere {
   bool operator()(int) const { return true; }
 };
 
-/// Returns the border half-edge that follows border half-edge h, around the vertex between them. `inside(t)`
-/// returns whether triangle t is in the region.
+/// Returns the border half-edge of a region that starts where its border half-edge h ends, around that
+/// vertex. `inside(t)` returns whether triangle t is in the region.
 template <class Inside = Everywhere>
 int next_on_border(const std::vector<int>& opposite, int h, Inside inside = {}) {
   h = next(h);

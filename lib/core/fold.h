@@ -6,11 +6,12 @@
 
 namespace meshpipe {
 
-/// Do triangles with unit normals m and n turn by more than 150 degrees at the edge between them?
+/// Returns whether unit normals m and n of two neighboring triangles differ by more than 150 degrees.
 inline bool turn_back(Vec3 m, Vec3 n) { return dot(m, n) < -0.8660254037844386; }
 
-/// Has the reference within an edge length of the edge a-b only one of the orientations m and n? Triangles
-/// that turn back there are a fold; those of thin plates and sharp ridges are none.
+/// Returns whether the reference, within an edge length of the middle of edge ab, lacks a triangle with
+/// normal about m or one with normal about n (unit vectors). If so, triangles that turn back at the edge are
+/// a fold; those of thin plates and sharp ridges are not.
 bool faces_one_way(Vec3 a, Vec3 b, Vec3 m, Vec3 n, const Mesh& reference, const Bvh& reference_tree);
 
 }  // namespace meshpipe

@@ -9,32 +9,31 @@
 
 namespace meshpipe {
 
-/// Do two triangles of one mesh meet other than in the vertices or the edge that they share? Exact
-/// predicates; sharing an edge they meet only if coplanar and on the same side, sharing a vertex if an
-/// opposite edge meets the other.
+/// Returns whether two triangles of one mesh meet other than in the vertices or the edge that they share, by
+/// exact predicates: with a common edge, whether they are coplanar and on the same side of it; with a common
+/// vertex, whether the edge opposite to it in one of them meets the other.
 bool triangles_intersect(const Mesh& mesh, int s, int t);
 
-/// Has a triangle area, by exact arithmetic?
+/// Returns whether a triangle has area, by exact arithmetic.
 bool has_area(Vec3 a, Vec3 b, Vec3 c);
 bool has_area(const Mesh& mesh, int t);
 
-/// All intersecting pairs (s < t), sorted. Degenerate triangles (zero area) are left out, as they have no
-/// plane.
+/// Returns all pairs s < t of triangles that intersect, sorted. Triangles without area are left out.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
-/// The same with a tree at hand; one of each pair is among the first `own` triangles.
+/// Returns the same with the mesh's tree at hand: pairs with a triangle among the first `own`.
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh,
                                                     int own = std::numeric_limits<int>::max());
 
-/// Where the triangles of each pair meet: segments, as triangles (first, last, last); of triangles in one
-/// plane, the polygon that they share.
+/// Returns where the triangles of each pair meet, as triangles: a segment is (first, last, last); for two
+/// triangles in one plane, the polygon that they share.
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
 
-/// Those of the intersecting pairs that meet farther than two of their edges from `known`, the contacts of
-/// another mesh of the same surface: that one does not intersect there.
+/// Returns those of the intersecting pairs whose contact is, all along, farther than twice their longest edge
+/// from `known`, the contacts of another mesh of the same surface: that mesh does not intersect there.
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
                                                    const std::vector<std::pair<int, int>>& pairs,
                                                    const Mesh& known);
-/// The same with the contacts' tree at hand.
+/// Returns the same with the tree of the contacts at hand.
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
                                                    const std::vector<std::pair<int, int>>& pairs,
                                                    const Bvh& known);

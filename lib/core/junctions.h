@@ -9,21 +9,21 @@
 
 namespace meshpipe {
 
-/// Returns per vertex the first border vertex at its place, or itself where it is not on the border.
+/// Returns for each border vertex the first one with the same coordinates; for others, themselves.
 std::vector<int> first_at_border(const Connectivity& c);
 
-/// Makes one vertex of border vertices at the same place; the others keep their order. Triangles stay, so
-/// that edges may have more than two. Returns per vertex the one that it was.
+/// Merges border vertices with the same coordinates; vertices keep their order, triangles stay, so that edges
+/// may have more than two triangles. Returns for each vertex left its former row.
 std::vector<int> join_borders(Mesh& mesh);
 
-/// Joins vertices at the same place, and returns the pairs of triangles that intersect then
-/// (self_intersections), or have an edge in common that is inside the sheet of one of them: sheets may meet
-/// along their borders, and touch in vertices.
+/// Merges vertices with the same coordinates. Returns the pairs of triangles that then intersect
+/// (self_intersections) or share an edge that is inside the sheet of one of them: sheets may meet along their
+/// borders and touch in vertices. `tree`: of the mesh.
 std::vector<std::pair<int, int>> sheet_intersections(Mesh& mesh, const Bvh& tree);
 
-/// Where border edges between the same two places have been cut differently, splits them until all are cut
-/// at the same points. `chart`: table chart_vertex, which follows, or null. Returns the number of vertices
-/// added.
+/// Splits border edges between the same two places until all are split at the same points: those at which one
+/// of them was cut. `chart`: table chart_vertex, which gets rows for them, or null. Returns the number of
+/// vertices added.
 int match_borders(Surface& surface, Table* chart);
 
 }  // namespace meshpipe

@@ -11,7 +11,7 @@
 namespace meshpipe {
 
 /// Returns the largest of these patch numbers, or 0 if none is positive. Throws: NotAdmissible if fewer than
-/// `more` numbers are left above it.
+/// `more` larger ints exist.
 inline int largest_patch(const std::vector<int>& patch, std::size_t more) {
   const int most = patch.empty() ? 0 : std::max(0, *std::max_element(patch.begin(), patch.end()));
   if (more > (std::size_t)(std::numeric_limits<int>::max() - most))

@@ -7,8 +7,9 @@
 
 namespace meshpipe {
 
-/// Returns the triangulation of a loop of n corners of least area, as places in the loop; cubic in n.
-/// `joined[i * n + j]`: no triangle may have an edge between these corners. Returns none if that forbids all.
+/// Returns the triangles of least total area that fill a loop of n corners, as numbers of corners, oriented
+/// along the loop; in time n^3. Between equal areas, short edges decide. `joined[i * n + j]`, i < j: no
+/// triangle may have an edge between these corners. Returns none if that forbids all.
 /// Source: Barequet and Sharir, Filling gaps in the boundary of a polyhedron, 1995.
 std::vector<Tri> least_area_triangles(const std::vector<Vec3>& corners, const std::vector<char>& joined);
 

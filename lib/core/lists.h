@@ -15,7 +15,7 @@ void sort_unique(std::vector<T>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// Removes the last of a list and returns it.
+/// Removes the last element of a list and returns it.
 template <class T>
 T take_last(std::vector<T>& list) {
   T last = std::move(list.back());
@@ -30,7 +30,7 @@ inline std::vector<int> identity(std::size_t n) {
   return numbers;
 }
 
-/// Rows by key, one list after the other: of key k those from start[k] to start[k + 1].
+/// Lists of rows, one per key, in flat arrays: key k has row[start[k]] to row[start[k + 1] - 1].
 struct Lists {
   std::vector<int> start, row;
   std::span<const int> operator[](int key) const {
@@ -38,8 +38,8 @@ struct Lists {
   }
 };
 
-/// The lists of the pairs (key, row) that `each` calls its argument for, twice the same, in this order.
-/// Linear.
+/// Makes the lists of the pairs (key, row) for which `each` calls its argument, in that order; `each` is
+/// called twice and must do the same. Keys are 0..keys-1. Linear.
 template <class Each>
 Lists lists_of(int keys, Each each) {
   Lists lists{std::vector<int>(keys + 1, 0), {}};
@@ -51,7 +51,7 @@ Lists lists_of(int keys, Each each) {
   return lists;
 }
 
-/// The rows of each of these keys, which are not negative.
+/// Makes the lists of the rows of each key, ascending. `key`: per row, 0..keys-1.
 inline Lists lists_by(int keys, const std::vector<int>& key) {
   return lists_of(keys, [&](auto use) {
     for (int row = 0; row < (int)key.size(); ++row) use(key[row], row);

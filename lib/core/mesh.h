@@ -61,7 +61,7 @@ struct Surface : Mesh {
   Table face{"face", 0, {}};
 };
 
-/// The mesh without columns: its tables have a row for each point and triangle.
+/// Makes a surface without columns of a mesh.
 Surface surface_of(Mesh mesh);
 
 /// One part of a surface on its own numbers; `vertex[i]`, `face[i]` are the numbers in the whole.
@@ -70,24 +70,27 @@ struct SubMesh : Mesh {
   std::vector<int> face;
 };
 
-/// Returns the part of these triangles. `number` is -1 for each point of the mesh, before and after.
+/// Returns the part of a mesh that these triangles are, in their order; vertices are numbered by first use.
+/// `number`: -1 per point of the mesh, before and after the call (so that many calls share it).
 SubMesh sub_mesh(const Mesh& mesh, std::vector<int> faces, std::vector<int>& number);
 
-/// Splits a mesh by a label per triangle (0 <= label < n; other labels are left out) in linear time.
-/// Corners keep their order; vertices are numbered by first use; a vertex on two parts is in both.
+/// Splits a mesh by a label per triangle into n parts, in linear time; triangles with labels outside 0..n-1
+/// are left out. Corners keep their order; vertices, which may be in several parts, are numbered by first
+/// use.
 std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& label, int n);
 
-/// Returns per point whether a triangle uses it.
+/// Returns per point 1 if a triangle uses it, else 0.
 std::vector<char> used_points(const Mesh& mesh);
 
-/// Length of the bounding box's diagonal of the points that are used by a triangle.
+/// Returns the diagonal of the bounding box of the points that triangles use, a length; 0 without any.
 double diagonal(const Mesh& mesh);
-/// Throws NotAdmissible naming the size of a surface whose areas and volumes would overflow or vanish: with a
-/// coordinate beyond 1e50, or smaller than 1e-50 in all directions (but not a point).
+/// Throws NotAdmissible, naming the size, if areas and volumes of the surface would overflow or vanish: if a
+/// coordinate is beyond 1e50, or the surface is smaller than 1e-50 in all directions and not a point.
 void expect_measurable(const Mesh& mesh);
-/// Sum of triangle areas.
+/// Returns the sum of the areas of the triangles.
 double total_area(const Mesh& mesh);
-/// kappa = 4 sin a sin b sin c / (sin a + sin b + sin c), the paper's eq. (6); 1 equilateral, 0 degenerate.
+/// Returns the shape quality kappa = 4 sin a sin b sin c / (sin a + sin b + sin c), eq. (6) of the paper: 1
+/// for the equilateral triangle, 0 for a degenerate one.
 double kappa(Vec3 a, Vec3 b, Vec3 c);
 
 }  // namespace meshpipe

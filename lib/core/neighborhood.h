@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// Triangles of a surface and their vertices, in their order, as a surface of their own with all columns.
+/// Triangles of a surface as a surface of their own, with all columns; vertices keep their order.
 struct SurfacePart {
   Surface surface;
   std::vector<int> face, vertex;  ///< in the whole
@@ -25,14 +25,14 @@ struct Neighborhood : SurfacePart {
   std::vector<Rim> rim{};  ///< sorted
 };
 
-/// Takes the neighborhood of the triangles with this label (per triangle): all with as many corners that
-/// these have. Opposite half-edges may be empty.
+/// Takes the triangles of which at least `corners` corners (1 to 3) belong to triangles with label `part`
+/// (`label`: per triangle). Opposite half-edges of the whole may be empty.
 Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part,
                                int corners = 2);
 
-/// Puts a neighborhood back into the surface that it was taken from, as cuts (lib/core/cut.h) have left it:
-/// what they appended is appended in the same order, and opposite half-edges follow. The result is that of
-/// the same cut of the whole. Requires: columns as in the whole; edges on its rim not cut.
+/// Puts a neighborhood back into the surface that it was taken from, after cuts of it (lib/core/cut.h): the
+/// result is that of the same cuts of the whole. Appended rows stay in order; opposite half-edges follow.
+/// Requires: the whole has not changed and has the same columns; no edge on the rim was cut.
 void put_back(const Neighborhood& part, const CutSurface& whole);
 
 }  // namespace meshpipe

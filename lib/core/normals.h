@@ -8,13 +8,13 @@ namespace meshpipe {
 /// Returns the unit normal of each triangle; zero where a triangle has no area.
 std::vector<Vec3> face_normals(const Mesh& mesh);
 
-/// Returns, per vertex, the sum of its triangles' area vectors: the normal weighted by area, not of length 1.
+/// Returns per vertex the sum of area_vector of its triangles: a normal, not of unit length.
 std::vector<Vec3> vertex_area_vectors(const Mesh& mesh);
 
-/// Returns the unit normals of the vertices, weighted by area; zero where the weighted sum vanishes.
+/// Returns the unit normal of each vertex, its triangles weighted by area; zero where the sum vanishes.
 std::vector<Vec3> vertex_normals(const Mesh& mesh);
 
-/// Returns a third of the area of each vertex's triangles.
+/// Returns for each vertex a third of the area of its triangles.
 std::vector<double> vertex_areas(const Mesh& mesh);
 
 }  // namespace meshpipe

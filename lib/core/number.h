@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// Six digits, without zeros that say nothing: "0.25", "2e-08"; lengths have any unit.
+/// Returns a number with at most six digits: "0.25", "2e-08".
 inline std::string shown(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", x);
@@ -15,10 +15,10 @@ inline std::string shown(double x) {
 }
 
 struct Vec3;
-/// The coordinates: "0.25 0 -1".
+/// Returns the coordinates as text: "0.25 0 -1".
 std::string shown(const Vec3& place);
 
-/// As std::from_chars, also for doubles where the library reads integers only (libc++ before 20).
+/// Parses a number as std::from_chars, also doubles where the library (libc++ before 20) has integers only.
 template <class T>
 std::from_chars_result from_chars(const char* first, const char* last, T& value) {
   return std::from_chars(first, last, value);

@@ -7,10 +7,9 @@
 
 namespace meshpipe {
 
-/// Recovers the original triangles of a cut mesh: pieces of equal `origin` that tile one triangle become that
-/// triangle; others stay, as those of negative `origin`. Points stay, some unused. Linear time.
-/// Requires: origin.size() == mesh.tris.size().
-/// `whole_of`, if not null, receives for each triangle of `mesh` the triangle of the result that contains it.
+/// Recovers the original triangles of a cut mesh: triangles of equal `origin` (one per triangle, >= 0) that
+/// tile one triangle become that triangle; others stay. Points stay, some unused; triangles come by their
+/// origin. Linear. `whole_of`, if not null, receives per triangle of `mesh` that of the result around it.
 Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin,
                        std::vector<int>* whole_of = nullptr);
 

@@ -6,8 +6,8 @@
 
 namespace meshpipe {
 
-/// Calls f(i) for 0 <= i < n in any order, on all threads, or on one if it is not `worth` them.
-/// Throws what the smallest i threw, after all calls, so that failures do not depend on the threads.
+/// Calls f(i) for 0 <= i < n in any order, on all threads, or on one if it is not `worth` them. If calls
+/// throw, rethrows after all of them what the smallest i threw: the same at any number of threads.
 template <class F>
 void parallel_for(int n, F f, bool worth = true) {
   std::vector<std::exception_ptr> failed(n);

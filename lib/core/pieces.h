@@ -7,9 +7,10 @@
 
 namespace meshpipe {
 
-/// Numbers the sets of triangles that are connected by edges whose triangles belong together, by their first
-/// triangles: joins(t, u) for neighbors t > u. Returns the number of sets. Disjoint sets in the order of the
-/// triangles, which is kinder to caches than a search; in parallel.
+/// Numbers the sets of triangles that are connected by edges for which joins(t, u) holds (t > u: the
+/// triangles of the edge), in the order of their first triangles. Sets piece[t], and returns the number of
+/// sets. Uses disjoint sets in the order of the triangles, which is kinder to caches than a search; in
+/// parallel.
 template <class Joins>
 int number_pieces(const std::vector<int>& opposite, std::vector<int>& piece, const Joins& joins) {
   constexpr int chunk = 1 << 17;  // triangles

@@ -6,11 +6,12 @@
 
 namespace meshpipe {
 
-/// +1 if a, b, c turn left, -1 right, 0 collinear.
+/// Returns +1 if a, b, c turn left, -1 if they turn right, 0 if they are collinear.
 int orient2d(Vec2 a, Vec2 b, Vec2 c);
-/// +1 if d lies inside the circle through a, b, c (which turn left), -1 outside, 0 on it.
+/// Returns +1 if d lies inside the circle through a, b, c, which turn left, -1 if outside, 0 if on it.
 int incircle(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
-/// +1 if d lies below the plane of a, b, c (seen from above a, b, c turn left), -1 above, 0 coplanar.
+/// Returns +1 if d lies below the plane of a, b, c (above is where a, b, c are seen to turn left), -1 if
+/// above, 0 if in it.
 int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 
 }  // namespace meshpipe

@@ -5,7 +5,8 @@
 
 namespace meshpipe {
 
-/// Share of the work that is done, from 0 to 1: long loops raise it, from any thread; nothing depends on it.
+/// The share of the work that is done, from 0 to 1, for whoever shows it. Long loops raise it, from any
+/// thread; no result depends on it.
 inline std::atomic<double> work_done{0};
 inline void add_progress(double share) {
   double before = work_done.load(std::memory_order_relaxed);  // libc++ 14 adds integers only

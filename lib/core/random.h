@@ -17,11 +17,11 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
     return z ^ (z >> 31);
   }
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double uniform() { return (double)(bits() >> 11) * 0x1p-53; }
-  /// In 0..n-1.
+  /// Returns an integer in 0..n-1.
   int below(int n) { return (int)(uniform() * n); }
-  /// Uniform in the unit ball.
+  /// Returns a point in the unit ball, uniformly distributed.
   Vec3 in_ball() {
     for (;;) {
       const Vec3 p{2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1};

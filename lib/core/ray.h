@@ -7,8 +7,8 @@
 
 namespace meshpipe {
 
-/// Does the line from p along x, both ways, pass through the triangle? Symbolic perturbation (p moves a
-/// little in z, less in y) makes counts right where triangles share an edge or a vertex.
+/// Returns whether the line through p along x, both ways, passes through triangle abc. Symbolic perturbation
+/// (p moves a little in z, less in y) counts once where triangles share an edge or a vertex.
 inline bool line_passes(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3* corner[] = {&a, &b, &c};
   bool inside = false;
@@ -21,8 +21,8 @@ inline bool line_passes(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return inside;
 }
 
-/// Returns how the ray from p in direction x crosses the triangle: +1 if it leaves through it, -1 if it
-/// enters, 0 if not, or where p lies on it.
+/// Returns how the ray from p in direction +x crosses triangle abc: +1 if along its normal (it leaves), -1 if
+/// against it (it enters), 0 if not, or if p lies on the triangle.
 inline int ray_crossing(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   if (!line_passes(p, a, b, c)) return 0;
   const int below = orient3d(a, b, c, p), turn = orient2d({a.y, a.z}, {b.y, b.z}, {c.y, c.z});

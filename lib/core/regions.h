@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// What the topology of an edge-connected region follows from, and adds up when regions are joined.
+/// Counts of an edge-connected region, of which its topology follows and which add up in unions.
 struct Region {
   int faces = 0;
   int border = 0;        ///< half-edges whose other side is another region, or nothing
@@ -16,10 +16,11 @@ struct Region {
   bool pinched = false;  ///< a vertex that lies on the border more than once
   double area = 0;
   double longest_loop = 0;
-  /// Eq. (2), the border's vertices counted once for each fan: V = inside + border, E = (3 F + border) / 2.
+  /// Returns the genus by eq. (2) of the paper. The border's vertices count once for each fan: V = inside +
+  /// border, E = (3 F + border) / 2.
   int genus() const { return (2 - inside - (border - faces) / 2 - loops) / 2; }
   bool maps_to_the_plane() const { return !pinched && loops > 0 && genus() == 0; }
-  /// The paper's estimate of the aspect ratio, eta = pi A / L^2.
+  /// Returns the paper's estimate of the aspect ratio, eta = pi A / L^2; 0 without a border.
   double aspect() const {
     return longest_loop > 0 ? 3.14159265358979323846 * area / (longest_loop * longest_loop) : 0;
   }
@@ -31,29 +32,32 @@ struct Regions {
   std::vector<std::vector<int>> border;  ///< border half-edges
 };
 
-/// Regions of the labels 0..n-1 of an oriented manifold without pinched vertices; linear.
+/// Measures the regions of the labels 0..n-1 (`label`: per triangle; negative: none) of an oriented manifold
+/// without pinched vertices. Linear.
 Regions find_regions(const Connectivity& c, const std::vector<int>& label, int n);
 
-/// Gives the edge-connected pieces of the labels the numbers 0..n-1, by their first triangles; returns n.
+/// Replaces the labels (per triangle) by numbers 0..n-1 of their edge-connected pieces, in the order of their
+/// first triangles; returns n.
 int separate_pieces(const Connectivity& c, std::vector<int>& label);
 
-/// The triangles around the origin of a border half-edge of a region.
+/// A fan of `size` triangles around a vertex of a region; the border half-edge that leaves the vertex.
 struct Fan {
   int vertex, size, half_edge;
 };
-/// Returns the fans of label `l` at vertices where its region touches itself, without the largest at each, by
-/// vertex and size. `border`: half-edges of the region's border.
+/// Returns the fans with label `l` at vertices where the region of that label touches itself, all but the
+/// largest at each vertex, sorted by vertex and size. `border`: half-edges of the region's border; those that
+/// are no longer on it are skipped.
 std::vector<Fan> pinched_fans(const Connectivity& c, const std::vector<int>& label, int l,
                               const std::vector<int>& border);
 
 /// Joins regions one pair after another; looks only at their borders.
 class Joiner {
  public:
-  /// Keeps references to all except the regions.
+  /// Takes the regions of `label` (find_regions); keeps references to all else.
   Joiner(const Connectivity& c, std::vector<int>& label, Regions regions);
-  /// What the union of two neighboring regions would be.
+  /// Returns the region that the union of neighboring regions a and b would be.
   Region joined(int a, int b);
-  /// Makes b part of a; b is left empty.
+  /// Makes region b part of a, in the labels too; b is left empty.
   void join(int a, int b);
   const Regions& regions() const { return regions_; }
 

@@ -8,24 +8,23 @@
 
 namespace meshpipe {
 
-/// From p to q; ends with the same key are the same point.
+/// A segment from p to q. Ends with the same key (`from` of p, `to` of q) are the same point.
 struct Segment {
   Vec2 p, q;
   int from, to;
 };
 
-/// Bounding-volume tree over consecutive segments. Efficient where neighbors in the list are near in the
-/// plane, at any scale, which varies by orders of magnitude within a chart. Keeps a reference to the
-/// segments.
+/// A bounding-volume tree over consecutive segments. Efficient where neighbors in the list are near in the
+/// plane. Keeps a reference to the segments.
 class SegmentTree {
  public:
   explicit SegmentTree(const std::vector<Segment>& segments);
 
-  /// Pairs i < j, in order, of segments that cross, touch or overlap elsewhere than at one common end.
+  /// Returns the pairs i < j of segments that meet elsewhere than at one common end, sorted.
   std::vector<std::array<int, 2>> crossings() const;
 
-  /// Turns around p of the segments i with weight[i] != 0, each counted weight[i] times: the winding number
-  /// where they form loops. p is on none of them.
+  /// Returns the winding number around p of the segments, each counted weight[i] times (0: not at all); they
+  /// form loops. Requires: p lies on none of those with a weight.
   int winding(Vec2 p, const std::vector<int>& weight) const;
 
  private:
@@ -39,16 +38,17 @@ class SegmentTree {
   std::vector<Box> box_;  ///< node k has children 2 k and 2 k + 1; leaves are nodes n .. 2 n - 1
 };
 
-/// Turns of one segment as seen from p: the crossings of the ray from p along +x, counted upwards.
+/// Returns how the segment crosses the ray from p along +x: +1 upwards, -1 downwards, 0 if it does not. The
+/// sum over a loop is its winding number around p.
 int ray_crossing(Vec2 p, Vec2 from, Vec2 to);
 
-/// Distance of p from the segment from a to b, in the plane or in space.
+/// Returns the distance of p from the segment from a to b, in the plane or in space.
 template <class Point>
 double distance_to_segment(Point p, Point a, Point b) {
   return norm(a + nearest_fraction(p, a, b) * (b - a) - p);
 }
 
-/// True if two segments meet elsewhere than at one common end.
+/// Returns whether two segments meet elsewhere than at one common end: they cross, touch or overlap.
 bool meet(const Segment& s, const Segment& t);
 
 }  // namespace meshpipe

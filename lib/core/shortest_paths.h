@@ -8,11 +8,11 @@
 
 namespace meshpipe {
 
-/// Computes the distances of nodes from the sources, in the order of distance, ties by number.
-/// `distance`: in, 0 (or an offset) for the sources and an upper bound for all others, infinite as a rule.
-/// visit(v, reach) is called once for each node v, with its final distance; it calls reach(w, d) for each
-/// neighbor w, at distance d by way of v, which lowers distance[w] to d and returns true if that is less.
-/// If `visit` returns bool, false ends the search.
+/// Computes the distances of nodes from the sources by Dijkstra's algorithm, in the order of distance, ties
+/// by number. `distance`: in, 0 (or an offset) for the sources and an upper bound for all others, as a rule
+/// infinity. Calls visit(v, reach) once for each node v, with its final distance; it calls reach(w, d) for
+/// each neighbor w, at distance d by way of v, which lowers distance[w] to d and returns true if that is
+/// less. If `visit` returns bool, false ends the search.
 template <class Visit>
 void shortest_paths(const std::vector<int>& sources, std::vector<double>& distance, Visit visit) {
   using Item = std::pair<double, int>;

@@ -5,7 +5,7 @@
 
 namespace meshpipe {
 
-/// Row i of the new order is row vertices[i] or tris[i] of the old one.
+/// A new order of the rows of a mesh: row i was row vertices[i], or tris[i].
 struct SpatialOrder {
   std::vector<int> vertices, tris;
 };
@@ -13,12 +13,13 @@ struct SpatialOrder {
 /// Orders vertices along Hilbert's curve, and triangles by the first of their vertices along it.
 SpatialOrder spatial_order(const Mesh& mesh);
 
-/// Returns the new row of every old one.
+/// Returns the new row of every old one: the inverse of `order`.
 std::vector<int> new_rows(const std::vector<int>& order);
 
-/// Numbers the vertices of n that triangles use by first use. Returns the former number of each.
+/// Renumbers the vertices, of n, that triangles use by first use. Returns the former number of each.
 std::vector<int> number_by_first_use(std::vector<Tri>& tris, std::size_t n);
 
+/// Returns a column whose row i is row order[i] of another.
 template <class T>
 std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& order) {
   std::vector<T> moved;
@@ -27,7 +28,7 @@ std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& 
   return moved;
 }
 
-/// Rearranges points and triangles; corners keep their order in each.
+/// Puts points and triangles into an order; triangles keep their first corner.
 void rearrange(Mesh& mesh, const SpatialOrder& order);
 
 }  // namespace meshpipe

@@ -8,31 +8,31 @@
 
 namespace meshpipe {
 
-/// Walks over a surface from triangle t, which becomes the last, across edges, as long as that comes closer
-/// to p or until it is within `enough`. Returns the distance of p from it, an upper bound of that from the
-/// surface.
+/// Walks over a surface from triangle t across edges as long as that comes closer to p, until it is within
+/// `enough`; t becomes the last triangle. Returns its distance from p.
 double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& tris,
                const std::vector<int>& opposite, int& t, double enough = 0);
 
-/// A surface to walk on. Borders and feature edges (marked in `model`, as face column `model`) bound walks.
+/// A surface to walk on, whose borders and feature edges bound walks.
 class SurfaceWalk {
  public:
-  /// Requires: an oriented manifold. Keeps a reference to the mesh.
+  /// Takes an oriented manifold, to which it keeps a reference, and the bits of its feature edges as in face
+  /// column `model` (empty: none). Throws: as opposite_halfedges.
   SurfaceWalk(const Mesh& mesh, const std::vector<std::uint8_t>& model);
-  /// Walks from `from` to neighboring triangles as long as they come closer to `target`; the result is
-  /// connected to `from` on the surface, so that the walk never jumps to another sheet. Never fails; a local
-  /// minimum is a valid answer. With `through_features`, only borders bound the walk.
+  /// Walks from `from` to neighboring triangles as long as they come closer to `target`. Returns the place
+  /// reached, a local minimum of the distance that is connected to `from` on the surface: the walk never
+  /// jumps to another sheet. Never fails. With `through_features`, only borders bound the walk.
   Place closest(const Place& from, Vec3 target, bool through_features = false) const;
   /// Slides from `from`, on a border or feature edge, along its line towards `target`, not past an end of the
-  /// line or a junction. Returns a place on no such line as it is.
+  /// line or a junction. Returns the place reached; `from` itself if it is on no such line.
   Place slide(const Place& from, Vec3 target) const;
-  /// The same from a vertex, on a line that comes to the vertex at `to`, if there is one.
+  /// Slides from `from`, a vertex, along a line that leads to the vertex at `to`; without one, as above.
   Place slide(const Place& from, const Place& to, Vec3 target) const;
-  /// Returns the same point on the other side of the feature edge it lies on, or the place itself if it lies
-  /// on none.
+  /// Returns the same point as a place of the triangle on the other side of the feature edge on which it
+  /// lies; the place itself if it lies on none.
   Place across(const Place& place) const;
   Vec3 point(const Place& place) const;
-  /// Unit normal of the triangle at a place.
+  /// Returns the unit normal of the triangle at a place.
   Vec3 normal(const Place& place) const { return normals_[place.face]; }
 
  private:

@@ -32,7 +32,7 @@ struct RowBetween {
   int a, b;
   double t;
 };
-/// Appends rows between others: numbers are interpolated, labels those of the nearer row.
+/// Appends rows between others: doubles interpolated, other types copied from the nearer row (t = 0.5: b).
 inline void interpolate_rows(Table& table, const std::vector<RowBetween>& rows) {
   for (Column& c : table.columns)
     std::visit(
@@ -46,7 +46,7 @@ inline void interpolate_rows(Table& table, const std::vector<RowBetween>& rows) 
         c.data);
   table.rows += rows.size();
 }
-/// Appends copies of rows.
+/// Appends copies of these rows.
 inline void append_rows(Table& table, const std::vector<int>& rows) {
   for (Column& c : table.columns)
     std::visit(

@@ -7,15 +7,17 @@
 
 namespace meshpipe {
 
-/// Returns the edge length at which n equilateral triangles have this area.
+/// Returns the edge length at which n equilateral triangles have this area in total.
 double size_for_count(double area, double n);
 
-/// Of its longest edge: the largest size that distances of a triangle are judged by, the most in a mesh that
-/// obeys its field. Where a surface admits only smaller triangles than were asked for, it is less than that.
+/// The largest size by which distances of a triangle are judged, over its longest edge: the most in a mesh
+/// that obeys its size field. Where a surface admits only smaller triangles than were asked for, the size is
+/// less than that.
 constexpr double size_over_longest = 1.5;
 
-/// Returns the number of equilateral triangles that a size field asks for: the integral of dA / (sqrt(3)/4
-/// h^2), h the mean of a triangle's corners. Requires: size[v] > 0.
+/// Returns the number of equilateral triangles that a size field (per vertex, > 0, linear on triangles) asks
+/// for: the integral of dA / (sqrt(3)/4 h^2), with the mean of the corners for h where they differ by less
+/// than a factor of 2.
 double count_for_size(const Mesh& mesh, const std::vector<double>& size);
 
 }  // namespace meshpipe

@@ -16,13 +16,13 @@ class UnionFind {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// Joins the sets of a and b under the lower of their names; false if they were one already.
+  /// Joins the sets of a and b under the smaller of their names. Returns whether they were two.
   bool join(int a, int b) {
     a = find(a), b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
     return a != b;
   }
-  /// Makes the set named `gone` part of the set of `kept`, which keeps its name.
+  /// Makes the set named `gone` part of the set named `kept`, which keeps its name.
   void merge_into(int gone, int kept) { parent_[gone] = kept; }
 
  private:

@@ -8,13 +8,12 @@
 
 namespace meshpipe {
 
-/// Numbers points as they come: equal ones (0 and -0 are) alike.
+/// Numbers points in the order in which they come; equal points (0 and -0 are equal) get the same number.
 class PointNumbers {
  public:
-  /// Room for about this many distinct points; it grows.
+  /// Reserves memory for about this many distinct points; it grows as needed.
   explicit PointNumbers(std::size_t expected);
-  /// The numbers of n more points. Best called with many at a time: what memory holds of them is fetched
-  /// ahead.
+  /// Sets the numbers of n more points. Best called with many at a time: memory is fetched ahead.
   void add(const Vec3* points, int n, int* numbers);
   /// The distinct points by their number.
   std::vector<Vec3> points;
@@ -24,18 +23,18 @@ class PointNumbers {
   std::vector<int> slot_;  ///< a table of numbers, by a hash of their points; -1 is free
 };
 
-/// Makes one vertex of all that have the same coordinates, and drops those that no triangle uses; vertices
-/// are numbered by first use. Triangles stay as they are otherwise.
+/// Merges vertices with the same coordinates and drops those that no triangle uses; vertices are numbered by
+/// first use, triangles keep their order and corners.
 void weld(Mesh& mesh);
 
-/// The first vertex with used != 0 and the coordinates of v, for every v (0 and -0 are equal); v itself if it
-/// is not used.
+/// Returns for every vertex v the first vertex with used[] != 0 and the same coordinates (0 and -0 are
+/// equal); v itself if it is not used.
 std::vector<int> first_equal(const std::vector<Vec3>& points, const std::vector<char>& used);
 
-/// Goes on from `same` as `first_equal` made it: a vertex that lies no farther than `tolerance` > 0 from an
-/// earlier one that was kept is merged into the nearest of them. No vertex moves by more than the tolerance,
-/// and chains of close vertices do not run together. Returns the number of vertices merged. Linear for
-/// tolerances below the edges' length.
+/// Continues from `same`, the result of first_equal: a vertex no farther than `tolerance` (> 0, a length)
+/// from an earlier one that was kept is merged into the nearest of those, in `same`. No vertex moves farther,
+/// and chains of close vertices do not collapse. Returns the number merged. Linear for tolerances below
+/// edges.
 int merge_near(const std::vector<Vec3>& points, const std::vector<char>& used, double tolerance,
                std::vector<int>& same);
 

@@ -33,20 +33,18 @@ struct DefeatureOptions {
   std::vector<char> plane{};  ///< flags of triangles whose vertices stay in their plane; empty: none
 };
 
-/// Closes strips between two lines (model edges, borders) that are at most `tolerance` wide, and contracts
-/// short lines and small regions between corners: vertices across are merged, the weaker line into the
-/// stronger one. Every point stays within `tolerance` of its place, the topology stays, and so do strips from
-/// which the surface folds back, such as the rim of a thin plate and the bottom of a slot. Needs face column
-/// `model`, which is kept up to date; other columns follow. `given`: per
-/// half-edge the number of a line that is stronger than creases, or -1; or null. Throws: NotAdmissible at a
-/// vertex of several fans, and like opposite_halfedges.
+/// Closes strips between two lines (model edges, borders) at most `tolerance` wide, and contracts short lines
+/// and small regions between corners: vertices across are merged, the weaker line into the stronger one. No
+/// point moves farther than `tolerance`; the topology stays, and so do strips from which the surface folds
+/// back (the rim of a thin plate, the bottom of a slot). Updates face column `model`, which it needs; other
+/// columns follow. `given`: per half-edge the number of a line stronger than creases, or -1; or null. Throws:
+/// NotAdmissible at a vertex of several fans, and as opposite_halfedges.
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 
-/// Returns a remark for the stream, "removed FEATURES moved DISTANCE", by which mcheck knows how far the
-/// surface may be off.
+/// Returns the remark "removed FEATURES moved DISTANCE" for mcheck: how far the surface may be off.
 std::string remark_of(const DefeatureReport& report);
-/// Returns the distance of such a remark; 0 of other texts.
+/// Returns the distance in such a remark; 0 for other texts.
 double moved_by(const std::string& remark);
 
 }  // namespace meshpipe

@@ -11,10 +11,11 @@
 
 namespace meshpipe {
 
-/// Lines whose directions differ by less (25 degrees) bound a strip; by more they meet in a corner.
+/// The angle between two lines, in radians, below which they bound a strip, and do not meet in a corner.
 constexpr double strip_angle = 25 * std::numbers::pi / 180;
 
-/// Lines of a surface: chains of hard edges between nodes, where more or fewer than two meet or a line bends.
+/// Lines of a surface: chains of hard edges between nodes. Nodes are where more or fewer than two hard edges
+/// meet, or a line bends.
 struct FeatureLines {
   std::vector<int> of;         ///< line of each half-edge, -1: not hard
   std::vector<int> given;      ///< number of the given line on each half-edge, -1: none
@@ -23,11 +24,11 @@ struct FeatureLines {
   std::vector<char> open;      ///< per line: it ends at nodes
   std::vector<char> rank;  ///< per line: 0 edge of a wrinkle, 1 crease, 2 given or between patches, 3 border
 };
-/// `wrinkles`: flags of half-edges that are no model edges.
+/// Finds the lines. `given`: as in remove_small_features; `wrinkles`: flags half-edges of no model edge.
 FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<int>* given,
                         const std::vector<char>& wrinkles);
 
-/// A merge of the vertex `gone`, which was at `at`, with the vertex `kept`.
+/// A merge of vertex `gone`, which was at `at`, into vertex `kept`, over the distance `width`.
 struct Merge {
   int gone, kept;
   double width;
@@ -45,29 +46,29 @@ struct MergedSurface {
   std::vector<Merge> merges;
   FeatureLines lines;
 
+  /// Returns the normal of triangle t with twice its area as length.
   Vec3 normal(int t) const;  ///< times twice the area
   double height(int t) const;
   bool is_model(int h) const { return mesh.opp[h] >= 0 && mesh.hard[h] && lines.rank[lines.of[h]] > 0; }
   bool is_sharp(int h) const;
   bool on_line(int v) const;
   bool is_corner(int v) const;
-  /// The smallest angle over the surface between neighboring sharp or hard edges at v; pi if there is none.
+  /// Returns the smallest angle on the surface between successive sharp or hard edges at v; pi without any.
   double sharpest(int v) const;
 };
 
 /// Merges vertices of a surface.
 class Zipper : public MergedSurface {
  public:
-  /// `banned`: flags of vertices that take no part.
+  /// Copies a surface. `given`: as in remove_small_features; `banned`: flags of vertices that take no part.
   Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<int>* given,
          const std::vector<char>& banned);
 
-  /// Merges across strips and along short lines, narrowest first. Returns the number of merges, as the
-  /// others.
+  /// Merges across strips and along short lines, the narrowest first. Returns the number of merges.
   int close_strips();
-  /// Contracts regions between lines that are smaller than the tolerance.
+  /// Contracts regions between lines that are smaller than the tolerance. Returns the number of merges.
   int contract_regions();
-  /// Contracts places where three or more corners are within half the tolerance.
+  /// Contracts places of three or more corners within half the tolerance. Returns the number of merges.
   int contract_clusters();
 
  private:

@@ -11,7 +11,7 @@ namespace meshpipe {
 
 using Color = std::array<std::uint8_t, 3>;
 
-/// Rows from the top, three bytes a pixel.
+/// A picture: rows from the top, three bytes per pixel.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
@@ -31,18 +31,18 @@ struct Frame {
 /// Widens a frame so that it holds a mesh.
 void add_to_frame(Frame& frame, const Mesh& mesh, const View& view);
 
-/// Draws a mesh, `frame` fitted into width x height pixels. `color` is per triangle; `strong` (empty, or per
-/// triangle: bit i for the edge from corner i to i+1) are edges drawn thick. Backs are drawn darker and gray,
-/// so that flipped triangles show.
+/// Draws a mesh with `frame` fitted into width x height pixels. `color`: per triangle; `strong`: per
+/// triangle, bit i for the edge from corner i to i+1, edges drawn thick; or empty. Backs are gray and darker,
+/// so that inverted triangles show.
 Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::vector<std::uint8_t>& strong,
                 const View& view, const Frame& frame, int width, int height);
 
-/// Pictures of equal height side by side.
+/// Joins pictures side by side, from the top.
 Image side_by_side(const std::vector<Image>& images);
 
-/// A distinct, light color for a label.
+/// Returns a distinct, light color for a label.
 Color label_color(int label);
-/// Viridis, from dark blue (0) over green to yellow (1): for kappa.
+/// Returns the color of a value in [0, 1] on the scale Viridis: dark blue (0) over green to yellow (1).
 Color scale_color(double value);
 
 }  // namespace meshpipe

@@ -28,19 +28,20 @@ struct FeatureReport {
   int slivers = 0;  ///< triangles too thin for the target edge length to make a crease of their own
 };
 
-/// Sets face column `model`: bit i of triangle t marks the edge from corner i to i+1 as a model edge, on both
-/// sides. Model edges are borders between patches (column `patch`) and creases: in automatic mode those of
-/// components that look designed (keep_designed), without short chains and short or rough open ones.
-/// `before`: null, or the patches before some were merged; no crease follows a border that vanished unless it
-/// bends sharply. `given`: null, or per half-edge the number of a line that is a model edge in any mode, or
-/// -1. Throws: like opposite_halfedges.
+/// Sets face column `model`: bit i of triangle t marks the edge from corner i to i+1, on both sides. Model
+/// edges are borders between patches (column `patch`) and creases: in automatic mode those of components that
+/// look designed (keep_designed), without short chains and short or rough open ones. `before`: null, or per
+/// triangle the patch before some were merged; no crease follows a border that vanished unless it bends
+/// sharply. `given`: null, or per half-edge the number of a line that is a model edge in any mode, or -1.
+/// Throws: as opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<int>* given = nullptr);
 
-/// Returns unit normals of the triangles. Those thinner than `thin` and a twentieth of their length take that
-/// of the nearest other triangle across them, where the band of such triangles is at most 3 `thin` wide, and
-/// those too thin for single-precision coordinates in any case (`thin` 0: only these).
+/// Returns a unit normal per triangle: its own, unless the triangle is thinner than `thin` (a length) and a
+/// twentieth of its length and lies in a band of such triangles at most 3 `thin` wide, or is too thin for
+/// single-precision coordinates (`thin` 0: only these). Those get the normal of the nearest other triangle
+/// across them.
 std::vector<Vec3> side_normals(const Connectivity& surface, double thin);
 
 }  // namespace meshpipe

@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// Where the parts of a surface bend.
+/// Where the components of a surface bend.
 struct Bends {
   const std::vector<double>& angle;   ///< per half-edge, between the triangles on either side
   const std::vector<char>& strong;    ///< per half-edge: is it a crease by its angle?
@@ -15,13 +15,13 @@ struct Bends {
   int components;
 };
 
-/// Of the area, in plane faces of several triangles, and of eight or more; and of the creases' length.
+/// Shares of a component: of its area in plane faces of several triangles, and of 8 or more; of creases.
 struct PlaneShares {
   double several = 0, many = 0, steps = 0;
 };
 
-/// Returns the shares in each component (NaN without area or creases). A step is next to a face that goes up
-/// to one and down to another face, both with almost the same normal, as on surfaces of segmented images.
+/// Returns the shares of each component (NaN without area or creases). A step is a crease next to a face that
+/// goes up to one and down to another face, with almost equal normals, as in segmented images.
 std::vector<PlaneShares> plane_shares(const Connectivity& surface, const Bends& bends);
 
 }  // namespace meshpipe

@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// A mesh each of whose vertices knows its place on a reference surface.
+/// A mesh each of whose vertices has a place on a reference surface.
 struct LiftedMesh : Mesh {
   std::vector<Place> place;         ///< triangle of the reference and barycentrics
   std::vector<int> kind;            ///< 0 inside, 1 on a line, 2 corner (end of lines)
@@ -18,31 +18,31 @@ struct LiftedMesh : Mesh {
   std::vector<std::uint8_t> model;  ///< per triangle: bit i: edge from corner i to i+1 is a model edge
 };
 
-/// Lifts the plane meshes of all charts by barycentric coordinates and glues them along the lines: line
+/// Lifts the plane meshes of all charts by barycentric coordinates and glues them along the lines. Line
 /// points come first, in the order of their rows, then inside points by part. Each region between model edges
-/// and borders gets the patch label that covers most of the reference's area below it.
-/// Requires: vertex column `size`; a chart and its plane mesh per part, in one order, made with these lines.
-/// Throws: BadInput for a line point on an edge that the reference lacks; GoalMissed naming the vertex or the
-/// edge where the result is no manifold, is pinched, or has a border other than the border lines.
+/// and borders gets the patch label that covers most of the reference's area below it. Requires: vertex
+/// column `size`; a chart and its plane mesh per part, in one order, made with these lines. Throws: BadInput
+/// for a line point on an edge that the reference lacks; GoalMissed naming the vertex or edge where the
+/// result is no manifold, is pinched, or has a border that is no border line.
 LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines& lines,
                 const std::vector<PlaneMesh>& meshes);
 
-/// Moves every vertex of a mesh to the nearest point of the reference: its border to the reference's border
+/// Moves every vertex of a mesh to the nearest point of the reference: its border to the reference's border,
 /// and its model edges (face column `model`) to the reference's model edges, where there are any. Sizes come
 /// from the reference's column `size`, else from the edge length that gives the mesh's triangle count.
-/// Requires: both have triangles; the mesh is an oriented manifold.
-/// Throws: NotAdmissible if more than half of the vertices are farther away than the mean edge length.
+/// Requires: both have triangles; the mesh is an oriented manifold. Throws: NotAdmissible if more than half
+/// of the vertices are farther away than the mean edge length.
 LiftedMesh place_on(const Surface& mesh, const Surface& reference);
 
-/// A cubic triangle (Vlachos et al. 2001) over each triangle that the reference was cut from (face column
-/// `origin`). It interpolates the vertices, with normals averaged (Max 1999) on each side of borders and
-/// model edges (face column `model`), which become smooth curves where they turn by less than 45 degrees.
-/// Straight lines and planes stay what they are. No point is farther from the reference than a fifth of the
-/// longest edge of its triangle. Keeps a reference to the surface.
+/// The smooth surface of a reference: a cubic triangle (Vlachos and others 2001) over each triangle that the
+/// reference was cut from (face column `origin`). It interpolates the vertices, with normals averaged (Max
+/// 1999) on each side of borders and model edges (face column `model`), which become smooth curves where they
+/// turn by less than 45 degrees. Straight lines and planes stay. No point is farther from the reference than
+/// a fifth of its triangle's longest edge. Keeps a reference to the surface.
 class CurvedSurface {
  public:
   explicit CurvedSurface(const Surface& reference);
-  /// Returns the point above a place of the reference; at vertices, the vertex.
+  /// Returns the point above a place of the reference; at vertices, the vertex itself.
   Vec3 point(const Place& place) const;
 
  private:
@@ -52,7 +52,7 @@ class CurvedSurface {
   std::vector<std::array<Vec3, 2>> off_;  ///< per half-edge: its inner control points less its thirds
 };
 
-/// Moves the vertices of a mesh from the reference to the smooth surface, except where triangles would newly
+/// Moves the vertices of a mesh from the reference to the smooth surface, except those of triangles that then
 /// intersect. Returns the number of vertices that stay.
 int raise_vertices(LiftedMesh& mesh, const CurvedSurface& surface);
 
@@ -67,10 +67,10 @@ struct MidPoints {
   int straight = 0;              ///< edges kept straight, since a triangle of second order would fold
 };
 
-/// Computes a node within every edge: its midpoint moved to the nearest point of the reference that a walk
-/// from the ends reaches without crossing model edges (for borders and model edges: along the reference's),
-/// and on to the smooth surface, if that is not null. All edges of triangles that would fold keep their
-/// midpoints. Throws: like opposite_halfedges.
+/// Computes a node for every edge: its midpoint moved to the nearest point of the reference that a walk from
+/// the ends reaches without crossing model edges (for borders and model edges: along the reference's), then
+/// to `surface` unless that is null. All edges of triangles of second order that would fold keep their
+/// midpoints. Throws: as opposite_halfedges.
 MidPoints mid_points(const LiftedMesh& mesh, const Surface& reference, const CurvedSurface* surface);
 
 }  // namespace meshpipe

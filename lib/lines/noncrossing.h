@@ -9,8 +9,7 @@
 namespace meshpipe {
 
 /// A chain of edges: `count` vertices from Chains::vertex[first] on; a closed one repeats its first vertex at
-/// its end. `left` and `right` are the parts on its sides (equal: it lies inside one), -1 beyond
-/// the mesh border.
+/// its end. `left` and `right` are the parts on its sides (equal: inside one), -1 beyond the border.
 struct Chain {
   int kind, first, count;
   bool closed;
@@ -27,8 +26,7 @@ struct Chains {
   std::vector<int> leader{};
 };
 
-/// A point of a divided chain: at t along the edge after its vertex `piece`, 0 <= t < 1; t = 0: on the
-/// vertex.
+/// A point of a divided chain: at t of the edge after its vertex `piece`, 0 <= t < 1 (0: on the vertex).
 struct Cut {
   int piece;
   double t;
@@ -38,15 +36,15 @@ struct Cut {
 /// Per chain its cuts in order, both ends included.
 using Division = std::vector<std::vector<Cut>>;
 
-/// Divides a chain into n segments of equal measure.
+/// Returns the cuts that divide a chain into n segments of equal measure.
 std::vector<Cut> divide(const Chains& chains, int line, int n);
 
 /// Adds cuts until the segments of all chains form the same plane drawing in each chart as the chains do: no
 /// two meet except at common ends, and loops keep their orientation, most of their area, and the lines inside
-/// them. Neighboring segments of a refined line differ by at most three times in measure. Ends, since a chain
-/// that is cut at all its vertices is drawn as it is.
-/// `inside`: flags of vertices, on no line, that the segments around their part have inside, too.
-/// Throws: GoalMissed naming part and lines if the chart itself is not one-to-one.
+/// them. Neighboring segments of a refined line differ by at most a factor of three in measure. Ends, since a
+/// chain cut at all its vertices is drawn as it is. `inside`: flags of vertices, on no line, that must stay
+/// inside the segments around their part. Throws: GoalMissed naming part and lines if a chart is not
+/// one-to-one.
 void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts,
                               const std::vector<char>& inside, Division& division);
 

@@ -5,9 +5,8 @@
 
 namespace meshpipe {
 
-/// Splits long edges, collapses short ones, flips, and smooths, in a bounded number of rounds, until edges
-/// have the length that the size asks for, measured on the surface. Fixed edges and their ends stay; numbers
-/// of other vertices change.
+/// Splits long edges, collapses short ones, flips and smooths, in a bounded number of rounds, until edges
+/// have the length that `field` asks for, measured in space. Fixed edges stay; other vertices are renumbered.
 void adapt_edges(SiteMesh& mesh, const SizeMetric& field);
 
 }  // namespace meshpipe

@@ -21,8 +21,8 @@ struct PlaneMesh {
   std::vector<std::uint8_t> on_line;  ///< per half-edge: it is a segment of a line
 };
 
-/// frontal: frontal-Delaunay (Rebay 1993). delaunay: refinement at circumcenters. meshadapt: edges split,
-/// collapsed and swapped.
+/// How the plane is filled. frontal: frontal-Delaunay (Rebay 1993), from a mesh of twice the size where it
+/// can. delaunay: refinement at circumcenters. meshadapt: edges split, collapsed and flipped.
 enum class Mesher { frontal, delaunay, meshadapt };
 
 /// The lines by the parts 0..n_parts-1 that use them, for mesh_chart. Keeps a reference to the lines.
@@ -35,14 +35,14 @@ struct PartLines {
   std::vector<int> point;  ///< per row of Lines::points: the first line end at its vertex, or the row itself
 };
 
-/// Meshes one chart: triangulates the region that the part's lines bound, with every segment as an edge, and
+/// Meshes chart `part`: triangulates the region that its lines bound, with every segment as an edge, and
 /// refines it until triangles have the size asked for (`size`, per vertex of the chart's mesh), measured in
-/// space through the map's metric. `keep`: per vertex of the surface, whether the mesh has a vertex there, on
-/// no line; empty: none.
-/// Requires: the chart is indexed (index_chart); sizes are positive.
-/// Throws, naming the part: GoalMissed with a point where segments cross or touch, points coincide, or the
-/// borders bound no region; GoalMissed if many times the expected number of points is needed; NotAdmissible
-/// if a line point lies on an edge that the chart lacks.
+/// space. `keep`: per vertex of the surface, whether the mesh gets a vertex there if it is on no line; empty:
+/// none.
+/// Requires: the chart is indexed (index_chart); sizes are positive. Throws, naming the part: GoalMissed with
+/// a point where segments cross or touch, points coincide or borders bound no region; GoalMissed if a size is
+/// too small for the coordinates of the map or far more points are needed than expected; NotAdmissible if a
+/// line point lies on an edge that the chart lacks.
 PlaneMesh mesh_chart(const Chart& chart, const std::vector<double>& size, const PartLines& lines, int part,
                      Mesher mesher = Mesher::frontal, const std::vector<char>& keep = {});
 

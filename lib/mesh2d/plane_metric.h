@@ -7,28 +7,28 @@
 
 namespace meshpipe {
 
-/// Logarithm of a symmetric positive tensor [a b; b c]; means and interpolation of metrics are linear in it
-/// (Arsigny and others 2006), so that they never degenerate.
+/// The logarithm of a symmetric positive tensor [a b; b c]. Means and interpolation of metrics are linear in
+/// it (Arsigny and others 2006), so that they never degenerate.
 struct LogMetric {
   double a = 0, b = 0, c = 0;
 };
 inline LogMetric operator+(LogMetric x, LogMetric y) { return {x.a + y.a, x.b + y.b, x.c + y.c}; }
 inline LogMetric operator*(double s, LogMetric x) { return {s * x.a, s * x.b, s * x.c}; }
 
-/// Upper triangular factor of a metric M = F^T F: the affine map to where lengths are plain, orientation
-/// kept.
+/// The upper triangular factor F of a metric F^T F: maps the plane to where lengths are Euclidean.
 struct MetricFactor {
   double xx = 1, xy = 0, yy = 1;
   Vec2 to(Vec2 d) const { return {xx * d.x + xy * d.y, yy * d.y}; }
   Vec2 back(Vec2 d) const { return {(d.x - xy / yy * d.y) / xx, d.y / yy}; }
 };
+/// Returns the factor of the metric with this logarithm.
 MetricFactor factor_of(LogMetric log_metric);
 
-/// J^T J of the chart's map (J = dx/du), averaged over the triangles at a vertex, weighted by area, in log
-/// space.
+/// Returns per vertex the metric J^T J of the chart's map (J = dx/du), averaged in log space over its
+/// triangles, weighted by area.
 std::vector<LogMetric> map_metric(const Chart& chart);
 
-/// What a vertex of a plane mesh knows of the surface.
+/// The place of a vertex of a plane mesh on the surface, with the size and metric there.
 struct Site {
   Place place;
   Vec3 space;        ///< its point on the surface
@@ -36,7 +36,7 @@ struct Site {
   LogMetric metric;  ///< unit-edge metric M / h^2
 };
 
-/// The chart as a mesher sees it: everything linear on its triangles, M in log space.
+/// Size and metric of a chart, linear on its triangles, the metric in log space.
 class SizeMetric {
  public:
   SizeMetric(const Chart& chart, const std::vector<double>& size);  ///< keeps references
@@ -44,7 +44,7 @@ class SizeMetric {
   const Chart& chart() const { return chart_; }
   Site at(const Place& place) const;
   Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
-  /// The plane's vector of a vector in space, as far as it is tangent to the chart's triangle.
+  /// Returns the image of d in the plane, as far as it is tangent to triangle `face` of the chart.
   Vec2 to_plane(int face, Vec3 d) const;
 
  private:

@@ -7,13 +7,13 @@
 namespace meshpipe {
 
 /// Inserts points until every triangle has its size, in rows from the lines inwards, so that triangles become
-/// nearly equilateral. Ends always: a triangle that takes no point is left as it is.
+/// nearly equilateral. Always ends: a triangle that takes no point is left as it is.
 void refine_frontal(SiteMesh& mesh, const SizeMetric& field);
 
-/// The same where points were inserted before, which may be a little farther apart.
+/// Inserts points in the same way, but in larger triangles only: points may be a little farther apart.
 void fill_gaps(SiteMesh& mesh, const SizeMetric& field);
 
-/// Inserts the circumcenter of the largest triangle until every one has its size. Ends always.
+/// Inserts the circumcenter of the largest triangle until every triangle has its size. Always ends.
 void refine_delaunay(SiteMesh& mesh, const SizeMetric& field);
 
 }  // namespace meshpipe

@@ -22,36 +22,35 @@ struct Spacing {
   double line;    ///< no fixed edge that it sees is nearer
 };
 
-/// Inserts a vertex at p, known to be at `there`, by Bowyer and Watson's cavity in the metric there; p lies
-/// in triangle t. The new triangles are mesh.cavity.fan().
-/// Returns: false, with only cavity.rim() changed, if p is on a vertex or fixed edge or too near to others.
-/// Throws: GoalMissed if the mesh has most_points already.
+/// Inserts a vertex at p, which lies in triangle t and on the surface at `there`, by Bowyer and Watson's
+/// cavity in the metric there. The new triangles are mesh.cavity.fan(). Returns false, and changes only
+/// `mesh.cavity`, if p is on a vertex or fixed edge, or too near to others. Throws: GoalMissed if the mesh
+/// already has most_points.
 bool insert_site(SiteMesh& mesh, Vec2 p, const Site& there, int t, Spacing spacing);
 
-/// Inserts a vertex in the middle of a free half-edge, as measured in space, if the two halves together are
-/// longer than `longest` sizes (across a bend of the surface they are longer than the edge).
-/// Returns: whether the vertex was inserted.
+/// Inserts a vertex in the middle, in space, of free half-edge h if its two halves together are longer than
+/// `longest` times the size there (across a bend they are longer than the edge). Returns whether it did.
 bool split_long_edge(SiteMesh& mesh, const SizeMetric& field, int h, double longest);
 
-/// A vertex of the chart, in its triangle `face`, that triangle `triangle` of a mesh covers.
+/// A vertex of the chart, at p, in its triangle `face`, that triangle `triangle` of the mesh covers.
 struct Missed {
   Vec2 p;
   int face, triangle;
 };
 
-/// Returns vertices of the chart that the mesh misses, at most one per triangle, the farthest: the triangle
-/// that covers it in the plane is half a size away in space, and covers more of the surface than two
-/// triangles of that size. Short edges are no proof: a ball behind a narrow neck may lie in one triangle.
+/// Returns vertices of the chart that the mesh misses, the farthest one per triangle: where a triangle covers
+/// a vertex in the plane that is half a size away from it in space, and covers more of the surface than two
+/// triangles of that size. Short edges prove nothing: a ball behind a narrow neck may lie in one triangle.
 std::vector<Missed> missed_vertices(const SiteMesh& mesh, const SizeMetric& field);
 
-/// Flips edges, starting with the half-edges in `todo` (emptied), until the angles opposite to each sum to
-/// at most pi in space. Ends always.
+/// Flips free edges, starting with the half-edges in `todo` (emptied), until the two angles in space opposite
+/// to an edge sum to at most pi. Always ends.
 void flip_to_delaunay(SiteMesh& mesh, std::vector<int>& todo);
-/// The same for all edges.
+/// Flips all edges in this way.
 void flip_to_delaunay(SiteMesh& mesh);
 
-/// Moves inner vertices between their neighbors, `sweeps` times, with flips, unless unwanted, before, between
-/// and after.
+/// Moves inner vertices towards the mean of their neighbors, `sweeps` times; with `flips`, calls
+/// flip_to_delaunay before and after each sweep.
 void smooth_in_plane(SiteMesh& mesh, const SizeMetric& field, int sweeps, bool flips = true);
 
 }  // namespace meshpipe

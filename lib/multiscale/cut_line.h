@@ -8,14 +8,14 @@
 
 namespace meshpipe {
 
-/// Draws a line across the root's disk in `direction` (radians), through the centers of all child sets and
-/// holes, and recursively through the child sets: a polyline for each level, in its own frame. The root's
+/// Returns a line across the root's disk in `direction` (radians), through the centers of all child sets and
+/// holes, and recursively through the child sets: a polyline per level, in the level's own frame. The root's
 /// ends lie far outside its disk; a child's start and end where the parent's line meets the set's border.
 std::vector<std::vector<Vec2>> cut_lines(const FilledDisk& disk, const std::vector<Level>& levels,
                                          double direction);
 
-/// The signed distance of each vertex of the part to the line, in space and to first order: positive on the
-/// left. Never zero. `lines` as above.
+/// Returns per vertex of the part its signed distance from the line, a length to first order: positive on the
+/// left, never zero. `lines`: as from cut_lines.
 std::vector<double> cut_line_field(const FilledDisk& disk, const std::vector<Level>& levels,
                                    const std::vector<std::vector<Vec2>>& lines);
 

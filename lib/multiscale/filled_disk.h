@@ -17,10 +17,11 @@ struct FilledDisk : Mesh {
   std::vector<int> fan_begin;  ///< first triangle of each hole's fan, and the end
 };
 
-/// Is the point inside the polygon (even-odd)?
+/// Returns whether the point is inside the polygon, by the even-odd rule.
 bool encloses(const std::vector<Vec2>& polygon, Vec2 p);
 
-/// Precondition: one component, genus 0, N_B >= 1, no pinched vertex.
+/// Fills the holes of a part, all loops but the longest, by fans around virtual centers. Requires: one
+/// component of genus 0 with a border, no pinched vertex.
 FilledDisk fill_holes(const Mesh& part);
 
 }  // namespace meshpipe

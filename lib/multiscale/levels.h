@@ -24,14 +24,15 @@ struct Level {
   std::vector<double> angle;  ///< of the border's vertices on the own circle, rising by less than 2 pi
 };
 
-/// Where most of the surface of a level is: what the line halves where there is nothing to pass through.
+/// Returns the point of a level's frame around which most of its surface is: where the line divides it if
+/// there is nothing to pass through.
 Vec2 middle_of(const FilledDisk& disk, const Level& level);
 
 /// Maps the disk level by level; level 0 maps the rim to the unit circle. Triangles whose image is smaller
-/// than 1e-10 of the level's disk are withdrawn in edge-connected sets; each set of 10 triangles or more is a
-/// level of its own, with the parent's image of its border as Dirichlet data. Parents come before children;
-/// every triangle is in one level. A level's system covers only what it can resolve, so that the whole is
-/// close to linear however long the part. Throws GoalMissed if a system is singular.
+/// than 1e-10 of the level's disk are withdrawn in edge-connected sets. Each set of 10 or more is a level of
+/// its own, with the parent's image of its border as Dirichlet data. Parents come before children; every
+/// triangle is in one level. A level's system covers only what it can resolve, so that the whole is close to
+/// linear however long the part is. Throws: GoalMissed if a system is singular.
 std::vector<Level> laplace_levels(const FilledDisk& disk);
 
 }  // namespace meshpipe

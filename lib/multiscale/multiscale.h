@@ -13,10 +13,11 @@ struct Assessment {
   double length = 0;         ///< of the zero level
   double smaller_share = 0;  ///< of the area, by thirds of triangles
 };
-/// Assesses the cut along the zero level of a field (one value per vertex; above 0 is one side).
+/// Assesses the cut of a part along the zero level of a field (one value per vertex; above 0 is one side).
+/// Requires: genus 0.
 Assessment assess(const ConnectedPart& part, const std::vector<double>& field);
 
-/// How a cut was found, for pictures: on the part, or on a coarse model of a large one (lib/core/coarsen.h).
+/// The maps by which a cut was found, of the part or a coarse model (lib/core/coarsen.h); for pictures.
 struct CutMaps {
   FilledDisk disk;
   std::vector<Level> levels;
@@ -25,9 +26,8 @@ struct CutMaps {
 };
 
 /// Finds the best line that cuts a part in two: drawn through all levels of its Laplace maps in several
-/// directions, and led to holes that would stay whole.
-/// `field` receives a value per vertex of the part, never zero, whose zero level is the line; `share` is that
-/// of the work (lib/core/progress.h).
+/// directions, and led to holes that would stay whole. `field` receives a value per vertex of the part, never
+/// zero, whose zero level is the line; `share` is the share of the work (lib/core/progress.h).
 CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& field);
 
 }  // namespace meshpipe

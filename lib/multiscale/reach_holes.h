@@ -8,8 +8,9 @@
 
 namespace meshpipe {
 
-/// Leads a strip one vertex wide, along a shortest path over edges, from the other side of the field's zero
-/// level to every hole that lies in one side as a whole; only where that cuts the side open and does no more.
+/// Changes the field (per vertex of the part) so that its zero level reaches every hole that lies in one side
+/// as a whole, by a strip one vertex wide along a shortest path over edges; only where that cuts the side
+/// open and does no more.
 void reach_holes(const FilledDisk& disk, const Connectivity& part, std::vector<double>& field);
 
 }  // namespace meshpipe

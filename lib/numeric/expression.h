@@ -8,17 +8,17 @@
 namespace meshpipe {
 
 /// A formula of named variables: + - * / ^, comparisons, a ? b : c, min, max, sqrt, exp, ln, sin and the
-/// like, pi. Not for several threads at once.
+/// like, pi. Not to be used from several threads at once.
 class Expression {
  public:
-  /// Throws BadUsage saying what is wrong and where; an assignment is wrong.
+  /// Parses a formula. Throws: BadUsage saying what is wrong and where; an assignment is wrong.
   Expression(const std::string& text, const std::vector<std::string>& variables);
   ~Expression();
   Expression(const Expression&) = delete;
   Expression& operator=(const Expression&) = delete;
-  /// Whether the formula reads this variable.
+  /// Returns whether the formula contains this variable.
   bool uses(const std::string& variable) const;
-  /// The value for values of the variables in their order; NaN and infinity where the formula gives them.
+  /// Returns the value for values of the variables, in their order; it may be NaN or infinite.
   double operator()(const std::vector<double>& values);
 
  private:

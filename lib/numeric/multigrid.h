@@ -16,16 +16,16 @@ class Multigrid {
  public:
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// `matrix`: both triangles, the columns of every row in order, compressed. Throws GoalMissed if it is
-  /// singular as far as its coarsest level, which is factored, tells.
+  /// Takes a matrix with both triangles, the columns of every row in order, compressed. Throws: GoalMissed if
+  /// it is singular as far as its coarsest level, which is factorized, tells.
   explicit Multigrid(Matrix matrix);
 
-  /// The matrix as it was given.
+  /// Returns the matrix.
   const Matrix& matrix() const { return levels_[0].matrix; }
 
-  /// Solves in place; right-hand sides of n numbers each follow each other. False, with nothing changed, if
-  /// the residual of one is not below 1e-12 of it, as the steps sum it up, after 60 steps, or not below 1e-10
-  /// in the end.
+  /// Solves in place; right-hand sides of n numbers each follow each other. Returns false, and changes
+  /// nothing, if the residual of one is not below 1e-12 of it, as the steps sum it up, after 60 steps, or not
+  /// below 1e-10 in the end.
   bool solve(std::vector<double>& right_hand_side) const;
 
  private:

@@ -5,10 +5,10 @@
 
 namespace meshpipe {
 
-/// Splits the triangles with two edges on the longest loop of their part (face column `part`,
-/// 0..n_parts-1), whose corners a convex border would put in a line, from the corner between these edges to
-/// the middle of the third, with the neighbor there. Columns follow as in lib/core/cut.h. Parts of a single
-/// triangle are left alone. Returns the number of such triangles.
+/// Splits the triangles with two edges on the longest loop of their part (face column `part`, 0..n_parts-1),
+/// which a convex border would flatten: from the corner between these edges to the middle of the third, with
+/// the neighbor there. Columns follow as in lib/core/cut.h. Parts of a single triangle stay. Returns the
+/// number split.
 int split_ears(Surface& surface, int n_parts);
 
 }  // namespace meshpipe

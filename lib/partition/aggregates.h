@@ -13,8 +13,8 @@ struct Aggregates {
   std::vector<int> crossing;  ///< half-edges from an aggregate to one of a higher number, sorted by the two
 };
 
-/// Grows about `wanted` connected aggregates breadth first, or one per triangle if there are no more
-/// triangles than that. `area` is that of each triangle.
+/// Grows about `wanted` connected aggregates of about equal area, breadth first; one per triangle if there
+/// are no more triangles than that. `area`: per triangle.
 Aggregates grow_aggregates(const Connectivity& mesh, const std::vector<double>& area, int wanted);
 
 }  // namespace meshpipe

@@ -5,15 +5,14 @@
 
 namespace meshpipe {
 
-/// An undirected graph in compressed rows: neighbors of v are adjacency[start[v] .. start[v+1]), each edge
-/// twice.
+/// An undirected graph in compressed rows: the neighbors of v are adjacency[start[v] .. start[v+1]).
 struct Graph {
   std::vector<int> start, adjacency, edge_weight, vertex_weight;
 };
 
-/// Recursive multilevel bisection into `k` parts (METIS, the paper's ref. [21]); deterministic for a seed.
-/// May be called from several threads; METIS draws from C's rand(), so the calls wait for each other.
-/// imbalance: how much heavier than the mean a part may be, e.g. 0.3. Returns the part of each vertex.
+/// Returns the part 0..k-1 of each vertex, by recursive multilevel bisection (METIS, the paper's ref. [21]);
+/// the same for the same seed. imbalance: by how much a part may be heavier than the mean, such as 0.3. May
+/// be called from several threads; calls wait for each other, since METIS draws from C's rand().
 std::vector<int> partition_graph(const Graph& graph, int k, double imbalance, int seed);
 
 }  // namespace meshpipe

@@ -8,13 +8,13 @@
 namespace meshpipe {
 
 /// Finds one loop of edges per handle of the connected surface, disjoint, such that it stays connected when
-/// cut along all of them (it is a sphere with holes then); each is as short as found among the tree-cotree
-/// loops of several roots (Erickson and Whittlesey 2005). A loop is a list of half-edges in order. Fewer
-/// loops come back if the mesh is too coarse for disjoint ones.
+/// cut along all of them (it is a sphere with holes then). Each is the shortest found among the tree-cotree
+/// loops of several roots (Erickson and Whittlesey 2005). Returns each loop as half-edges in order; fewer
+/// loops than `genus` if the mesh is too coarse for disjoint ones.
 std::vector<std::vector<int>> handle_loops(const Connectivity& mesh, int genus);
 
-/// Labels every triangle by the nearest side of a loop, reached without crossing any: 2 i for the left side
-/// of loop i, 2 i + 1 for its right side. No label lies on both sides of a loop.
+/// Returns per triangle the nearest side of a loop, reached without crossing any: 2 i for the left side of
+/// loop i, 2 i + 1 for its right side. No label lies on both sides of a loop.
 std::vector<int> label_by_sides(const Connectivity& mesh, const std::vector<std::vector<int>>& loops);
 
 }  // namespace meshpipe

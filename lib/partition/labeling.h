@@ -10,8 +10,7 @@
 
 namespace meshpipe {
 
-/// A component of a surface with what its graph is made of: aggregates joined across edges, weighed by
-/// their length.
+/// A component of a surface, and its graph: aggregates joined by edges, weighted by length.
 struct Component {
   Mesh mesh;
   std::vector<int> opposite;
@@ -23,10 +22,10 @@ struct Component {
   double share = 0;  ///< of the work on the whole surface (lib/core/progress.h)
 };
 
-/// Without weights and aggregates, which are made when they are needed.
+/// Makes a component that is the region `whole`. Weights and aggregates are made when they are needed.
 Component make_component(ConnectedPart part, const Region& whole);
 
-/// How a labeling compares: fewer parts in the end first, then the cheaper cut.
+/// A labeling of triangles; less is better: fewer parts in the end, then the cheaper cut.
 struct Labeling {
   std::vector<int> label;  ///< 0..parts-1
   int parts = 0;
@@ -37,13 +36,14 @@ struct Labeling {
   }
 };
 
-/// Tries several numbers of parts, balances and seeds; those of a large component on a coarse model of it.
-/// With `homology`, cuts along handles (lib/partition/handles.h) too; else only if METIS's labelings have
-/// more than genus + 2 parts. Every label is edge-connected, pinched nowhere, and has genus 0 and a border.
-/// No parts if none is found.
+/// Returns the best of labelings for several numbers of parts, balances and seeds, made on a coarse model if
+/// the component is large. Labelings by cuts along handles (lib/partition/handles.h) are tried with
+/// `homology`, or if METIS's have more than genus + 2 parts. Every label is edge-connected, pinched nowhere,
+/// and has genus 0 and a border. No parts if none is found.
 Labeling best_labeling(Component& c, bool homology, int seed);
 
-/// Cuts parts of too many triangles, with a margin for those that smoothing adds. No parts if it cannot.
+/// Cuts the parts of a labeling until none has more than 0.9 max_faces triangles (smoothing adds some).
+/// l.parts becomes 0 if that fails.
 void bound_faces(Component& c, Labeling& l, int max_faces, int seed);
 
 }  // namespace meshpipe

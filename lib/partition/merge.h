@@ -15,7 +15,7 @@ struct SharedBorder {
   double length;
 };
 
-/// Returns the borders between labels, each pair once, the longest first. length(h) is that of a half-edge.
+/// Returns the borders between labels (per triangle), the longest first. length(h): of a half-edge.
 template <class Length>
 std::vector<SharedBorder> shared_borders(const Connectivity& mesh, const std::vector<int>& label,
                                          const Regions& regions, Length length) {
@@ -39,9 +39,9 @@ std::vector<SharedBorder> shared_borders(const Connectivity& mesh, const std::ve
   return shared;
 }
 
-/// Joins neighbors that accept(a, b) agrees to, those with the longest shared border first, until there are
-/// none left; `label` is the joiner's. A pair that was refused is asked about again once one of the two has
-/// grown. Returns whether any were joined.
+/// Joins neighboring regions a, b for which accept(a, b) holds, those with the longest shared border first,
+/// until there are none left. `label`: the joiner's; length(h): of a half-edge. A refused pair is asked about
+/// again once one of the two has grown. Returns whether any were joined.
 template <class Length, class Accept>
 bool join_neighbors(Joiner& joiner, const Connectivity& mesh, const std::vector<int>& label, Length length,
                     Accept accept) {

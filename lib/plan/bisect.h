@@ -8,16 +8,16 @@
 
 namespace meshpipe {
 
-/// Cuts `part` (face column `part`) in two along the line of least length / sqrt(area of the smaller side) of
-/// those with two connected sides without pinched vertices. Lines are levels of the potential between both
-/// vertices of each pair in `apart` (numbers in the surface; pairs not in the part are skipped), or of the
-/// Fiedler vector if none is left. The side above the level becomes part new_part. Returns false, and changes
-/// nothing, if there is no such line.
+/// Cuts `part` (face column `part`) in two along the level line with the least length / sqrt(area of the
+/// smaller side) of those with two connected sides without pinched vertices. Lines are levels of the
+/// potential between the two vertices of each pair in `apart` (rows of the surface; pairs not in the part are
+/// skipped), or of the Fiedler vector if none is left. The side above the level becomes part new_part.
+/// Returns false, and changes nothing, if there is no such line.
 bool bisect_part(Surface& surface, int part, int new_part, const std::vector<std::array<int, 2>>& apart);
 
-/// Cuts `part` by multiscale_cut although its aspect ratio is admissible: along its limbs, so that none
-/// shrinks to nothing in a chart. Returns the new number of parts; n_parts, with nothing changed, if
-/// there is no such cut.
+/// Cuts `part` along its limbs, so that none shrinks to nothing in a chart: by multiscale_cut with a limit
+/// just below its aspect ratio. Returns the new number of parts; n_parts if there is no such cut, or more
+/// than four parts.
 int cut_along_limbs(Surface& surface, int part, int n_parts);
 
 }  // namespace meshpipe

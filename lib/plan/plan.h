@@ -19,10 +19,11 @@ struct PartitionOptions {
 };
 
 /// Sets face columns `part` (0..n-1) and `origin` (where missing) so that every part is edge-connected,
-/// touches itself nowhere, has genus 0 and a border. The faces that model edges bound (face column `model`)
-/// are parts. Those that do not map to the plane are cut through triangles, into as few parts as it finds,
-/// then by the shortest and smoothest line. `opposite`, if given, receives the result's. Returns the number
-/// of parts. Requires: an oriented manifold. Throws NotAdmissible, and GoalMissed if there is no such cut.
+/// touches itself nowhere, has genus 0 and a border. Parts are the faces that model edges (face column
+/// `model`) bound; those that do not map to the plane are cut through triangles, into as few parts as it
+/// finds, then by the shortest and smoothest line. `opposite`, if given, receives the result's opposite
+/// half-edges. Returns the number of parts.
+/// Requires: an oriented manifold. Throws: NotAdmissible; GoalMissed if there is no such cut.
 int partition_to_disks(Surface& surface, const PartitionOptions& options = {},
                        std::vector<int>* opposite = nullptr);
 
@@ -44,22 +45,21 @@ struct MultiscaleCut {
 };
 
 /// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, then
-/// joins halves to neighbors where the union is admissible. Triangles of no part (-1) are left alone, and
-/// then nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts; `cuts`,
-/// `topology` and `opposite` receive, if given, what was done in order, and the result's; `topology`
-/// may bring that of the given parts. Requires: parts of genus 0 with a border. Throws NotAdmissible;
-/// GoalMissed if more than most_parts are needed.
+/// joins halves to neighbors where the union is admissible. If triangles are in no part (-1), they are left
+/// alone and nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts.
+/// Receive, if given: `cuts` the cuts in order, `topology` (which may bring that of the given parts) and
+/// `opposite` the result's.
+/// Requires: parts of genus 0 with a border. Throws: NotAdmissible; GoalMissed beyond most_parts.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
                    std::vector<int>* opposite = nullptr);
 
-/// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane, charts in parallel. A part
-/// whose map fails, or is worse than lib/partition/thresholds.h allows, is cut, and its pieces are mapped:
-/// along its limbs, else by a short line. Cuts append vertices, split triangles and rewrite face column
-/// `part`; with options.strict there are none. Before circle maps, triangles with two edges on the longest
-/// loop are split (lib/param/ears.h). `alone`: such parts stay without a map; `known`: maps that were made
-/// so, of vertices mesh.vertex, with their rows of `reports`. Returns the charts, with one row of `reports`
-/// per part. Throws GoalMissed if a part has no one-to-one map.
+/// Maps every part of the surface (face column `part`, 0..n_parts-1) to the plane. A part whose map fails, or
+/// is worse than lib/partition/thresholds.h allows, is cut along its limbs or by a short line, and its pieces
+/// are mapped (not with options.strict). Cuts append vertices, split triangles and rewrite column `part`;
+/// circle maps first split triangles with two edges on the longest loop (lib/param/ears.h). `alone`: such
+/// parts stay without a map; `known`: the maps made so, with their rows of `reports`. Returns the charts, and
+/// one row of `reports` per part. Throws: GoalMissed if a part has no one-to-one map.
 std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions& options,
                                std::vector<ParamReport>& reports, std::vector<Chart> known = {},
                                bool alone = false);

@@ -9,37 +9,37 @@
 
 namespace meshpipe {
 
-/// Makes border vertices at the same place copies of each other. Those where other sheets or lines meet than
-/// next to them are held.
+/// Makes border vertices with the same coordinates copies of each other (State::copy). Copies are held where
+/// not all of them slide between the same two neighbors.
 void share_vertices(State& s);
 
-/// A vertex or half-edge, with the place on its sheet and the normal there.
+/// A vertex or a half-edge (`at`), with a place on its sheet and the normal there.
 struct CopyPlace {
   int at;
   Place place;
   Vec3 normal;
 };
 
-/// Returns v and its copies when v is at `place`, whose point is p; none if one of them cannot get there.
+/// Returns v at `place`, whose point is p, and its copies at that point; none if one cannot get there.
 std::vector<CopyPlace> copies_at(const State& s, int v, const Place& place, Vec3 p);
-/// Returns h and the half-edges of other sheets along its edge for a vertex at `place`, whose point is p;
-/// none if one of them does not pass there.
+/// Returns h at `place`, whose point is p, and the half-edges of other sheets along its edge at the same
+/// point; none if one of them does not pass there.
 std::vector<CopyPlace> places_on_edge(const State& s, int h, const Place& place, Vec3 p);
-/// Puts a vertex at p on each of these half-edges, which are copies of each other.
+/// Puts a vertex at p on each of these half-edges; the new vertices are copies of each other.
 void insert_copies(State& s, const std::vector<CopyPlace>& edges, Vec3 p);
 
-/// Returns the half-edges along the edge of h and their ends that are copies of `gone`; none unless every
-/// copy has one.
+/// Returns half-edges along the edge of h with the end that is a copy of `gone`; none if a copy has none.
 std::vector<std::pair<int, int>> with_copies(const State& s, int h, int gone);
 
-/// Is there an edge between a and b, one of them another copy? A second one would make sheets meet along it.
+/// Returns whether an edge joins other copies of a and b: then sheets would meet along an edge from a to b.
 bool joined_elsewhere(const State& s, int a, int b);
-/// Would collapsing the edge of h into its other vertex than `gone` make such edges?
+/// Returns whether collapsing the edge of h, which takes out its vertex `gone`, would make such edges.
 bool doubles_edges(const State& s, int h, int gone);
-/// Flips or splits edges between the same vertices as one of another sheet.
+/// Flips or splits inside edges that join the same places as an edge of another sheet.
 void part_double_edges(State& s);
 
-/// Sets the copies of a patch with these vertices of s. Where some are outside of it, all are frozen.
+/// Sets the copies in a patch, whose vertices are these vertices of s (ascending). Where some copies are
+/// outside of the patch, all are frozen.
 void extract_copies(const State& s, const std::vector<int>& vertices, State& patch);
 
 }  // namespace meshpipe

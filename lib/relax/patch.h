@@ -17,45 +17,45 @@ struct Trial {
   State state;
 };
 
-/// 1 for a triangle that is good enough: kappa 0.75, 35 degrees and, where it may be asked, 86; 0 for one
-/// that is folded over.
+/// Returns the quality of triangle t: 1 or more if it is good enough (kappa 0.75, 35 degrees and, where it
+/// may be asked, 86 degrees), 0 if it is folded.
 double quality(const State& s, int t);
-/// The point of triangle t nearest to p.
+/// Returns the point of triangle t nearest to p.
 Vec3 nearest_point(const State& s, int t, Vec3 p);
-/// By how much the valence of an inside vertex is off 5, 6 or 7.
+/// Returns by how much the valence of a vertex that may move is off 5 to 7 (on a border 3 to 5); else 0.
 int irregularity(const State& s, int v);
-/// What trials make small: a sum over triangles that counts the worst most, and none that is good with a
-/// margin; and over inside vertices whose valence is not 5, 6 or 7.
+/// Returns what trials minimize: a sum over triangles of their lack of quality, in which the worst count most
+/// and those that are good with a margin not at all, plus a little per irregularity.
 double objective(const State& s);
-/// The triangle of least quality.
+/// Returns the triangle of least quality.
 int worst(const State& s);
-/// The largest distance of the middles of triangle t and its edges from the reference, over the size. An edge
-/// counts with the triangle of its larger half-edge.
+/// Returns the largest distance of the centroid of triangle t and of the midpoints of its edges from the
+/// reference, in units of the size. An edge counts with the triangle of its larger half-edge.
 double deviation(const State& s, int t);
-/// The largest of all triangles.
+/// Returns the largest deviation of all triangles.
 double deviation(const State& s);
 
-/// Do two edges of these triangles join the same vertices? Components of few triangles have such edges, which
-/// no patch can tell apart.
+/// Returns whether two edges of these triangles join the same vertices. Components of few triangles have such
+/// edges, which no patch can tell apart.
 bool has_double_edge(const EditMesh& mesh, const std::vector<int>& triangles);
 
-/// Triangle t, then those that are up to `rings` vertices away, on other sheets too.
+/// Returns triangle t, then those up to `rings` vertices away from it, on other sheets too.
 std::vector<int> triangles_around(const State& s, int t, int rings);
-/// These triangles as a mesh of its own whose rim is frozen, and which records its edits. Its vertices are
-/// those of the triangles, ascending.
+/// Copies these triangles to a mesh of its own, whose rim is frozen and which records its edits. Its vertices
+/// are those of the triangles, in ascending order.
 State extract(const State& s, const std::vector<int>& triangles);
-/// Flips for shape and smooths, a few times.
+/// Flips for shape and smooths, `times` times.
 void settle(State& s, int times);
-/// Takes everything for settled: only what is changed from now on, and what is around it, is tried again.
+/// Marks everything as settled: only what changes from now on, and what is around it, is tried again.
 void rest(State& s);
-/// Repeats in s what was done to the patch extracted from these triangles, and moves its vertices.
+/// Repeats in s the edits of the patch extracted from these triangles, then moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
-/// What trials make small, and whether splits may fold what smoothing may unfold.
+/// The objective that trials minimize, and whether splits may fold what smoothing may unfold.
 struct Judge {
   std::function<double(const State&)> of = objective;
   bool may_fold = false;
 };
-/// Evaluates the trials and keeps the best `most` of them, the best first.
+/// Evaluates the trials by the judge and keeps the `most` best, the best first.
 void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge = {});
 
 /// Changes neighborhoods until `most` were adopted or `attempts` were tried. Those that do not overlap are

@@ -41,15 +41,15 @@ struct RelaxReport : RelaxCounts {
 /// Flips, collapses, splits and moves until the mesh is regular, judged in space. Vertices stay on the
 /// reference; borders, model edges and corners stay; vertices of interface lines (line_kind[line] ==
 /// interface_line) are free.
-///   reference: vertex column `size` (without: the mesh's own sizes), face column `model` (without: no edges)
-///   corner: per vertex of the reference, 1 where a line has a corner that stays, unless another is much
-///   nearer
-///     than the size; empty: only ends and junctions of lines stay
-/// Returns: the same bytes at any number of threads.
+/// reference: read are vertex column `size` (without: the mesh's own sizes), face column `model` (without: no
+/// edges)
+/// corner: per vertex of the reference, 1 where a line has a corner that stays, unless another is much nearer
+/// than the size; empty: only ends and junctions of lines stay
+/// Returns the same bytes at any number of threads.
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner = {}, const RelaxOptions& options = {});
 
-/// How a vertex may move. From `fixed` on it does not.
+/// How a vertex may move; one of `fixed` or later does not move.
 enum Hold : char {
   loose,
   slides,    ///< along a border or model edge
@@ -66,13 +66,13 @@ struct TiledMesh {
   std::vector<double> refinement;  ///< factor on the size, below 1 where triangles intersected
 };
 
-/// The vertices of a tile that other triangles of the whole have, too, as they are there; no triangles.
+/// The vertices of a tile that other tiles have, too, as they are in the whole mesh; no triangles.
 struct Rim : TiledMesh {
   std::vector<int> vertex, row;  ///< their rows in the tile and in the whole
   std::vector<int> excess;       ///< in the whole: see excess
 };
 
-/// Triangles of a mesh as a mesh of its own, whose rim is frozen.
+/// Triangles of a mesh as a mesh of its own, whose rim is frozen, with the part of the reference below it.
 struct Tile : TiledMesh {
   Rim rim;
   std::vector<std::pair<int, int>> model_rim;  ///< model edges between vertices of the rim, rows of the whole
@@ -83,7 +83,7 @@ struct Tile : TiledMesh {
   RelaxCounts counts;        ///< of what was done to it
 };
 
-/// What is done to the tiles of a mesh: first they are optimized, in a second pass repaired.
+/// The parameters of a pass over the tiles of a mesh, which optimizes them or, the second, repairs them.
 struct TilePass {
   int sweeps = 4;
   bool keep_border = false;
@@ -95,38 +95,42 @@ struct TilePass {
   double share = 1;        ///< of the work that is shown, per tile
 };
 
-/// The optimization of a large mesh in steps, with tiles that may be separate jobs. Arguments as in
-/// relax, which does the same, to the bit, to a mesh for which `uses_tiles`.
+/// The optimization of a large mesh in steps, whose tiles may be separate jobs. For a mesh for which
+/// `uses_tiles`, `relax` does the same, to the bit. Arguments as in relax.
 struct TiledRelax {
   const Surface& reference;
   const std::vector<int>& line_kind;
   const std::vector<char>& corner;
   const RelaxOptions& options;
 
+  /// Returns the parameters of the first pass, or with `repair` of the second.
   TilePass pass(const TiledMesh& whole, bool repair) const;
-  /// Calls `take` for each tile of the mesh, in their order.
+  /// Cuts the mesh into tiles and calls `take` for each, in their order.
   void cut(const TiledMesh& whole, const TilePass& pass, const std::function<void(Tile)>& take) const;
-  /// Makes a pass over the seams of the tiles that a mesh was joined of: vertices on their rims.
+  /// Makes a pass over the seams between joined tiles: around these vertices. Adds to `counts`.
   void relax_seams(TiledMesh& whole, const std::vector<int>& seams, const TilePass& pass,
                    RelaxCounts& counts) const;
-  /// Makes the passes that are left of two, after so far `passes`, and repairs where tiles intersect.
+  /// Makes the passes left of two after `passes`, and repairs where tiles intersect. `counts`: done before.
   RelaxReport finish(TiledMesh& whole, int passes, const RelaxCounts& counts) const;
 };
+/// Returns whether relax works in tiles: whether the mesh has more than four times options.tile triangles.
 bool uses_tiles(const LiftedMesh& mesh, const RelaxOptions& options);
+/// Makes a mesh ready for its first pass.
 TiledMesh as_tiled(LiftedMesh mesh);
-/// Optimizes or repairs a tile. Afterwards its places are rows of the whole reference, and its slice is
-/// empty.
+/// Optimizes or repairs a tile. Its places are then rows of the whole reference, and its slice is empty.
 void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& pass);
+/// Adds the numbers of operations to a sum.
 void add(RelaxCounts& sum, const RelaxCounts& counts);
 
-/// Removes triangles from a mesh, and the vertices that no others have. Returns the new row of each vertex,
-/// or -1.
+/// Removes the triangles of `region` (rows) from a mesh, and the vertices that no others have. Returns the
+/// new row of each vertex, or -1.
 std::vector<int> remove_region(TiledMesh& whole, const std::vector<int>& region);
-/// Makes room for that many rows in all.
+/// Reserves memory for these numbers of points and triangles in all.
 void reserve(TiledMesh& whole, std::size_t points, std::size_t triangles);
-/// Appends a tile, relaxed. `number`, updated: the row in `whole` of each vertex of the mesh that it was cut
-/// from, -1: none yet. `seams` gets the rows that are added for its rim: they were frozen only since other
-/// tiles have them. Throws: BadInput if its rim is not, to the last bit, that of other tiles.
+/// Appends a relaxed tile to `whole`. `number`, updated: per vertex of the mesh from which the tile was cut,
+/// its row in `whole`, -1: none yet. `seams` receives the rows that are added for the tile's rim, which was
+/// frozen only because other tiles have it. Throws: BadInput if the rim is not, to the last bit, that of
+/// other tiles.
 void append_tile(TiledMesh& whole, const Tile& tile, std::vector<int>& number, std::vector<int>& seams);
 
 }  // namespace meshpipe

@@ -12,23 +12,25 @@
 
 namespace meshpipe {
 
-/// Shape energy of a triangle: the square of the inverse mean ratio (l1^2 + l2^2 + l3^2) / (4 sqrt(3) A)
-/// (Knupp 2001): 1 for the equilateral, infinite for the degenerate; squared so that the worst count most.
+/// Returns the shape energy of a triangle: the square of the inverse mean ratio (l1^2 + l2^2 + l3^2) / (4
+/// sqrt(3) A) (Knupp 2001). 1 for the equilateral, infinite for the degenerate; squared so that the worst
+/// count most.
 inline double shape_energy(Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 n = area_vector(a, b, c);
   const double n2 = dot(n, n), squares = dot(b - a, b - a) + dot(c - b, c - b) + dot(a - c, a - c);
   return n2 > 0 ? squares * squares / (12 * n2) : 1e30;
 }
 
-/// Cosine of the normal deviation of triangle p, q, r: the angle between its normal and `reference`, the sum
-/// of the reference normals at its corners. 1 where that is zero, since all corners are on model edges.
+/// Returns the cosine of the normal deviation of triangle p, q, r: of the angle between its normal and
+/// `reference`, the sum of the reference normals at its corners. 1 where that is zero, as when all corners
+/// are on model edges.
 inline double normal_cosine(Vec3 p, Vec3 q, Vec3 r, Vec3 reference) {
   const Vec3 n = area_vector(p, q, r);
   const double l2 = dot(n, n) * dot(reference, reference);
   return l2 > 0 ? dot(n, reference) / std::sqrt(l2) : 1;
 }
 
-/// Does a change fold a triangle? By the least cosines before and after it.
+/// Returns whether a change folds a triangle, from the least normal_cosine before and after it.
 inline bool folds(double before, double after) {
   return after < std::min(before, rules::least_cosine) - rules::same_cosine;
 }
@@ -36,8 +38,9 @@ inline bool folds(double before, double after) {
 /// The reference surface, ready to be walked on. Keeps a reference to it.
 struct Reference {
   explicit Reference(const Surface& reference);
-  /// Smooth unit normal at a place.
+  /// Returns the smooth unit normal at a place.
   Vec3 normal(const Place& p) const;
+  /// Returns the size at a place. Requires: `sizes`.
   double size(const Place& p) const;
 
   const Surface& surface;
@@ -91,15 +94,16 @@ struct State {
   State(const Reference& on, EditMesh edited_mesh, std::vector<Vec3> at, std::vector<Place> places,
         std::vector<double> sizes);
 
+  /// Returns the wanted edge length at v.
   double target(int v) const { return size[v] * refinement[v]; }
-  /// Length of an edge over the size at its ends.
+  /// Returns the length of an edge over the size at its ends.
   double length(int a, int b) const { return 2 * norm(points[b] - points[a]) / (target(a) + target(b)); }
   double length(int h) const { return length(mesh.from(h), mesh.to(h)); }
   double shape(int a, int b, int c) const { return shape_energy(points[a], points[b], points[c]); }
   double cosine(int a, int b, int c) const {
     return normal_cosine(points[a], points[b], points[c], normal[a] + normal[b] + normal[c]);
   }
-  /// Unit normal of triangle t.
+  /// Returns the unit normal of triangle t.
   Vec3 face_normal(int t) const {
     const Tri& v = mesh.tris[t];
     return normalized(area_vector(points[v[0]], points[v[1]], points[v[2]]));
@@ -126,7 +130,7 @@ struct State {
   std::vector<Edit> edits;  ///< while recording
 };
 
-/// Is v one of several copies?
+/// Returns whether v has copies.
 inline bool is_shared(const State& s, int v) { return !s.copy.empty() && s.copy[v] != v; }
 
 /// Calls f for v and its copies.
@@ -140,33 +144,32 @@ void for_copies(const State& s, int v, F&& f) {
   } while (w != v);
 }
 
-/// Has the triangle p, q, r the orientation of the reference at the place nearest to its middle, walked to
-/// from `from`? Where the reference bends much within an edge, as at a spike, the normals at the corners do
-/// not tell.
+/// Returns whether triangle p, q, r has the orientation of the reference at the place nearest to its
+/// centroid, reached by a walk from `from`. Where the reference bends much within an edge, as at a spike, the
+/// normals at the corners do not tell.
 bool faces_reference(const State& s, const Place& from, Vec3 p, Vec3 q, Vec3 r);
 
-/// The mesh to optimize, which is moved from. The others as in relax.
+/// Makes the state of a mesh to optimize, from which columns are moved. Arguments as in relax.
 State start_state(LiftedMesh& mesh, const Reference& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner, bool sheets_meet = false);
-/// Throws: NotAdmissible if a vertex that is not frozen has several fans of triangles: edits would tear them.
+/// Throws NotAdmissible if a vertex that is not frozen has several fans: edits would tear them apart.
 void expect_single_fans(const State& s);
 
-/// Numbers vertices and triangles without gaps and moves them to `mesh`; returns for each triangle its row
-/// there, or -1.
+/// Moves the mesh, numbered without gaps, to `mesh`. Returns the new row of each triangle, or -1.
 std::vector<int> finish(State& s, LiftedMesh& mesh);
 
-/// The edge length that the triangles, or those of the whole, would have if all were equilateral and equal.
+/// Returns the edge length if all triangles (of a tile: of the whole) were equilateral and equal.
 double mean_size(const State& s);
 
-/// Puts v at a place of the reference, whose point is p.
+/// Puts v at a place of the reference, whose point is p; the size becomes that of the place.
 void put(State& s, int v, const Place& place, Vec3 p, Vec3 normal);
 
 inline void mark_changed(State& s, int v) { s.clocks.changed[v] = ++s.clocks.now; }
-/// To be called for every vertex whose neighbors have changed.
+/// Notes that the neighbors of v have changed: to be called for every such vertex.
 void mark_edited(State& s, int v);
 
-/// Edges inside (the smaller half-edge) that are no model edges and longer than `limit` times the size, the
-/// longest first; with `shorter`, those that are shorter, the shortest first.
+/// Returns the smaller half-edges of inside edges that are no model edges and longer than `limit` times the
+/// size, the longest first; with `shorter`, of those that are shorter, the shortest first.
 std::vector<int> edges_by_length(const State& s, double limit, bool shorter);
 
 }  // namespace meshpipe

@@ -7,8 +7,8 @@
 
 namespace meshpipe {
 
-/// Triangles between exact points, each with a weight: how many sheets lie there, those of the other
-/// orientation subtracted.
+/// Triangles between exact points, each with a weight: the number of sheets that lie there, those of the
+/// other orientation subtracted.
 struct Pieces {
   std::vector<Tri> tris;
   std::vector<int> origin;  ///< triangle of the mesh, which has the same plane and orientation
@@ -16,12 +16,12 @@ struct Pieces {
   std::vector<int> piece_of;  ///< per triangle of the mesh: one of its pieces
 };
 
-/// Divides the triangles of a mesh where the pairs intersect. Pieces that coincide become one. Requires:
-/// `pairs` are all that intersect, no two vertices have the same coordinates, each triangle has area.
+/// Divides triangles (weight: per triangle) where the pairs intersect. Pieces that coincide become one.
+/// Requires: `pairs` are all that intersect; vertices differ; triangles have area.
 Pieces arrange(const std::vector<Tri>& tris, const std::vector<int>& weight,
                const std::vector<std::pair<int, int>>& pairs, ExactPoints& points);
 
-/// Makes one of triangles with the same three vertices: the first, with the sum of the weights.
+/// Unites triangles with the same three vertices: the first stays, with the sum of the weights.
 void unite_coincident(Pieces& pieces);
 
 }  // namespace meshpipe

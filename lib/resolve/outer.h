@@ -16,10 +16,12 @@ struct Hull {
 };
 
 /// Finds the boundary between regions of positive winding number and others, oriented away from the former.
-/// Open components have the outside in front, as far as that determines where they pass through each other.
-/// Where it does not, and most of them encloses regions, these are solid: what is not on their outside goes.
-/// Weights change sign in closed components that are inside out. Returns one row per piece. Source: Zhou,
-/// Grinspun, Zorin, Jacobson, Mesh Arrangements for Solid Geometry, 2016, for closed ones.
+/// Open components have the outside in front, as far as that determines where they pass through each other;
+/// where it does not, and most of a component encloses regions, these are solid: what is not on their outside
+/// goes. Weights (`weight`: per triangle of `tris`, the input) change sign in closed components that are
+/// inside out. Returns one row per piece.
+/// Source: Zhou, Grinspun, Zorin and Jacobson, Mesh Arrangements for Solid Geometry, 2016, for closed
+/// components.
 Hull outer_hull(Pieces& pieces, const std::vector<Tri>& tris, const std::vector<int>& weight,
                 const ExactPoints& points);
 

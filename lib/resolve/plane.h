@@ -8,21 +8,21 @@
 
 namespace meshpipe {
 
-/// A triangulation of a triangle, in which points and segments are inserted. One object serves many triangles
-/// in turn, so that memory is reused.
+/// A triangulation of a triangle, into which points and segments are inserted. One object serves many
+/// triangles in turn, so that memory is reused.
 class TriangleArrangement {
  public:
   explicit TriangleArrangement(ExactPoints& points) : points_(points) {}
-  /// Starts with one triangle of three vertices. Requires: it has area.
+  /// Starts with one triangle. Requires: it has area.
   void start(const Tri& corners);
-  /// Makes point p, which lies on the triangle, a vertex. As the next, throws Error if it does not.
+  /// Makes point p a vertex. Throws: Error if it does not lie on the triangle.
   void insert(int p);
-  /// Makes the segment between two vertices a chain of fixed edges; where it crosses other fixed edges, there
-  /// are new vertices.
+  /// Makes the segment between two vertices a chain of fixed edges, with new vertices where it crosses other
+  /// fixed edges. Throws: Error if it leaves the triangle.
   void insert(int p, int q);
-  /// Flips free edges towards Delaunay's, by rounded coordinates.
+  /// Flips free edges towards a Delaunay triangulation, by rounded coordinates.
   void improve();
-  /// The triangles, oriented as the corners; the sides of the corners are fixed.
+  /// Returns the triangulation, oriented as the corners; the sides of the triangle are fixed.
   const PlaneTriangulation& mesh() const { return mesh_; }
 
  private:

@@ -18,9 +18,9 @@ struct PlaneTriangulation {
   int to(int h) const { return target(tris, h); }
   int apex(int h) const { return origin(tris, prev(h)); }
   bool fixed(int h) const { return line[h] >= 0; }
-  /// Returns a half-edge that leaves p.
+  /// Returns a half-edge that starts at point p.
   int leaving(int p) const;
-  /// Returns the half-edge from p to q; on the border it may run from q to p. -1 if there is none.
+  /// Returns the half-edge from p to q, on the border possibly from q to p; -1 if there is none.
   int half_edge(int p, int q) const;
 
   void clear();
@@ -28,7 +28,7 @@ struct PlaneTriangulation {
   void set(int t, const Tri& corners);
   void link(int h, int outer, int on_line);
   void fix(int h, int on_line);
-  /// Turns the diagonal; the new one is half-edge 3 * (h / 3).
+  /// Replaces the edge of h by the other diagonal of its two triangles, which becomes half-edge 3 * (h / 3).
   void flip(int h);
   void split_triangle(int t, int p);
   void split_edge(int h, int p);

@@ -13,13 +13,13 @@ struct PieceMesh {
   Pieces pieces;
 };
 
-/// Makes one vertex of equal ones, drops triangles without area and unused vertices, and unites triangles
-/// with the same vertices. Clears `piece_of`.
+/// Merges vertices with the same coordinates, drops triangles without area and unused vertices, and unites
+/// triangles with the same vertices. Clears `piece_of`.
 void normalize(PieceMesh& mesh);
 
-/// Among the triangles at the vertices flagged: merges vertices no farther apart than `tolerance`, and
-/// divides edges at vertices of a triangle that are no farther from them. What was closed stays closed. The
-/// result is normalized.
+/// Merges vertices no farther apart than `tolerance`, and splits edges at vertices of their triangle no
+/// farther from them, in the triangles at the flagged vertices. What was closed stays closed. The result is
+/// normalized.
 void remove_slivers(PieceMesh& mesh, const std::vector<char>& flagged, double tolerance);
 
 }  // namespace meshpipe

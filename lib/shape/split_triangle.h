@@ -9,11 +9,11 @@
 
 namespace meshpipe {
 
-/// A point of a triangle: its corners, and how many k-ths of the point are each of them. In the order of the
-/// corners' numbers, so that sums of both triangles of an edge are the same to the last bit.
+/// A point of a triangle: its corners with how many k-ths of each it consists of, ordered by corner, so that
+/// sums in both triangles of an edge are the same to the last bit.
 using CornerShares = std::array<std::pair<int, int>, 3>;
 
-/// Appends the k^2 triangles of a triangle on points of their own, which point(shares) gives.
+/// Appends the k^2 triangles into which t is divided, on points of their own, point(shares).
 template <class F>
 void add_split_triangle(Mesh& mesh, int k, const Tri& t, F&& point) {
   const int first = (int)mesh.points.size();

@@ -13,11 +13,11 @@ struct Layers {
   double growth = 1.2;  ///< of the next one over it
   int count = 5;
   bool outside = false;  ///< else inside, as in a vessel
-  /// Thickness of all.
+  /// Returns the thickness of all layers.
   double total() const;
 };
 
-/// Parses T[,GROWTH[,N]][,outside]. Throws: BadUsage.
+/// Parses "T[,GROWTH[,N]][,outside]": first thickness, growth, number of layers. Throws: BadUsage.
 Layers parse_layers(const std::string& text);
 
 /// What leaves too little space, at how many vertices, and where it leaves least.
@@ -31,12 +31,12 @@ struct LayerReport {
   Vec3 at{};
 };
 
-/// Sets vertex column `layers` to the thickness of all layers that fits: half the distance of the sheet that
-/// faces the vertex, at most the radius of curvature where the surface bends towards the layers, and nothing
-/// at edges of an angle below 60 degrees on their side. Throws: NotAdmissible like opposite_halfedges.
+/// Sets vertex column `layers` to the total thickness that fits: half the distance of the sheet that faces
+/// the vertex, at most the radius of curvature where the surface bends towards the layers, and nothing at
+/// edges with an angle below 60 degrees on their side. Throws: as opposite_halfedges.
 LayerReport check_layers(Surface& surface, const Layers& layers);
 
-/// Returns lines for the user; none unless layers were asked for.
+/// Returns the report as lines of text; none unless layers were asked for.
 std::vector<std::string> describe(const LayerReport& report);
 
 }  // namespace meshpipe

@@ -16,16 +16,16 @@ struct SizeBound {
   double length = 0;  ///< of the side of a strip that this bounds; 0 for sheets
 };
 
-/// Returns the number of triangles along strips beyond those that their area stands for, where the size is
-/// `most` or less as the bounds say: a strip takes one triangle per edge on its sides, whatever its width.
+/// Returns the number of triangles that narrow strips need beyond those for their area, if the size is at
+/// most `most` and that of the bounds: a strip takes one triangle per edge on its sides, whatever its width.
 double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);
 
 /// Measures where a surface comes so close to itself that edges of the length `asked` (per vertex) cannot be
-/// good: a strip between two lines (borders or model edges) permits a multiple of its width, and a bent sheet
-/// whose chords sag towards another sheet permits those that sag by a share of the gap. Lines and sheets that
-/// meet nearby are adjacent, not near. Bounds are at least `least`. Returns them in the order of half-edges;
-/// for edges that are on no line, at one of the two. Near-linear where few places are narrow. Where strips
-/// ask for more triangles than `most_triangles` it returns their bounds, and looks for no sheets.
+/// good: a strip between two lines (borders or model edges) permits a multiple of its width, a bent sheet
+/// those edges that sag towards another sheet by a share of the gap. Lines and sheets that meet nearby are
+/// adjacent, not near. Bounds are at least `least`. Returns them in the order of half-edges, one per edge
+/// that is on no line. Near-linear where few places are narrow. If strips need more triangles than
+/// `most_triangles`, returns their bounds and looks for no sheets.
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
                                        double least, double most_triangles);
 

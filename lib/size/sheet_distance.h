@@ -8,24 +8,24 @@
 
 namespace meshpipe {
 
-/// The angle of the surface at an edge, on the side that is behind its triangles, in degrees; 180 where flat.
+/// Returns the angle of the surface at an edge, behind its triangles, in degrees; 180 where it is flat.
 double angle_behind(const Connectivity& surface, int half_edge);
 
-/// Measures by rays how far the sheet is that faces a point, on one side of the surface: for every vertex the
-/// radius of the ball that touches the surface there and the sheet opposite to it. In a tube that is its
-/// radius; between parallel sheets it is half their distance. At creases it is the smallest of their sides.
-/// Next to folds, where two sides meet at less than 75 degrees, it is that of the neighborhood; and so it is
-/// where branches meet.
+/// Measures by rays how far the sheet is that faces each vertex, on one side of the surface: the radius of
+/// the ball that touches the surface at the vertex and the opposite sheet. In a tube that is its radius,
+/// between parallel sheets half their distance; at creases it is the smallest of their sides. Next to folds,
+/// where two sides meet at less than 75 degrees, and where branches meet, it is that of the neighborhood.
 class SheetDistance {
  public:
   enum Side { inside, outside };
-  /// Copies the surface. The inside of closed components is behind their triangles, that of open ones where
-  /// they would enclose a volume. `none`: the radius where no sheet faces a vertex, and the largest.
+  /// Copies the surface and measures. The inside of closed components is behind their triangles, that of open
+  /// ones where they would enclose a volume. `none`: the radius where no sheet faces a vertex, and the
+  /// largest one.
   SheetDistance(const Connectivity& surface, Side side, double none);
   SheetDistance(const SheetDistance&) = delete;
-  /// Per vertex.
+  /// Returns the radius per vertex.
   const std::vector<double>& radii() const { return radius_; }
-  /// The same at a point of the surface.
+  /// Returns the radius at a point of the surface.
   double radius_at(Vec3 p) const;
 
  private:
@@ -37,16 +37,16 @@ class SheetDistance {
     bool sure = false, slanted = false;
   };
   Ball ball(Vec3 p, Vec3 normal) const;
-  /// The ball at a point of face t near corner p, for creases, where vertices have no normal.
+  /// Returns the ball at a point of face t near its corner p, for creases, where vertices have no normal.
   Ball ball_on_face(int t, Vec3 p) const;
-  /// The smallest at point p of face t and the other sides of a crease there.
+  /// Returns the smallest radius at point p on the sides of a crease there, of which face t is one.
   double ball_on_sides(int t, Vec3 p) const;
   void measure();
   void close_openings(const Connectivity& surface);
   void leave_sides(const Connectivity& surface, const std::vector<char>& fold, std::vector<double> reach);
   void leave_folds(const Connectivity& surface);
   void leave_branchings(const Connectivity& surface);
-  /// Of the surface at an edge, on the side that is measured, in degrees.
+  /// Returns the angle of the surface at an edge, on the side that is measured, in degrees.
   double angle_on_side(const Connectivity& surface, int half_edge) const;
 
   Mesh mesh_;                        ///< with all components oriented outward

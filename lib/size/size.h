@@ -23,7 +23,7 @@ struct SizeOptions {
   double gap = 0;        ///< the same outside
   Layers layers;         ///< that are checked; they bound no size
   std::string data;      ///< a vertex column
-  /// The size at a point with this largest absolute curvature; infinite: not bounded there.
+  /// The size at a point with this largest absolute curvature (1 / length); infinity: not bounded there.
   std::function<double(Vec3, double)> at;
   bool at_curvature = true;  ///< `at` reads the curvature; else it gets 0, which takes less time
   double min = 0, max = 0;
@@ -57,41 +57,42 @@ struct SizeReport {
 };
 
 /// Sets vertex column `size` to the minimum of all sources (a tenth of the diagonal if none sets it), bounded
-/// by the local feature size, graded unless it is uniform, within `min` and `max`. Splits edges along which
-/// interpolation does not follow the field, unless `may_split` is false; `chart`: table chart_vertex or null.
-/// Throws: NotAdmissible if the surface has no area or no column `data`, GoalMissed if the field asks for too
-/// many triangles, BadInput if a source has a value that is not positive.
+/// by the local feature size, graded unless uniform, within `min` and `max`. Splits edges along which
+/// interpolation does not follow the field, unless `may_split` is false. `chart`: table chart_vertex, which
+/// gets rows for new vertices, or null.
+/// Throws: NotAdmissible if the surface has no area or no column `data`; GoalMissed if the field asks for too
+/// many triangles; BadInput if a source has a value that is not positive.
 SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, bool may_split = true);
 
-/// Makes copies of border edges, where sheets meet, the same: cut at the same points (match_borders), with
-/// the same size, the least of all, smaller along lines shorter than that, graded by `slope`. `chart` as
-/// above. Returns the number of vertices added.
+/// Makes the copies of border edges where sheets meet the same: split at the same points (match_borders),
+/// with the same size, the least of all, smaller along shorter lines, graded by `slope`. `chart`: as above.
+/// Returns the number of vertices added.
 int match_sheets(Surface& surface, Table* chart, double slope);
 
-/// Throws: GoalMissed, with both numbers, if a field asks for more triangles than `limit`. Fields with values
-/// that are not positive pass.
+/// Throws GoalMissed, with both numbers, if a field (per vertex) asks for more triangles than `limit`. Fields
+/// with a value that is not positive pass.
 void refuse_more_triangles(const Mesh& mesh, const std::vector<double>& size, double limit);
 
-/// A size below this number of spacings of the coordinates is refused: lengths are rounded by a tenth there,
+/// The least size, over the spacing of doubles at the coordinates: below it lengths are rounded by a tenth,
 /// and meshing need not end. A sphere of 1,500 triangles passes with 70 spacings, and hangs with 12.
 constexpr double least_spacings = 16;
 
-/// Throws GoalMissed naming a vertex whose size is too small for its coordinates. `size` is per vertex;
-/// values that are not positive are skipped.
+/// Throws GoalMissed naming a vertex whose size, if positive, is below least_spacings times the spacing of
+/// its coordinates.
 void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
 
-/// Reduces sizes until they grow by at most `slope` per unit of length along every edge. Source: Borouchaki,
-/// Hecht and Frey, "Mesh gradation control", 1998.
+/// Reduces sizes (per vertex) until they grow by at most `slope` per unit of length along every edge.
+/// Source: Borouchaki, Hecht and Frey, Mesh gradation control, 1998.
 void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size);
 
-/// A vertex that a mesh would cut off, and the angle of the surface around it, radians.
+/// The point of a cone or spike: a vertex, and the angle of the surface around it in radians.
 struct Peak {
   int vertex;
   double angle;
 };
 
-/// Returns the vertices on no border and no model edge around which there is less than half a turn of
-/// surface, next to them and within half the size (per vertex): the points of cones and spikes.
+/// Returns the vertices on no border or model edge around which the surface has less than half a turn (pi),
+/// both in their own triangles and within half the size (per vertex).
 std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<double>& size);
 
 }  // namespace meshpipe

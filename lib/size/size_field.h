@@ -8,20 +8,20 @@
 
 namespace meshpipe {
 
-/// Points with a target edge length each, linear on the triangles between them. A point of no triangle has
-/// one of its own, with three equal corners (add_lone_points).
+/// A size field on another mesh: a target edge length per point, linear on triangles. A point of no triangle
+/// has one of its own with three equal corners (add_lone_points).
 struct SizeField : Mesh {
   std::vector<double> size;
 };
 
-/// Adds a triangle for every point that no triangle uses.
+/// Adds a degenerate triangle for every point that no triangle uses.
 void add_lone_points(SizeField& field);
 
 /// Returns the size at the point of the field nearest to p; where several sheets are almost equally near, the
-/// smallest. `tree` holds the field's triangles.
+/// smallest. `tree`: of the field.
 double size_near(const SizeField& field, const Bvh& tree, Vec3 p);
 
-/// Throws: NotAdmissible, with the names of those that there are, unless the vertices have data `name`.
+/// Throws NotAdmissible, with the names of the existing columns, unless the vertices have column `name`.
 void expect_data(const Surface& surface, const std::string& name);
 
 }  // namespace meshpipe

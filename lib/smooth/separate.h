@@ -8,12 +8,12 @@
 
 namespace meshpipe {
 
-/// Moves vertices back to `start` where triangles intersect that did not do so there: half the way, then, in
-/// growing neighborhoods, all of it, which ends with the surface as it was. Vertices moved back are held from
-/// then on. Returns their number.
+/// Moves vertices back towards `start` where triangles newly intersect: three times half the way, then, in
+/// growing neighborhoods, all of it, which ends with the surface as it was. Flags the vertices moved back in
+/// `held`, and returns their number.
 int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held);
 
-/// Root mean square of the angles between triangles, each oriented as it is, in degrees.
+/// Returns the root mean square of the angles between adjacent triangles (pairs) as oriented, in degrees.
 double mean_angle(const Mesh& mesh, const std::vector<std::pair<int, int>>& adjacent);
 
 }  // namespace meshpipe

@@ -25,21 +25,22 @@ struct SmoothReport {
   double region_change = 0;                  ///< of sheets: the largest change of a region's volume, relative
 };
 
-/// Smooths the surface, its volume kept within 0.1 %. Vertices of border loops within a tenth of their
-/// radius from a plane move along it, others and what `keep_features` names stay where they are; no two
-/// triangles intersect that did not do so before.
-/// Throws: NotAdmissible if there are no triangles, or if they are not an oriented manifold; GoalMissed with
-/// the expected number if `within` is too small to smooth anything, or to keep the volume.
-/// Source: the filter of Taubin, "A signal processing approach to fair surface design", 1995, with the
-/// normal displacement, averaged, in place of his negative steps.
+/// Smooths the surface; its volume stays within 0.1 %. Vertices of border loops within a tenth of their
+/// radius from a plane move along it; others, and what `keep_features` names, stay where they are; no two
+/// triangles newly intersect.
+/// Throws: NotAdmissible if there are no triangles, or they are no oriented manifold; GoalMissed with the
+/// number expected if `within` is too small to smooth anything, or to keep the volume.
+/// Source: Taubin, A signal processing approach to fair surface design, 1995, with the normal displacement,
+/// averaged, in place of his negative steps.
 SmoothReport smooth(Surface& surface, const SmoothOptions& options);
 
-/// Flips the third edge of triangles that have two on a line where sheets meet, unless they are of a model
-/// edge or not flat: smoothing would fold them over their neighbors as it straightens the line.
+/// Flips the third edge of triangles that have two on a line where sheets meet, unless they have a model
+/// edge, another patch is beyond, or the two triangles are not flat: smoothing would fold them over their
+/// neighbors as it straightens the line.
 void flip_ears(Surface& surface);
 
-/// Smooths sheets that meet, whose border vertices at the same place are one. Lines where they meet are
-/// smoothed as lines; free borders stay. Volumes are kept, region by region, as far as the bound permits.
+/// Smooths sheets that meet, whose border vertices with the same coordinates are one. Lines where they meet
+/// are smoothed as lines; free borders stay. Volumes are kept, region by region, as far as the bound permits.
 /// Throws: NotAdmissible if there are no triangles. Source: Taubin as above, with his negative steps.
 SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options);
 

@@ -6,7 +6,7 @@
 
 namespace meshpipe {
 
-/// Quadrilaterals of an outward oriented closed manifold.
+/// The quadrilaterals of a closed manifold, oriented outward.
 struct QuadMesh {
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> quads;
@@ -16,14 +16,14 @@ struct QuadMesh {
 /// Returns the faces between voxels inside and outside, oriented outward.
 QuadMesh boundary_of(const Voxels& voxels);
 
-/// Moves the points to where the planes at `offset` from the soup meet, in the least-squares sense, so that
-/// edges and corners of the soup are edges and corners of the fitted surface; points that are far from the
-/// soup go to the middle of their neighbors. Returns the new points.
-/// Source: quadric error functions as in dual contouring (Ju et al. 2002).
+/// Returns the points moved to where the planes at `offset` from the soup meet, in the least-squares sense,
+/// so that edges and corners of the soup are edges and corners of the fitted surface; points far from the
+/// soup go to the middle of their neighbors. Source: quadric error functions as in dual contouring (Ju and
+/// others 2002).
 std::vector<Vec3> fitted_points(const QuadMesh& boundary, const Mesh& soup, const Bvh& tree, double offset,
                                 double spacing);
 
-/// Divides each quadrilateral along the diagonal whose middle lies closer to the surface at the offset.
+/// Returns two triangles per quadrilateral, by the diagonal whose middle is closer to the offset surface.
 std::vector<Tri> divided(const QuadMesh& boundary, const std::vector<Vec3>& points, const Mesh& soup,
                          const Bvh& tree, double offset);
 

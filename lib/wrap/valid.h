@@ -9,16 +9,17 @@
 
 namespace meshpipe {
 
-/// Moves points of `mesh` back towards `base`, in steps, until the mesh neither meets itself nor the soup nor
-/// has fins or cracks narrower than `least`, and the soup is inside. Returns the number of points moved.
-/// Requires: the mesh at the points `base` has these properties.
+/// Moves points of `mesh` back towards `base`, in steps, until the mesh neither intersects itself nor the
+/// soup, has no fins or cracks narrower than `least`, and encloses the soup: triangles within `reach` of a
+/// point of the soup that is outside move, too. Returns the number of points moved. Requires: the mesh at the
+/// points `base` is so.
 int keep_valid(Mesh& mesh, const std::vector<Vec3>& base, const Mesh& soup, double reach, double least);
 
-/// Answers whether points are strictly inside a closed mesh, by the side of the nearest triangle, edge or
+/// Tells whether points are strictly inside a closed mesh, by the side of the nearest triangle, edge or
 /// vertex. Source: angle-weighted normals (Baerentzen and Aanaes 2005).
 class InsideTest {
  public:
-  /// Keeps references to the mesh, its opposites and the tree.
+  /// Keeps references to the mesh, its opposite half-edges and the tree.
   InsideTest(const Connectivity& mesh, const Bvh& tree);
   bool inside(Vec3 p) const;
 
@@ -29,21 +30,21 @@ class InsideTest {
 };
 
 /// Returns a copy of the soup in which each triangle without area is a sliver of this width along its longest
-/// edge, since exact tests need an area.
+/// edge: exact tests need an area.
 Mesh with_area(const Mesh& soup, double width);
 
-/// Returns per triangle of `wrap` whether it meets one of the soup (exact); 0 where `wanted`, if not empty,
-/// is 0. Requires: triangles of the soup have area.
+/// Returns per triangle of `wrap` whether it intersects one of the soup (exact); 0 where `wanted`, per
+/// triangle of `wrap` or empty, is 0. Requires: triangles of the soup have area.
 std::vector<std::uint8_t> triangles_that_meet(const Mesh& wrap, const std::vector<std::uint8_t>& wanted,
                                               const Mesh& soup);
 
-/// Marks the triangles of the mesh that meet another one other than in shared vertices or edges (exact), or
-/// are sides of a fin or crack narrower than `least`, where one of the two is wanted.
+/// Flags the triangles that intersect another one of the mesh (exact), or are sides of a fin or crack
+/// narrower than `least`, if one of the two is wanted (`wanted`: per triangle).
 std::vector<std::uint8_t> triangles_that_meet_others(const Mesh& mesh,
                                                      const std::vector<std::uint8_t>& wanted, double least);
 
-/// Contracts short edges and flips long ones at slivers, as long as normals hardly turn, the mesh neither
-/// meets itself nor the soup nor gets narrower than `least`, and allowed(mesh, t) is true for each changed
+/// Contracts short edges (`spacing`: the length of regular ones) and flips long ones at slivers, as long as
+/// normals hardly turn, the mesh stays valid as in keep_valid, and allowed(mesh, t) holds for each changed
 /// triangle t. Requires: the mesh is valid, the soup's triangles have area.
 void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing, double least,
                     const std::function<bool(const Mesh&, int)>& allowed);

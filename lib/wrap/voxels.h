@@ -25,13 +25,13 @@ struct Voxels {
 
   int block_index(int i, int j, int k) const { return (k * blocks[1] + j) * blocks[0] + i; }
   Vec3 center(int i, int j, int k) const { return low + spacing * Vec3{i + 0.5, j + 0.5, k + 0.5}; }
-  /// The voxel at a position, or -1 - its block where that is not stored.
+  /// Returns the voxel at a position, or -1 - its block where the block is not stored.
   std::int64_t at(int i, int j, int k) const {
     const int block = block_index(i / side, j / side, k / side), s = stored[block];
     return s < 0 ? -1 - (std::int64_t)block
                  : (std::int64_t)s * volume + (k % side * side + j % side) * side + i % side;
   }
-  /// Position of a stored voxel.
+  /// Returns the position of a stored voxel.
   std::array<int, 3> position(std::int64_t voxel) const {
     const auto& b = place[voxel / volume];
     const int v = (int)(voxel % volume);
@@ -42,11 +42,10 @@ struct Voxels {
   }
 };
 
-/// Computes the voxels that are outside: those that a ball of diameter alpha sweeps when it comes from
-/// infinity and never comes nearer to the soup than the offset, and those that are reached from there by
-/// descending the distance from the soup, so that concave edges are sharp and narrow gaps end at their
-/// narrowest place. The boundary between inside and outside is a manifold, and no voxel outside meets the
-/// soup.
+/// Computes which voxels are outside: those that a ball of diameter alpha sweeps that comes from infinity and
+/// never comes nearer to the soup than the offset, and those reached from there by descending the distance
+/// from the soup, so that concave edges are sharp and narrow gaps end at their narrowest place. The boundary
+/// is a manifold, and no voxel outside meets the soup.
 Voxels outside_voxels(const Mesh& soup, const Bvh& tree, const WrapOptions& options, WrapReport& report);
 
 }  // namespace meshpipe

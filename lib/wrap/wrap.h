@@ -24,18 +24,19 @@ struct WrapReport {
   double farthest_allowed = 0;  ///< of that bound: offset, half of alpha, and 1.5 spacings
 };
 
-/// Wraps the soup: the result is a closed, outward oriented manifold without self-intersections that holds
-/// every triangle of the soup strictly inside. Deterministic at any number of threads.
-/// Requires: positive, finite alpha and offset.
+/// Wraps the soup: returns a closed, outward oriented manifold without self-intersections that holds every
+/// triangle of the soup strictly inside; the same at any number of threads. Requires: positive, finite alpha
+/// and offset.
 /// Throws: NotAdmissible if there is no triangle (segments and points count as triangles); BadUsage if the
-/// grid takes more than `most_bytes`, naming both and an alpha to try; ContractMissed if the
-/// result does not pass verify_wrap. Source: dual contouring (Ju et al. 2002) of a well-composed voxel set
-/// (Latecki 1997), closed by a rolling ball.
+/// grid takes more than `most_bytes`, naming both and an alpha to try; ContractMissed if the result does not
+/// pass verify_wrap.
+/// Source: dual contouring (Ju and others 2002) of a well-composed voxel set (Latecki 1997), closed by a
+/// rolling ball.
 Mesh wrap(const Mesh& soup, const WrapOptions& options, WrapReport& report);
 
-/// Checks every promise of `wrap`, intersections by exact predicates, and fills in components, genus,
-/// clearance and farthest. Reads spacing and farthest_allowed of the report. Throws ContractMissed naming the
-/// first promise that is broken.
+/// Checks every promise of `wrap`, intersections by exact predicates, and sets components, genus, clearance
+/// and farthest in the report, of which it reads spacing and farthest_allowed. Throws: ContractMissed naming
+/// the first promise broken.
 void verify_wrap(const Mesh& wrap, const Mesh& soup, WrapReport& report);
 
 }  // namespace meshpipe

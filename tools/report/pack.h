@@ -16,8 +16,8 @@ struct FigureColumn {
   std::vector<double> values;
   double low = 0, high = 1;
   bool logarithmic = false;
-  /// If not null, what gives the values: what viewer.js computes from the rounded positions is then corrected
-  /// by bytes that are almost all 0.
+  /// Returns the values, if not null: those that viewer.js computes from the rounded positions are then
+  /// corrected by bytes that are almost all 0.
   double (*of_triangle)(const Mesh&, int) = nullptr;
 };
 

@@ -8,7 +8,7 @@
 
 namespace meshpipe {
 
-/// Whether the field asks for the number of triangles that was requested; bounds may prevent that.
+/// Returns whether the field asks for the number of triangles that was requested; bounds may prevent that.
 bool met_count(const SizeReport& report, const SizeOptions& options);
 
 /// Returns lines for the user: the sizes, and where they differ from what was requested. `counted`: the

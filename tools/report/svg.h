@@ -26,7 +26,8 @@ class SvgPath {
 /// `fill="none" stroke="black"`.
 class Svg {
  public:
-  /// `attributes` are those of the root. With `fixed_size` the picture has that many pixels by default.
+  /// Starts a picture; `attributes` are those of the root. With `fixed_size` it has that many pixels by
+  /// default.
   Svg(double width, double height, const std::string& attributes, bool fixed_size = false);
 
   /// Adds a path; nothing if it is empty.

@@ -17,7 +17,8 @@ class RoundFile {
   RoundFile(Io& io, std::string file, bool bounded_distance);
   /// Returns whether the chain is to be repeated: then this round writes nothing else.
   bool repeats() const { return !file_.empty() && is_repeated(before_, outcome); }
-  /// Mean size of the first round's result: a size to judge later rounds by, which may be finer; 0: none.
+  /// Returns the mean size of the first round's result, by which later rounds are judged, which may be finer;
+  /// 0: none.
   double first_size() const {
     const std::vector<double> sizes = numbers_in(before_, "size");
     return sizes.empty() ? 0 : sizes[0];
