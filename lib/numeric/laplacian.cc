@@ -42,7 +42,7 @@ std::array<double, 3> cotangent_weights(Vec3 a, Vec3 b, Vec3 c, double floor) {
 }
 
 void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vector<double>& weights,
-                     const std::vector<char>& fixed, std::vector<Vec2>& uv, SolveTime* time) {
+                     const std::vector<char>& fixed, std::vector<Vec2>& uv) {
   // unknowns: the free vertices that a triangle uses, in order
   int n_points = (int)uv.size(), n = 0;
   std::vector<int> unknown(n_points, -1);
@@ -65,7 +65,7 @@ void solve_dirichlet(const std::vector<std::array<int, 3>>& tris, const std::vec
     if (i >= 0 && j < 0) hold(i, c, weights[h]);
     if (j >= 0 && i < 0) hold(j, a, weights[h]);
   }
-  laplacian.factorize(MatrixKind::laplacian, time).solve(b);
+  laplacian.factorize(MatrixKind::laplacian).solve(b);
   for (int v = 0; v < n_points; ++v)
     if (unknown[v] >= 0) uv[v] = {b[unknown[v]], b[n + unknown[v]]};
 }

@@ -5,7 +5,6 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <string>
 #include <utility>
@@ -34,20 +33,6 @@ void require_finite(const Matrix& x) {
     throw GoalMissed("the solution for " + std::to_string(x.rows()) + " unknowns is not finite");
 }
 
-/// Adds the time of its life to *seconds.
-class Stopwatch {
- public:
-  explicit Stopwatch(double* seconds) : seconds_(seconds), start_(Clock::now()) {}
-  ~Stopwatch() {
-    if (seconds_) *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double* seconds_;
-  Clock::time_point start_;
-};
-
 template <class Scalar>
 struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> {
   /// Multiplications of the numeric factorization, known after the symbolic one.
@@ -63,14 +48,10 @@ template <class Scalar>
 struct Factorization<Scalar>::Impl {
   Ldlt<Scalar> ldlt;
   int n;
-  SolveTime* time;
   std::unique_ptr<Multigrid> multigrid;  ///< takes the place of the numeric factorization
 
   void factorize(const Eigen::SparseMatrix<Scalar>& m) {
-    {
-      Stopwatch watch(time ? &time->factorization : nullptr);
-      ldlt.factorize(m);
-    }
+    ldlt.factorize(m);
     // Eigen only notices a pivot that is exactly zero (and the later ones are then not set); a pivot that has
     // lost all its digits against the diagonal it started from is as singular, and a negative one as little
     // definite
@@ -87,19 +68,13 @@ struct Factorization<Scalar>::Impl {
 };
 
 template <class Scalar>
-Factorization<Scalar>::Factorization(int n, std::vector<Entry<Scalar>> lower_triangle, SolveTime* time,
-                                     MatrixKind kind)
+Factorization<Scalar>::Factorization(int n, std::vector<Entry<Scalar>> lower_triangle, MatrixKind kind)
     : impl_(std::make_unique<Impl>()) {
   impl_->n = n;
-  impl_->time = time;
   Eigen::SparseMatrix<Scalar> m = compress(n, std::move(lower_triangle));
-  {
-    Stopwatch watch(time ? &time->ordering : nullptr);
-    impl_->ldlt.analyzePattern(m);
-  }
+  impl_->ldlt.analyzePattern(m);
   if constexpr (std::is_same_v<Scalar, double>) {
     if (kind == MatrixKind::laplacian && impl_->ldlt.cost() > cost_of_multigrid * n) {
-      Stopwatch watch(time ? &time->factorization : nullptr);
       try {
         impl_->multigrid = std::make_unique<Multigrid>(m.template selfadjointView<Eigen::Lower>());
         return;
@@ -124,13 +99,9 @@ template <class Scalar>
 void Factorization<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
   if (right_hand_side.empty()) return;
   if constexpr (std::is_same_v<Scalar, double>) {
-    if (impl_->multigrid) {
-      Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
-      if (impl_->multigrid->solve(right_hand_side)) return;
-    }
+    if (impl_->multigrid && impl_->multigrid->solve(right_hand_side)) return;
     if (impl_->multigrid) impl_->factorize(std::exchange(impl_->multigrid, nullptr)->matrix());
   }
-  Stopwatch watch(impl_->time ? &impl_->time->solve : nullptr);
   Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>> x(
       right_hand_side.data(), impl_->n, (Eigen::Index)right_hand_side.size() / impl_->n);
   x = impl_->ldlt.solve(x).eval();
@@ -140,21 +111,14 @@ void Factorization<Scalar>::solve(std::vector<Scalar>& right_hand_side) const {
 template class Factorization<double>;
 template class Factorization<std::complex<double>>;
 
-void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries, std::vector<double>& right_hand_side,
-                       SolveTime* time) {
+void solve_unsymmetric(int n, const std::vector<Entry<double>>& entries,
+                       std::vector<double>& right_hand_side) {
   if (n == 0) return;
   Eigen::SparseMatrix<double> m = compress(n, entries);
   Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> lu;
-  {
-    Stopwatch watch(time ? &time->ordering : nullptr);
-    lu.analyzePattern(m);
-  }
-  {
-    Stopwatch watch(time ? &time->factorization : nullptr);
-    lu.factorize(m);
-  }
+  lu.analyzePattern(m);
+  lu.factorize(m);
   if (lu.info() != Eigen::Success) throw GoalMissed("singular matrix of " + std::to_string(n) + " rows");
-  Stopwatch watch(time ? &time->solve : nullptr);
   Eigen::Map<Eigen::MatrixXd> x(right_hand_side.data(), n, (Eigen::Index)right_hand_side.size() / n);
   x = lu.solve(x).eval();
   require_finite(x);

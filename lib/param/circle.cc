@@ -8,8 +8,7 @@ namespace meshpipe {
 namespace {
 
 /// Solves the equations of the mean-value weights, which are positive and not symmetric.
-void solve_mean_value(const Filled& filled, const std::vector<char>& fixed, std::vector<Vec2>& uv,
-                      SolveTime* time) {
+void solve_mean_value(const Filled& filled, const std::vector<char>& fixed, std::vector<Vec2>& uv) {
   std::vector<int> unknown(filled.n_vertices, -1);
   int n = 0;
   for (int v = 0; v < filled.n_vertices; ++v)
@@ -45,7 +44,7 @@ void solve_mean_value(const Filled& filled, const std::vector<char>& fixed, std:
     b[i] /= diagonal[i];
     b[n + i] /= diagonal[i];
   }
-  solve_unsymmetric(n, matrix, b, time);
+  solve_unsymmetric(n, matrix, b);
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) uv[v] = {b[unknown[v]], b[n + unknown[v]]};
 }
@@ -67,19 +66,19 @@ std::vector<Vec2> circle_border(const SubMesh& part, const Disk& disk) {
 }
 
 std::vector<Vec2> extend_border(const SubMesh& part, const Filled& filled, const Disk& disk, Weights weights,
-                                std::vector<Vec2> border, SolveTime* time) {
+                                std::vector<Vec2> border) {
   std::size_t n_points = border.size();
   std::vector<char> fixed(filled.n_vertices, 0);
   for (int h : disk.loops[0]) fixed[origin(part.tris, h)] = 1;
   border.resize(filled.n_vertices);
   if (weights == Weights::mean_value) {
-    solve_mean_value(filled, fixed, border, time);
+    solve_mean_value(filled, fixed, border);
   } else {
     // positive weights make it one-to-one; bounded ones keep it so in floating point
     std::vector<double> w = weights == Weights::uniform     ? std::vector<double>(3 * filled.tris.size(), 0.5)
                             : weights == Weights::cotangent ? cotangents(filled.shape, 0.01, 100)
                                                             : cotangents(filled.shape);
-    solve_dirichlet(filled.tris, w, fixed, border, time);
+    solve_dirichlet(filled.tris, w, fixed, border);
   }
   border.resize(n_points);
   return border;

@@ -13,15 +13,15 @@ enum class Weights {
   uniform          ///< 1 (Tutte 1963)
 };
 
-/// Returns (u, v) on the unit circle for the vertices of the longest loop, by arc length, and 0 for the
+/// Returns (u, v) per vertex of the part: on the unit circle by arc length for the longest loop, 0 for
 /// others. No edge gets less than a hundredth of the mean edge's share, so that its arc is not straight to
 /// rounding: a triangle with two border edges would become flat.
 std::vector<Vec2> circle_border(const SubMesh& part, const Disk& disk);
 
-/// Solves for the vertices off the longest loop, whose places are held. With positive weights, a convex
-/// polygon and filled holes the result is one-to-one except for rounding (Tutte, Floater).
-/// Throws: GoalMissed if the matrix is singular.
+/// Solves for the vertices off the longest loop, whose places (in `border`, per vertex) are held; returns a
+/// point per vertex of the part. With positive weights, a convex polygon and filled holes the result is
+/// one-to-one except for rounding (Tutte, Floater). Throws: GoalMissed if the matrix is singular.
 std::vector<Vec2> extend_border(const SubMesh& part, const Filled& filled, const Disk& disk, Weights weights,
-                                std::vector<Vec2> border, SolveTime* time);
+                                std::vector<Vec2> border);
 
 }  // namespace meshpipe

@@ -59,15 +59,14 @@ std::vector<Vec2> plane_points(const SubMesh& part, const std::vector<Complex>& 
 
 }  // namespace
 
-BoundaryFirst::BoundaryFirst(const SubMesh& part, const Disk& disk, Filled filled, SolveTime* time)
+BoundaryFirst::BoundaryFirst(const SubMesh& part, const Disk& disk, Filled filled)
     : part_(part),
       disk_(disk),
       filled_(std::move(filled)),
-      time_(time),
       weights_(cotangents(std::exchange(filled_.shape, {}))),
       angle_sum_(angle_sums(filled_, weights_)),
       unknown_(inner_unknowns(part, disk, filled_, n_)),
-      factorization_(laplacian(filled_, weights_, unknown_, n_, time)) {
+      factorization_(laplacian(filled_, weights_, unknown_, n_)) {
   // The log of the scale, zero on the rim, that takes all curvature from the inside (the Yamabe equation) and
   // brings it into the rim, whose turns then add up to 2 pi
   std::vector<double> charge(filled_.n_vertices);
@@ -124,7 +123,7 @@ std::vector<Vec2> BoundaryFirst::polygon(double bend) {
         if (v == held) continue;
         flux[unknown[v]] = unknown_[v] < 0 ? round[v] - (pi - angle_sum_[v]) : angle_sum_[v] - 2 * pi;
       }
-      laplacian(filled_, weights_, unknown, (int)flux.size(), time_).solve(flux);
+      laplacian(filled_, weights_, unknown, (int)flux.size()).solve(flux);
       scale_.assign(filled_.n_vertices, 0);
       for (int v = 0; v < filled_.n_vertices; ++v)
         if (unknown[v] >= 0) scale_[v] = flux[unknown[v]];
@@ -153,8 +152,7 @@ std::vector<Vec2> BoundaryFirst::map(const std::vector<Vec2>& polygon) const {
   return uv;
 }
 
-std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const Filled& filled,
-                                    SolveTime* time) {
+std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const Filled& filled) {
   // two vertices of the longest loop that are far apart, by two sweeps
   int held[2] = {origin(part.tris, disk.loops[0][0]), -1};
   for (int sweep = 0; sweep < 2; ++sweep) {
@@ -188,13 +186,13 @@ std::vector<Vec2> least_squares_map(const SubMesh& part, const Disk& disk, const
   }
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) matrix.push_back({unknown[v], unknown[v], diagonal[v]});
-  if (n > 0) Factorization<Complex>(n, std::move(matrix), time).solve(b);
+  if (n > 0) Factorization<Complex>(n, std::move(matrix)).solve(b);
   for (int v = 0; v < filled.n_vertices; ++v)
     if (unknown[v] >= 0) z[v] = b[unknown[v]];
   return plane_points(part, z);
 }
 
-std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Filled& filled, SolveTime* time) {
+std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Filled& filled) {
   int n = filled.n_vertices;
   std::vector<double> diagonal, moment(n, 0);
   std::vector<Entry<Complex>> matrix = conformal_energy(part, disk, filled, diagonal);
@@ -209,7 +207,7 @@ std::vector<Vec2> spectral_map(const SubMesh& part, const Disk& disk, const Fill
   // eigenvector, makes the matrix definite
   constexpr double shift = 1e-6;
   for (int v = 0; v < n; ++v) matrix.push_back({v, v, diagonal[v] + shift * moment[v]});
-  Factorization<Complex> factorization(n, std::move(matrix), time);
+  Factorization<Complex> factorization(n, std::move(matrix));
 
   std::vector<Complex> z(n, 0), before;
   double at = 0;

@@ -148,12 +148,12 @@ std::vector<double> angle_sums(const Filled& filled, const std::vector<double>& 
 }
 
 Factorization<double> laplacian(const Filled& filled, const std::vector<double>& weights,
-                                const std::vector<int>& unknown, int n, SolveTime* time) {
+                                const std::vector<int>& unknown, int n) {
   Laplacian matrix(n);
   matrix.reserve(weights.size());
   for_each_spring(filled, weights,
                   [&](int a, int b, double w) { matrix.add_edge(unknown[a], unknown[b], w); });
-  return matrix.factorize(MatrixKind::laplacian, time);
+  return matrix.factorize(MatrixKind::laplacian);
 }
 
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,

@@ -14,14 +14,15 @@ struct Disk {
   std::vector<double> length;
 };
 
-/// Throws NotAdmissible if the part is not connected, touches itself at a vertex, or is no disk with holes.
+/// Returns the connectivity and the loops of a part. Throws: NotAdmissible if the part is not connected,
+/// touches itself at a vertex, or is no disk with holes.
 Disk disk_of(const SubMesh& part);
 
 /// Corners of triangles in space, with no regard to their neighbors.
 using Shapes = std::vector<std::array<Vec3, 3>>;
 
-/// The part's triangles, then those that fill its holes: a fan around a virtual center vertex for each loop
-/// but the longest, numbered after the part's vertices in the order of the loops.
+/// The triangles of a part, then those that fill its holes: a fan around a virtual center vertex for each
+/// loop but the longest. Centers are numbered after the part's vertices, in the order of the loops.
 struct Filled {
   std::vector<Tri> tris;
   /// Per triangle: its corners in space; those of a fan lie in a plane of their own.
@@ -29,7 +30,7 @@ struct Filled {
   int n_vertices = 0;
 };
 
-/// The part alone: holes keep the natural condition.
+/// Returns the part alone: its holes keep the natural boundary condition.
 Filled open_holes(const SubMesh& part);
 
 /// Fills each hole by isosceles triangles whose angle at the center is the edge's share of the loop, as for a
@@ -42,19 +43,18 @@ Filled round_holes(const SubMesh& part, const Disk& disk);
 /// is one of the part, whatever fills it.
 Filled flat_holes(const SubMesh& part, const Disk& disk);
 
-/// Cotangent weights (lib/numeric/laplacian.h) of every half-edge.
+/// Returns the cotangent weight (lib/numeric/laplacian.h) of every half-edge, between `floor` and `ceiling`.
 std::vector<double> cotangents(const Shapes& shapes, double floor = -1e30, double ceiling = 1e30);
 
-/// Returns the sum of the angles around each vertex, from cotangent weights, which are defined for triangles
-/// without area too.
+/// Returns per vertex the sum of its angles, from cotangent weights, finite also without area.
 std::vector<double> angle_sums(const Filled& filled, const std::vector<double>& cotangents);
 
-/// Factorizes the Laplacian of the unknowns 0..n-1; unknown[v] < 0: v is held; vertices may share an unknown.
+/// Factorizes the Laplacian of unknowns 0..n-1; unknown[v]: of vertex v, shared or not; negative: held.
 Factorization<double> laplacian(const Filled& filled, const std::vector<double>& weights,
-                                const std::vector<int>& unknown, int n, SolveTime* time);
+                                const std::vector<int>& unknown, int n);
 
-/// Returns the angle by which the border turns at each of its vertices once the metric is scaled by
-/// exp(scale): its own turn and the flux of the scale (the Cherrier formula).
+/// Returns per vertex the angle by which the border turns there once the metric is scaled by exp(scale)
+/// (`scale`: per vertex): its own turn and the flux of the scale (the Cherrier formula).
 std::vector<double> turns(const Filled& filled, const std::vector<double>& weights,
                           const std::vector<double>& angle_sum, const std::vector<double>& scale);
 
@@ -64,7 +64,7 @@ std::vector<double> turns(const Filled& filled, const std::vector<double>& weigh
 std::vector<Vec2> polygon_of(const SubMesh& part, const std::vector<int>& loop,
                              const std::vector<double>& turn, const std::vector<double>& length);
 
-/// Scales a map to the area that the part has in space; nothing if either is not positive.
+/// Scales a map to the area that the part has in space; does nothing if either area is not positive.
 void scale_to_area(const SubMesh& part, std::vector<Vec2>& uv);
 
 }  // namespace meshpipe

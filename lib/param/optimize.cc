@@ -2,7 +2,6 @@
 #include "lib/param/optimize.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "lib/core/error.h"
 #include "lib/param/injective.h"
@@ -179,8 +178,7 @@ double longest_step(const std::vector<Tri>& tris, const std::vector<Vec2>& uv,
 
 }  // namespace
 
-int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vector<Vec2>& uv,
-                     SolveTime* time) {
+int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vector<Vec2>& uv) {
   const std::vector<Rest> shapes = rest_shapes(part);
   int n = (int)uv.size();
   scale_to_area(part, uv);
@@ -196,7 +194,7 @@ int lower_distortion(const SubMesh& part, const Disk& disk, int steps, std::vect
       if (factorization)
         factorization->refactor(proxy.matrix);
       else
-        factorization = std::make_unique<Factorization<double>>(2 * n, proxy.matrix, time);
+        factorization = std::make_unique<Factorization<double>>(2 * n, proxy.matrix);
     } catch (const GoalMissed&) {  // distortion beyond what doubles hold: the map stays as it is
       return taken;
     }

@@ -70,8 +70,8 @@ class Search {
     if (kind != MapKind::conformal) return on_circle(kind, options_.neumann ? open() : round());
     if (options_.form == ConformalForm::boundary_first) return bent(0);
     const Filled filled = options_.neumann ? open() : flat();
-    return options_.form == ConformalForm::spectral ? spectral_map(part_, disk_, filled, &report_.time)
-                                                    : least_squares_map(part_, disk_, filled, &report_.time);
+    return options_.form == ConformalForm::spectral ? spectral_map(part_, disk_, filled)
+                                                    : least_squares_map(part_, disk_, filled);
   }
 
   /// The map asked for, its repair, or the first of the fallbacks that is one-to-one.
@@ -162,8 +162,7 @@ class Search {
   void lower(std::vector<Vec2>& uv, int steps) {
     std::vector<Vec2> better = uv;
     ParamReport after = report_;
-    after.steps = lower_distortion(part_, disk_, steps, better, &report_.time);
-    after.time = report_.time;
+    after.steps = lower_distortion(part_, disk_, steps, better);
     scale_to_area(part_, better);
     if (after.steps == 0 || !valid_map(better)) return;
     measure_distortion(part_, better, after);
@@ -196,14 +195,13 @@ class Search {
 
   std::vector<Vec2> on_circle(MapKind kind, const Filled& filled) {
     Weights weights = kind == MapKind::harmonic ? Weights::finite_element : options_.weights;
-    std::vector<Vec2> uv =
-        extend_border(part_, filled, disk_, weights, circle_border(part_, disk_), &report_.time);
+    std::vector<Vec2> uv = extend_border(part_, filled, disk_, weights, circle_border(part_, disk_));
     scale_to_area(part_, uv);
     return uv;
   }
 
   BoundaryFirst& boundary_first() {
-    if (!boundary_first_) boundary_first_.emplace(part_, disk_, flat(), &report_.time);
+    if (!boundary_first_) boundary_first_.emplace(part_, disk_, flat());
     return *boundary_first_;
   }
 
@@ -231,12 +229,11 @@ class Search {
     try {
       if (report_.used == MapKind::conformal) {
         // the border of the intrinsic triangulation, but harmonic on the triangles that there are
-        std::vector<Vec2> again =
-            extend_border(part_, round(), disk_, Weights::finite_element, uv, &report_.time);
+        std::vector<Vec2> again = extend_border(part_, round(), disk_, Weights::finite_element, uv);
         if (count_inverted(part_.tris, again) < count_inverted(part_.tris, uv)) uv = std::move(again);
         if (valid_map(uv) || stars(uv)) return true;
       }
-      std::vector<Vec2> again = extend_border(part_, round(), disk_, Weights::cotangent, uv, &report_.time);
+      std::vector<Vec2> again = extend_border(part_, round(), disk_, Weights::cotangent, uv);
       if (!valid_map(again) && !stars(again)) return false;
       uv = std::move(again);
       return true;

@@ -43,24 +43,23 @@ struct ParamReport {
   double anisotropy_mean = 1;  ///< over the area: what the mesher makes too many triangles by
   double area_scale = 1;       ///< p99 / p1 of the area scale
   double smallest_area = 0;    ///< in the plane, over the chart's area
-  SolveTime time;              ///< of all that was tried
 };
 
-/// Distortion of a map: the report's anisotropies, area_scale, smallest_area, and `apart` if that is empty.
-/// Triangles without area in space are left out.
+/// Sets the distortion of a map in the report: anisotropies, area_scale, smallest_area, and `apart` if that
+/// is empty. Triangles without area in space are left out.
 void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report);
 
-/// The map asked for, without proof or repair; scaled to the part's area. Throws NotAdmissible if the part is
-/// not a disk with holes, GoalMissed if the equations are singular or a border does not close.
+/// Returns the map asked for, a point per vertex, without proof or repair; scaled to the part's area. Throws:
+/// NotAdmissible if the part is not a disk with holes; GoalMissed if equations are singular.
 std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
 
 /// Maps a part one-to-one (exact orientation of every triangle, simple borders): by the map asked for, else
-/// by its repair, else by the next of conformal, conformal with a border bent towards a circle, harmonic,
-/// convex; after a circle map that was asked for, by the conformal ones. With `strict` only the map asked
-/// for. Where a conformal map, or one not asked for, has sigma1/sigma2 above 4 for more than 1 % of the
-/// triangles, or 1.5 in the mean over the area, its distortion is lowered, up to 20000 triangles. Returns
-/// none, early, with area_scale set, if that of boundary first flattening would be above `most_uneven`.
-/// Throws GoalMissed if no map is one-to-one.
+/// its repair, else the next of conformal, conformal with a border bent towards a circle, harmonic, convex
+/// (after a circle map that was asked for, the conformal ones); with `strict` only by the map asked for.
+/// Lowers the distortion, up to 20000 triangles, of a conformal map or one not asked for with sigma1/sigma2
+/// above 4 on more than 1 % of the triangles, or 1.5 in the mean over the area. Returns none, early, with
+/// area_scale set, if that of boundary first flattening would be above `most_uneven`. Throws: GoalMissed if
+/// no map is one-to-one; as disk_of.
 std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
                            double most_uneven = infinity);
 

@@ -66,16 +66,12 @@ def report_of(parts, options, work):
         print(run.text.strip())
         return None
     with open(f"{work}/report.json") as f:
-        return json.load(f)
-
-
-def seconds(report, which=("ordering", "factorization", "solve")):
-    return sum(c["seconds_" + k] for c in report["charts"] for k in which)
+        return {"cpu": run.cpu, **json.load(f)}
 
 
 def distortion(surfaces, work):
     rows = []
-    row = common.table(["surface", "map", "charts", "cut", "repaired", "other map", "median", "p99", "area scale", "solving s"])
+    row = common.table(["surface", "map", "charts", "cut", "repaired", "other map", "median", "p99", "area scale", "mparam s"])
     for name, _, _ in surfaces:
         for label, options in MAPS:
             report = report_of(f"{work}/{name}.parts.ply", options, work)
@@ -98,7 +94,7 @@ def distortion(surfaces, work):
                 "median": max(c["anisotropy_median"] for c in charts),
                 "p99": max(c["anisotropy_p99"] for c in charts),
                 "area_scale": max(c["area_scale"] for c in charts),
-                "seconds": seconds(report),
+                "seconds": report["cpu"],
             }
             rows.append(r)
             row(name, label, r["charts"], r["cut"], r["repaired"], r["other"], f"{r['median']:.3f}", f"{r['p99']:.3f}",
@@ -126,7 +122,7 @@ def share(name, path, count, work, times):
 
 def growth(work, largest, times):
     rows = []
-    row = common.table(["triangles", "mparam s", "ordering s", "factorization s", "solve s", "us a triangle"])
+    row = common.table(["triangles", "mparam s", "us a triangle"])
     n = 10000
     while n <= largest:
         parts = f"{work}/growth.ply"
@@ -134,17 +130,13 @@ def growth(work, largest, times):
                         f"mtopo -q | mpartition -q --max-faces 100000000 -o {parts}"], check=True)
         best = None
         for _ in range(times):
-            run = common.run(["mparam", "-q", "-j", "1", parts, "-o", f"{work}/charts.ply", "--json", f"{work}/report.json"])
-            if run.status:
-                raise SystemExit(f"{n} triangles: {run.text.strip()}")
-            with open(f"{work}/report.json") as f:
-                report = json.load(f)
-            if best is None or run.cpu < best["cpu"]:
-                best = {"triangles": sum(c["triangles"] for c in report["charts"]), "cpu": run.cpu}
-                best.update({k: seconds(report, (k,)) for k in ("ordering", "factorization", "solve")})
+            report = report_of(parts, [], work)
+            if report is None:
+                raise SystemExit(f"no maps of {n} triangles")
+            if best is None or report["cpu"] < best["cpu"]:
+                best = {"triangles": sum(c["triangles"] for c in report["charts"]), "cpu": report["cpu"]}
         rows.append(best)
-        row(best["triangles"], f"{best['cpu']:.3f}", f"{best['ordering']:.3f}", f"{best['factorization']:.3f}",
-            f"{best['solve']:.3f}", f"{1e6 * best['cpu'] / best['triangles']:.2f}")
+        row(best["triangles"], f"{best['cpu']:.3f}", f"{1e6 * best['cpu'] / best['triangles']:.2f}")
         n = 3 * n if str(n)[0] == "1" else 10 * n // 3
     if len(rows) > 1:
         x = [math.log(r["triangles"]) for r in rows]

@@ -82,9 +82,9 @@ std::string chart_line(const ParamReport& r, std::size_t triangles) {
   char text[400];
   std::snprintf(text, sizeof text,
                 "%zu triangles, map %s, sigma1/sigma2 median %.3f, p99 %.3f, max %.3g, area scale %.3g, "
-                "smallest area %.2e, order %.4f s, factorize %.4f s, solve %.4f s",
+                "smallest area %.2e",
                 triangles, name_of(r).c_str(), r.anisotropy_median, r.anisotropy_p99, r.anisotropy_max,
-                r.area_scale, r.smallest_area, r.time.ordering, r.time.factorization, r.time.solve);
+                r.area_scale, r.smallest_area);
   std::string line = text;
   if (r.bend > 0) line += ", border bent " + std::to_string((int)std::lround(100 * r.bend)) + " %";
   if (!r.border_was_simple) line += ", border crossed itself before";
@@ -110,10 +110,7 @@ nlohmann::ordered_json chart_record(const ParamReport& r, int part, std::size_t 
           {"anisotropy_p99", r.anisotropy_p99},
           {"anisotropy_max", r.anisotropy_max},
           {"area_scale", r.area_scale},
-          {"smallest_area", r.smallest_area},
-          {"seconds_ordering", r.time.ordering},
-          {"seconds_factorization", r.time.factorization},
-          {"seconds_solve", r.time.solve}};
+          {"smallest_area", r.smallest_area}};
 }
 
 }  // namespace meshpipe

@@ -72,13 +72,11 @@ TEST(Sparse, ConjugateGradientsImproveAGuess) {
 // x + 2 y = 5 and 3 x + 4 y = 11, for two right-hand sides; a singular one
 TEST(Sparse, UnsymmetricSystems) {
   std::vector<double> b{5, 11, 1, 3};
-  SolveTime time;
-  solve_unsymmetric(2, {{0, 0, 1}, {0, 1, 1}, {0, 1, 1}, {1, 0, 3}, {1, 1, 4}}, b, &time);
+  solve_unsymmetric(2, {{0, 0, 1}, {0, 1, 1}, {0, 1, 1}, {1, 0, 3}, {1, 1, 4}}, b);
   EXPECT_NEAR(b[0], 1, 1e-14);
   EXPECT_NEAR(b[1], 2, 1e-14);
   EXPECT_NEAR(b[2], 1, 1e-14);
   EXPECT_NEAR(b[3], 0, 1e-14);
-  EXPECT_GT(time.ordering + time.factorization + time.solve, 0);
   EXPECT_THROW(solve_unsymmetric(2, {{0, 0, 1}, {0, 1, 2}, {1, 0, 2}, {1, 1, 4}}, b), GoalMissed);
 }
 
