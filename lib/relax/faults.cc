@@ -13,7 +13,7 @@ namespace {
 struct Known {
   const Surface& reference;
   Samples& samples;
-  Crossings crossings{};
+  IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
@@ -24,7 +24,7 @@ struct Known {
   /// Forgets the mesh: call it before it becomes another.
   void forget() {
     samples.forget();
-    crossings = {};
+    intersections = {};
     walked.clear(), searched.clear();
     time = -1;
   }
@@ -64,8 +64,8 @@ void drop_contacts_of_sheets(const State& s, std::vector<std::pair<int, int>>& p
 }
 
 void find_intersections(const State& s, Known& known, Fault& found) {
-  renew(known.crossings, s, known.samples.search);
-  found.pairs = known.crossings.pairs;
+  renew(known.intersections, s, known.samples.search);
+  found.pairs = known.intersections.pairs;
   if (!s.copy.empty()) drop_contacts_of_sheets(s, found.pairs);
   if (found.pairs.empty()) return;
   if (!known.contacts) {

@@ -66,27 +66,27 @@ Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
   return hit.place.face >= 0 || bound >= 1e300 ? hit : nearest(p, 1e300, enough);
 }
 
-std::vector<std::pair<int, int>> MeshTree::crossings() const {
+std::vector<std::pair<int, int>> MeshTree::intersections() const {
   std::vector<std::pair<int, int>> pairs = self_intersections(built_.mesh, *built_.tree);
   std::erase_if(pairs, [&](const auto& p) { return gone_[p.first] || gone_[p.second]; });
   for (auto& [a, b] : pairs) a = built_.number[a], b = built_.number[b];
   return pairs;
 }
 
-void renew(Crossings& crossings, const State& s, MeshTree& search) {
+void renew(IntersectingPairs& intersections, const State& s, MeshTree& search) {
   search.renew(s);
-  auto& pairs = crossings.pairs;
+  auto& pairs = intersections.pairs;
   std::vector<int> changed;
-  if (crossings.time < 0) {
-    pairs = search.crossings();
+  if (intersections.time < 0) {
+    pairs = search.intersections();
     changed = search.added();
   } else {
-    auto other = [&](int t) { return changed_since(s, t, crossings.time); };
+    auto other = [&](int t) { return changed_since(s, t, intersections.time); };
     std::erase_if(pairs, [&](const auto& p) { return other(p.first) || other(p.second); });
     for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
       if (!s.mesh.dead(t) && other(t)) changed.push_back(t);
   }
-  crossings.time = s.clocks.now;
+  intersections.time = s.clocks.now;
   const Mesh now{s.points, s.mesh.tris};
   for (int t : changed) {
     const Box box = box_of(now, t);

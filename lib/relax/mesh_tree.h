@@ -10,7 +10,7 @@
 
 namespace meshpipe {
 
-/// Has triangle t gone, or have its corners moved or their neighbors changed after `time`?
+/// Returns whether triangle t is gone, or a corner has moved or got other neighbors, after `time`.
 inline bool changed_since(const State& s, int t, int time) {
   if (s.mesh.dead(t)) return true;
   const auto [a, b, c] = s.mesh.tris[t];
@@ -18,16 +18,16 @@ inline bool changed_since(const State& s, int t, int time) {
   return changed[a] > time || changed[b] > time || changed[c] > time;
 }
 
-/// A search tree of the mesh, which follows its changes: triangles that have been added are in a second tree.
+/// A search tree of the mesh, which follows its changes: added triangles are in a second tree.
 class MeshTree {
  public:
   MeshTree() = default;
   MeshTree(const MeshTree&) = delete;  // the trees have references to the meshes
-  /// Brings it up to date; the searches below are for what the mesh was then.
+  /// Brings the tree up to date. Searches refer to the mesh as it was at the last call.
   void renew(const State& s);
-  /// As Bvh::nearest; the face is a triangle of the state.
+  /// Returns the nearest point as Bvh::nearest_but does; `face` is a triangle of the state.
   Bvh::Hit nearest(Vec3 p, double bound, double enough) const;
-  /// Calls visit(t) as Bvh::overlapping, t a triangle of the state.
+  /// Calls visit(t) as Bvh::overlapping does, with t a triangle of the state.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const {
     built_.tree->overlapping(box, [&](int i) {
@@ -35,10 +35,11 @@ class MeshTree {
     });
     if (added_.tree) added_.tree->overlapping(box, [&](int i) { visit(added_.number[i]); });
   }
-  /// The pairs that intersect, as self_intersections, of triangles in the first tree; and those that are not.
-  std::vector<std::pair<int, int>> crossings() const;
+  /// Returns the pairs of triangles that intersect (self_intersections), of those in the first tree.
+  std::vector<std::pair<int, int>> intersections() const;
+  /// Returns the triangles that are not in the first tree.
   const std::vector<int>& added() const { return added_.number; }
-  /// Forgets the mesh: call it before it is used with another.
+  /// Forgets the mesh: to be called before the tree is used with another.
   void forget() { triangles_ = time_ = -1; }
 
  private:
@@ -57,11 +58,11 @@ class MeshTree {
 };
 
 /// The pairs of triangles that intersect, at some time.
-struct Crossings {
+struct IntersectingPairs {
   std::vector<std::pair<int, int>> pairs;  ///< sorted
   int time = -1;
 };
-/// Brings the crossings up to date: those of triangles that have not changed are known.
-void renew(Crossings& crossings, const State& s, MeshTree& search);
+/// Brings the intersecting pairs up to date: tests the triangles changed since `intersections.time`.
+void renew(IntersectingPairs& intersections, const State& s, MeshTree& search);
 
 }  // namespace meshpipe

@@ -322,14 +322,14 @@ Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& co
     const int all = (int)found.pairs.size();
     found.pairs = new_intersections(whole.mesh, found.pairs, *known);
     found.of_reference = all - (int)found.pairs.size();
-    if (found.pairs.empty() || round == rules::crossing_rounds) return found;
+    if (found.pairs.empty() || round == rules::intersection_rounds) return found;
     std::vector<int> corners;
     for (const auto& [s, t] : found.pairs)
       for (int u : {s, t})
         corners.insert(corners.end(), whole.mesh.tris[u].begin(), whole.mesh.tris[u].end());
     sort_unique(corners);
-    relax_region(by, whole, triangles_near(whole.mesh, corners, rules::crossing_rings), by.pass(whole, true),
-                 0, counts);
+    relax_region(by, whole, triangles_near(whole.mesh, corners, rules::intersection_rings),
+                 by.pass(whole, true), 0, counts);
   }
 }
 

@@ -7,7 +7,7 @@
 
 namespace meshpipe::rules {
 
-/// Limits of a collapse: the worst triangle and the longest edge that it may leave, and may it fold?
+/// Limits of a collapse: the shape energy and the edge length, in sizes, that it may leave; may it fold?
 struct Collapse {
   double shape, length;
   bool may_fold = false;
@@ -146,9 +146,9 @@ constexpr int tries = 4, sluggish_tries = 3;
 // tiles (tiles.cc, relax.cc)
 constexpr int seam_rings = 6;   // of triangles that seams are optimized with: farther away all is as it was
 constexpr int seam_rounds = 3;  // seams, and seams of seams, until they are not split
-constexpr double around_tile = 2;   // edges: walks from vertices inside of a tile end in their stars
-constexpr double around_seams = 8;  // edges: what the tiles of seams change is nearer to other tiles
-constexpr int crossing_rounds = 2;  // of repair where tiles intersect each other
-constexpr int crossing_rings = 12;  // of triangles around
+constexpr double around_tile = 2;       // edges: walks from vertices inside of a tile end in their stars
+constexpr double around_seams = 8;      // edges: what the tiles of seams change is nearer to other tiles
+constexpr int intersection_rounds = 2;  // of repair where tiles intersect each other
+constexpr int intersection_rings = 12;  // of triangles around
 
 }  // namespace meshpipe::rules

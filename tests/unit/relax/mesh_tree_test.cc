@@ -29,14 +29,14 @@ Surface two_strips() {
   return s;
 }
 
-TEST(MeshTree, CrossingsAreThoseOfASearchFromScratch) {
+TEST(MeshTree, IntersectionsAreThoseOfASearchFromScratch) {
   Drawn m(two_strips());
   MeshTree search;
-  Crossings crossings;
+  IntersectingPairs intersecting;
   auto expect = [&](bool some) {
-    renew(crossings, m.s, search);
-    EXPECT_EQ(crossings.pairs, self_intersections({m.s.points, m.s.mesh.tris}));
-    EXPECT_EQ(!crossings.pairs.empty(), some);
+    renew(intersecting, m.s, search);
+    EXPECT_EQ(intersecting.pairs, self_intersections({m.s.points, m.s.mesh.tris}));
+    EXPECT_EQ(!intersecting.pairs.empty(), some);
   };
   auto lower = [&](int v, double z) {
     m.s.points[v].z = z;
