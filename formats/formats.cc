@@ -18,7 +18,6 @@
 #include "formats/foreign/vtk_legacy.h"
 #include "formats/foreign/vtk_xml.h"
 #include "formats/stream/region_tables.h"
-#include "formats/text.h"
 #include "lib/core/error.h"
 
 namespace meshpipe {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All mesh formats: recognized by their first bytes on input, chosen by the extension on output.
 #pragma once
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,23 +9,24 @@
 
 namespace meshpipe {
 
-/// Reads any known format, the stream included, also compressed by gzip. Foreign meshes come as they are in
-/// the file, with polygons triangulated, face column `patch` and its names; only STL, which does not number
-/// its vertices, is welded. Throws: BadInput with the place in the file.
+/// Reads any known format, the stream included, also compressed by gzip. `where`: the name of the file for
+/// messages. Foreign meshes come as they are in the file, with polygons triangulated, face column `patch` and
+/// names of patches; only STL, which does not number its vertices, is welded. Throws: BadInput with the place
+/// in the file.
 Stream read_any(std::string_view bytes, const std::string& where);
 
-/// Returns ".stl" for "a/part.STL": in lower case; empty if the name has no dot.
+/// Returns the extension of a path in lower case, ".stl" for "a/part.STL"; "" if the name has no dot.
 std::string extension_of(const std::string& path);
 
 /// Returns the mesh in the format of the extension of `path` (".mply": the stream). `ascii` asks for text
-/// where the format has both encodings. Throws like writer_of.
+/// where the format has both encodings. Throws: as writer_of.
 std::string write_as(const Stream& stream, const std::string& path, bool ascii);
 
-/// Lists what of a stream the format of `path` cannot hold, for a message; empty if nothing is lost. Tables
-/// and columns that only programs of the chain use do not count.
+/// Lists for a message what of a stream the format of `path` cannot hold; "" if nothing is lost. Tables and
+/// columns that only programs of the chain use do not count.
 std::string lost_in(const Stream& stream, const std::string& path, bool ascii);
 
-/// A reader recognizes its format by the first bytes (`matches`).
+/// A reader of a format, which `matches` recognizes by its first bytes.
 struct Reader {
   const char* format;
   bool (*matches)(std::string_view bytes);
@@ -59,7 +59,7 @@ struct Writer {
   unsigned only_as_text = 0;  ///< what of that the binary encoding does not hold
 };
 const std::vector<Writer>& writers();
-/// Returns the writer for the extension of `path`. Throws BadUsage with the known ones for any other.
+/// Returns the writer for the extension of `path`. Throws: BadUsage naming the known extensions.
 const Writer& writer_of(const std::string& path);
 
 }  // namespace meshpipe

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Text formats: lines, words and numbers read without copies, and numbers written without loss.
 #pragma once
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -11,21 +10,22 @@ namespace meshpipe {
 
 /// Returns the text without blanks at either end.
 std::string_view trim(std::string_view text);
-/// Compares with a word in lower case, ignoring the case of ASCII letters.
+/// Returns whether a word is `lower`, which is in lower case, ignoring the case of ASCII letters.
 bool same_word(std::string_view word, std::string_view lower);
 
 /// A cursor over the lines of a text. Blanks are space, tab and carriage return, so that CRLF files need no
-/// care. Every failure is a BadInput "WHERE:LINE: message".
+/// care. Every failure throws BadInput "WHERE:LINE: message".
 class Text {
  public:
-  /// `comment` starts a comment that runs to the end of the line; 0: there are none.
+  /// Starts before the first line. `where`: the name of the file; `comment`: starts a comment that runs to
+  /// the end of the line, 0: there are none.
   Text(std::string_view bytes, std::string where, char comment = 0);
 
   /// Moves to the next line that holds a word; returns false at the end.
   bool next_line();
-  /// Moves to the next line, which must exist; `what` (item i of n) is for the message.
+  /// Moves to the next line that holds a word, which must exist; `what` (item i of n) is for the message.
   void need_line(const char* what, int i = -1, int n = -1);
-  /// Drops the rest of the line and the n bytes after it, which are no text. Requires n bytes.
+  /// Drops the rest of the line and the n bytes after it, which are no text. Requires: there are n bytes.
   void skip(std::size_t n);
 
   /// Takes the next word of the line; empty at its end.
@@ -37,10 +37,11 @@ class Text {
   bool line_ends() const;
   /// Takes the next word of the line as a finite number; `what` is for the message.
   double number(const char* what);
-  /// The same for whole numbers: an int, or one of 64 bits.
+  /// Takes the next word of the line as an int, or as an integer of 64 bits.
   int integer(const char* what);
   long long wide(const char* what);
-  /// Takes a count of things of at least `least` bytes each: neither negative nor more than the text holds.
+  /// Takes the next word of the line as a count of things of at least `least` bytes each: neither negative
+  /// nor more than the text can hold.
   int count(const char* what, std::size_t least);
   /// Takes the next word if it is an int, alone or (with `slash`) before a "/" and more; else returns false.
   bool leading_integer(int& value, bool slash = true);
@@ -48,7 +49,7 @@ class Text {
   bool at_nan() const;
 
   std::size_t line() const { return line_; }
-  /// Number of bytes left of the current line, and the bytes after it.
+  /// Returns the number of bytes left in the current line, and the bytes after the line.
   std::size_t rest_size() const { return left_.size(); }
   std::string_view after() const { return bytes_; }
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
@@ -61,7 +62,7 @@ class Text {
   std::size_t line_ = 0;
 };
 
-/// Takes the next word, on whatever line it is; empty at the end of the text.
+/// Takes the next word, on whatever line it is; "" at the end of the text.
 std::string_view next_word(Text& text);
 /// Takes the next word, on whatever line it is, as a number or an int.
 double next_number(Text& text, const char* what);
@@ -70,17 +71,19 @@ int next_integer(Text& text, const char* what);
 Vec3 next_point(Text& text);
 
 /// Parses the whole of a word as a finite decimal number, as C or Fortran write it, also with a leading +.
+/// Returns whether it is one.
 bool parse_number(std::string_view word, double& value);
 bool parse_integer(std::string_view word, long long& value);
 
-/// Returns the word in quotes for a message: cut if long, control characters replaced.
+/// Returns the word in quotes for a message: shortened if long, control characters replaced.
 std::string quoted(std::string_view word);
 /// Encodes blanks, % and all that is not printable ASCII as %XX, for names in a PLY header; and decodes it.
 std::string percent_encode(std::string_view text);
 std::string percent_decode(std::string_view text);
-/// Returns a name for formats with one name per line: control characters become blanks, none at either end.
+/// Returns a name for formats with one name per line: control characters become blanks, and blanks at the
+/// ends go.
 std::string one_line(std::string_view name);
-/// Returns text for an attribute or element of XML, in UTF-8: what is not is taken for Latin 1.
+/// Returns text for an attribute or element of XML, in UTF-8; bytes that are not UTF-8 are taken as Latin 1.
 std::string xml_escaped(std::string_view text);
 
 /// Appends the shortest text that reads back as the same number.

@@ -23,11 +23,11 @@ void draw_levels(const std::string& directory, const std::vector<MultiscaleCut>&
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw CannotWrite(directory + ": " + error.message());
-  for (std::size_t c = 0; c < cuts.size(); c++) {
+  for (std::size_t c = 0; c < cuts.size(); ++c) {
     const CutMaps& maps = cuts[c].maps;
     const std::string stem = "cut-" + std::to_string(c);
     std::vector<std::string> files = level_names(maps.levels);
-    for (std::size_t l = 0; l < files.size(); l++) {
+    for (std::size_t l = 0; l < files.size(); ++l) {
       files[l] = stem + "-level-" + files[l] + ".svg";
       Io::write_file(directory + "/" + files[l], level_svg(maps, l));
     }

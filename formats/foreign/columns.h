@@ -2,7 +2,6 @@
 // Data of vertices and faces: arrays of foreign formats, with any number of components, and columns of the
 // stream, with one component of type uchar, int or double and a name without blanks.
 #pragma once
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +23,8 @@ struct Array {
   std::size_t rows() const { return size() / components; }
 };
 
-/// Converts values of any arithmetic type to one of the stream: bytes to uchar, other whole numbers to int if
-/// all fit, all else to double. `at(i)` is value i of n.
+/// Converts n values at(i) of any arithmetic type T to one of the stream: bytes to uchar, other whole numbers
+/// to int if all fit, all else to double.
 template <class T, class At>
 Data as_data(std::size_t n, const At& at) {
   if constexpr (std::is_same_v<T, std::uint8_t>) {
@@ -52,19 +51,20 @@ Data as_data(std::size_t n, const At& at) {
 /// Converts values to ints; returns false if one is not whole or does not fit.
 bool whole_numbers(const Data& data, std::vector<int>& out);
 
-/// Returns the rows `row[i]` of an array, in that order.
+/// Returns the rows row[0], row[1] ... of an array.
 Array gather(const Array& array, const std::vector<int>& row);
 
-/// Adds an array to a table as columns NAME, or NAME.0, NAME.1, ... for components, or red green blue for
-/// three bytes `color`. Blanks in names become %20; names that are taken get _2, _3, ... Columns that the
-/// stream specifies get their type if the values allow. An array with a number that is not finite is left
-/// out, with a remark in the stream.
+/// Adds an array to a table of the stream as columns NAME, or NAME.0, NAME.1, ... for components, or red
+/// green blue for three bytes named `color`. Blanks in names become %20; names that are taken get _2, _3, ...
+/// Columns that the stream specifies get their type if the values allow. An array with a number that is not
+/// finite is left out, with a remark in the stream.
 void add_columns(Stream& stream, Table& table, std::size_t rows, Array array);
 
-/// Adds a remark on data that was left out, and why.
+/// Adds a remark to the stream on data that was left out, and why.
 void leave_out(Stream& stream, const Table& table, std::string_view name, const std::string& why);
 
-/// The columns that are the components of one array, or a single column: the inverse of add_columns.
+/// The columns of a table that are the components of one array, or a single column: the inverse of
+/// add_columns.
 struct Group {
   std::string name;
   std::vector<const Column*> columns;

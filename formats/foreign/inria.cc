@@ -2,7 +2,6 @@
 #include "formats/foreign/inria.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "formats/foreign/bytes.h"

@@ -2,7 +2,6 @@
 #include "formats/foreign/ply.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Faces of any number of corners, as foreign files hold them, and their triangles.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "formats/stream.h"
@@ -18,7 +17,7 @@ struct Polygons {
   int second_order = 0, higher_order = 0;  ///< finite elements that add_element made flat
 };
 
-/// Limit of corners per face: more are an error in the file, and would take quadratic time.
+/// The largest number of corners of a face: more are an error in the file, and would take quadratic time.
 constexpr int max_corners = 10000;
 
 /// Adds a finite element of 3 or 4 corners by its nodes: corners, nodes within sides from corner 0 on, inner
@@ -36,8 +35,7 @@ void set_faces(Stream& stream, const Polygons& polygons);
 /// Returns face column `patch`; zeros if there is none.
 std::vector<int> patches_of(const Stream& stream);
 
-/// Triangles sorted by patch: triangles order[first[i]] .. order[first[i+1]-1] have label tags[i]; tags
-/// increase.
+/// Triangles sorted by patch: order[first[i]] .. order[first[i+1]-1] have label tags[i]; tags ascend.
 struct ByPatch {
   std::vector<int> tags, order;
   std::vector<std::size_t> first;

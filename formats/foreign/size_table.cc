@@ -2,7 +2,6 @@
 #include "formats/foreign/size_table.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "formats/text.h"
 #include "lib/core/error.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <numbers>
-#include <numeric>
 
 #include "lib/cap/steps.h"
 #include "lib/core/error.h"

@@ -4,7 +4,6 @@
 
 #include "lib/cap/steps.h"
 #include "lib/core/least_area.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/split_edges.h"
 #include "lib/core/topology.h"

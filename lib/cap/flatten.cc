@@ -4,7 +4,6 @@
 #include "lib/cap/steps.h"
 #include "lib/core/bvh.h"
 #include "lib/core/intersect.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/split_edges.h"
 #include "lib/core/topology.h"

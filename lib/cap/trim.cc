@@ -6,7 +6,6 @@
 #include "lib/core/eigenvectors.h"
 #include "lib/core/lists.h"
 #include "lib/core/neighborhood.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"
@@ -177,8 +176,7 @@ struct Piece {
 };
 std::vector<Piece> pieces_cut_off(const Mesh& mesh, const std::vector<int>& owner, int n) {
   std::vector<Piece> pieces(n);
-  std::vector<int> label = owner;
-  const std::vector<SubMesh> parts = split_by_label(mesh, label, n);
+  const std::vector<SubMesh> parts = split_by_label(mesh, owner, n);
   for (int i = 0; i < n; ++i) {
     if (parts[i].tris.empty()) continue;
     const auto opposite = opposite_halfedges(parts[i]);
@@ -188,6 +186,42 @@ std::vector<Piece> pieces_cut_off(const Mesh& mesh, const std::vector<int>& owne
                  (int)boundary_loops(opposite).size()};
   }
   return pieces;
+}
+
+using Planes = std::vector<std::optional<Plane>>;
+
+/// Cuts the triangles with an owner along its plane; `owner` then is that of what lies above.
+void cut_above(Surface& surface, const Planes& planes, std::vector<int>& owner) {
+  std::vector<double> field(surface.points.size(), -1);
+  std::vector<char> active(owner.size(), 0);
+  for (std::size_t t = 0; t < owner.size(); ++t)
+    if (owner[t] >= 0) {
+      active[t] = 1;
+      for (int v : surface.tris[t]) field[v] = planes[owner[t]]->height(surface.points[v]);
+    }
+  surface.face.set("cut_end", owner);
+  std::vector<int> side;
+  cut_by_scalar_field(surface, field, active, side, snap);
+  owner = surface.face.get<int>("cut_end");
+  surface.face.erase("cut_end");
+  for (std::size_t t = 0; t < side.size(); ++t)
+    if (side[t] != 1) owner[t] = -1;
+}
+
+/// Gives the ends with a plane the new border loops as rims, and measures all. `near`: per vertex the end at
+/// whose cut it is, or -1.
+void take_rims(const Surface& surface, const Planes& planes, const std::vector<int>& near,
+               std::vector<End>& ends) {
+  const std::vector<int> opposite = opposite_halfedges(surface);
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    if (planes[i]) ends[i].rims.clear();
+  for (std::vector<int>& rim : rims_of({surface, opposite}))
+    if (const int i = near[rim[0]]; i >= 0 && planes[i]) ends[i].rims.push_back(std::move(rim));
+  for (End& end : ends) {
+    if (end.rims.size() == 2 && end_of(surface, end.rims[0]).area < end_of(surface, end.rims[1]).area)
+      std::swap(end.rims[0], end.rims[1]);
+    measure(surface, end);
+  }
 }
 
 }  // namespace
@@ -234,7 +268,7 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   auto possible = [&] { return std::all_of(why.begin(), why.end(), [](auto& w) { return w.empty(); }); };
   if (std::none_of(planes.begin(), planes.end(), [](const auto& p) { return p.has_value(); })) return why;
   Surface surface = whole;
-  std::vector<int> opposite = opposite_halfedges(surface);
+  const std::vector<int> opposite = opposite_halfedges(surface);
   const Connectivity c{surface, opposite};
   std::vector<int> border_at(c.n_vertices(), -1), owner(c.n_tris(), -1);
   for (int h = 0; h < c.n_half_edges(); ++h)
@@ -242,20 +276,7 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   for (int i = 0; i < n; ++i)
     if (planes[i]) why[i] = flood(c, ends, i, *planes[i], border_at, owner);
   if (!possible()) return why;
-  std::vector<double> field(c.n_vertices(), -1);
-  std::vector<char> active(c.n_tris(), 0);
-  for (int t = 0; t < c.n_tris(); ++t)
-    if (owner[t] >= 0) {
-      active[t] = 1;
-      for (int v : surface.tris[t]) field[v] = planes[owner[t]]->height(surface.points[v]);
-    }
-  surface.face.set("cut_end", owner);
-  std::vector<int> side;
-  cut_by_scalar_field(surface, field, active, side, snap);
-  owner = surface.face.get<int>("cut_end");
-  surface.face.erase("cut_end");
-  for (std::size_t t = 0; t < side.size(); ++t)
-    if (side[t] != 1) owner[t] = -1;
+  cut_above(surface, planes, owner);
   const std::vector<Piece> pieces = pieces_cut_off(surface, owner, n);
   for (int i = 0; i < n; ++i)
     if (const int rims = (int)ends[i].rims.size();
@@ -288,16 +309,7 @@ std::vector<std::string> cut_ends(Surface& whole, std::vector<End>& ends,
   for (int i = 0; i < n; ++i)
     for (std::vector<int>& rim : ends[i].rims)
       for (int& v : rim) v = number[v];
-  opposite = opposite_halfedges(surface);
-  for (int i = 0; i < n; ++i)
-    if (planes[i]) ends[i].rims.clear();
-  for (std::vector<int>& rim : rims_of({surface, opposite}))
-    if (const int i = near_new[rim[0]]; i >= 0 && planes[i]) ends[i].rims.push_back(std::move(rim));
-  for (End& end : ends) {
-    if (end.rims.size() == 2 && end_of(surface, end.rims[0]).area < end_of(surface, end.rims[1]).area)
-      std::swap(end.rims[0], end.rims[1]);
-    measure(surface, end);
-  }
+  take_rims(surface, planes, near_new, ends);
   whole = std::move(surface);
   return why;
 }

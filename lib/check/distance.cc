@@ -2,7 +2,6 @@
 #include "lib/check/distance.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <tuple>
 

@@ -9,6 +9,7 @@
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
+#include "lib/core/normals.h"
 #include "lib/core/original_triangles.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
@@ -84,8 +85,7 @@ void find_needles(Findings& f, const Connectivity& result, const Surface& refere
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree) {
   const Mesh& mesh = result.mesh;
   const int n = (int)mesh.tris.size();
-  std::vector<Vec3> normal(n);
-  for (int t = 0; t < n; ++t) normal[t] = normalized(area_vector(mesh, t));
+  const std::vector<Vec3> normal = face_normals(mesh);
   std::vector<int> folds;
   for (int h = 0; h < 3 * n; ++h) {
     const int g = result.opposite[h];

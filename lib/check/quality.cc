@@ -46,16 +46,50 @@ Shapes shapes(const Mesh& mesh, int first, int last, std::vector<float>& kappas)
   return s;
 }
 
+/// Sums over edge lengths.
 struct Lengths {
   double sum = 0, squares = 0, least = 1e300, largest = 0;
   int count = 0;
+
+  void add(const Lengths& l) {
+    sum += l.sum, squares += l.squares, count += l.count;
+    least = std::min(least, l.least), largest = std::max(largest, l.largest);
+  }
 };
+
+/// Sums the lengths of the edges of one chunk's triangles, each edge with the larger of its half-edges.
+Lengths lengths(const Connectivity& c, const std::vector<double>& size, int first, int last) {
+  Lengths l;
+  for (int h = 3 * first; h < 3 * last; ++h) {
+    if (c.opposite[h] > h) continue;
+    double x = c.length(h);
+    if (!size.empty()) x *= 2 / (size[c.from(h)] + size[c.to(h)]);
+    l.add({x, x * x, x, x, 1});
+  }
+  return l;
+}
+
+/// Returns the share of the inner vertices with 5, 6 or 7 neighbors; 1 without inner vertices.
+double share_of_valence567(const Connectivity& c) {
+  std::vector<int> valence(c.n_vertices(), 0);
+  constexpr int border = 1 << 28;
+  for (int h = 0; h < c.n_half_edges(); ++h) {
+    ++valence[c.from(h)];
+    if (c.is_border(h)) valence[c.from(h)] |= border, valence[c.to(h)] |= border;
+  }
+  int inner = 0, good = 0;
+  for (int v : valence)
+    if (v > 0 && v < border) {
+      ++inner;
+      good += v >= 5 && v <= 7;
+    }
+  return inner ? (double)good / inner : 1;
+}
 
 }  // namespace
 
 Quality quality_of(const Connectivity& surface, const std::vector<double>& size) {
   const Mesh& mesh = surface.mesh;
-  const std::vector<int>& opposite = surface.opposite;
   Quality q;
   q.angle_histogram.assign(60, 0);
   const int n = (int)mesh.tris.size(), chunks = (n + chunk - 1) / chunk;
@@ -67,18 +101,7 @@ Quality quality_of(const Connectivity& surface, const std::vector<double>& size)
   for (int k = 0; k < chunks; ++k) {
     const int first = k * chunk, last = std::min(n, first + chunk);
     shape[k] = shapes(mesh, first, last, q.kappas);
-    Lengths& l = length[k];
-    for (int h = 3 * first; h < 3 * last; ++h) {
-      if (opposite[h] > h) continue;
-      const int a = origin(mesh.tris, h), b = target(mesh.tris, h);
-      double x = norm(mesh.points[a] - mesh.points[b]);
-      if (!size.empty()) x *= 2 / (size[a] + size[b]);
-      l.sum += x;
-      l.squares += x * x;
-      l.least = std::min(l.least, x);
-      l.largest = std::max(l.largest, x);
-      ++l.count;
-    }
+    length[k] = lengths(surface, size, first, last);
   }
   q.min_angle = 180;
   for (const Shapes& s : shape) {
@@ -96,32 +119,14 @@ Quality quality_of(const Connectivity& surface, const std::vector<double>& size)
   q.kappa_p01 = sorted[n / 100];
 
   Lengths all;
-  for (const Lengths& l : length) {
-    all.sum += l.sum;
-    all.squares += l.squares;
-    all.least = std::min(all.least, l.least);
-    all.largest = std::max(all.largest, l.largest);
-    all.count += l.count;
-  }
+  for (const Lengths& l : length) all.add(l);
   const double mean = all.sum / all.count, unit = size.empty() && mean > 0 ? mean : 1;
   q.edge_min = all.least / unit;
   q.edge_max = all.largest / unit;
   q.edge_mean = mean / unit;
   q.edge_deviation = std::sqrt(std::max(0.0, all.squares / all.count - mean * mean)) / unit;
 
-  std::vector<int> valence(mesh.points.size(), 0);
-  constexpr int border = 1 << 28;
-  for (int h = 0; h < 3 * n; ++h) {
-    ++valence[origin(mesh.tris, h)];
-    if (opposite[h] < 0) valence[origin(mesh.tris, h)] |= border, valence[target(mesh.tris, h)] |= border;
-  }
-  int inner = 0, good = 0;
-  for (int v : valence)
-    if (v > 0 && v < border) {
-      ++inner;
-      good += v >= 5 && v <= 7;
-    }
-  q.valence567 = inner ? (double)good / inner : 1;
+  q.valence567 = share_of_valence567(surface);
   return q;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "lib/core/edges.h"
-#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <limits>
 
 #include "lib/clean/repair.h"
 #include "lib/core/bvh.h"

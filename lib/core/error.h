@@ -3,7 +3,6 @@
 // The message is one line in lower case, without a period, with the place and both numbers.
 #pragma once
 #include <stdexcept>
-#include <string>
 
 namespace meshpipe {
 

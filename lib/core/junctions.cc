@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "lib/core/chart_rows.h"
+#include "lib/core/chart.h"
 #include "lib/core/edges.h"
 #include "lib/core/intersect.h"
 #include "lib/core/take_rows.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "lib/core/chart_rows.h"
+#include "lib/core/chart.h"
 #include "lib/core/predicates.h"
 #include "lib/core/take_rows.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/surface_walk.h"
 
-#include <algorithm>
-
 #include "lib/core/bvh.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"

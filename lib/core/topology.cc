@@ -208,10 +208,8 @@ Topology measure(const Connectivity& c, int pieces, const std::vector<int>& numb
   const std::vector<char> used = used_points(mesh);
   std::size_t longest = 0, border = 0;
   for (const std::vector<int>& loop : loops) {
-    double length = 0;
-    for (int h : loop) length += c.length(h);
-    t.loop_length.push_back(length);
-    if (length > t.loop_length[longest]) longest = t.loop_length.size() - 1;
+    t.loop_length.push_back(loop_length(mesh, loop));
+    if (t.loop_length.back() > t.loop_length[longest]) longest = t.loop_length.size() - 1;
     border += loop.size();
   }
   t.components = pieces;

@@ -2,7 +2,6 @@
 // Points and vectors of the plane and of space: plain structs, value semantics, no dependencies.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -40,16 +39,16 @@ inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 inline Vec3 lerp(Vec3 a, Vec3 b, double t) { return (1 - t) * a + t * b; }
 inline Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 inline Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-/// a over its length; the zero vector stays zero.
+/// Returns a over its length; the zero vector stays zero.
 inline Vec3 normalized(Vec3 a) {
   double l = norm(a);
   return l > 0 ? (1 / l) * a : a;
 }
-/// Twice the area of a triangle, along its normal.
+/// Returns the normal of triangle abc with twice its area as length.
 inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
-/// Angle between two vectors in [0, pi]; by atan2, since acos loses half the digits near 0 and pi.
+/// Returns the angle between two vectors, 0 to pi; by atan2, as acos loses half the digits near both.
 inline double angle(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
-/// Returns where the segment from a to b is nearest to p, as a fraction of it; 0 if it has no length.
+/// Returns where the segment from a to b is nearest to p, as a fraction of it from a; 0 if it has no length.
 template <class Point>
 double nearest_fraction(Point p, Point a, Point b) {
   const Point d = b - a;

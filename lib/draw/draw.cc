@@ -18,6 +18,21 @@ Vec3 seen(Vec3 p, const View& v) {
   return {dot(p, right), dot(p, cross(back, right)), dot(p, back)};
 }
 
+/// Returns the picture whose pixels are the means of samples x samples of `fine`.
+Image shrunk(const std::vector<std::uint8_t>& fine, int width, int height) {
+  Image image{width, height, std::vector<std::uint8_t>(std::size_t(width) * height * 3)};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int k = 0; k < 3; ++k) {
+        int sum = 0;
+        for (int j = 0; j < samples; ++j)
+          for (int i = 0; i < samples; ++i)
+            sum += fine[3 * (std::size_t(y * samples + j) * width * samples + x * samples + i) + k];
+        image.rgb[3 * (std::size_t(y) * width + x) + k] = (std::uint8_t)(sum / (samples * samples));
+      }
+  return image;
+}
+
 }  // namespace
 
 void add_to_frame(Frame& frame, const Mesh& mesh, const View& view) {
@@ -86,17 +101,7 @@ Image draw_mesh(const Mesh& mesh, const std::vector<Color>& color, const std::ve
           fine[3 * at + k] = (std::uint8_t)std::clamp(shade * (front ? color[t][k] : 110), 0.0, 255.0);
       }
   }
-  Image image{width, height, std::vector<std::uint8_t>(std::size_t(width) * height * 3)};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (int k = 0; k < 3; ++k) {
-        int sum = 0;
-        for (int j = 0; j < samples; ++j)
-          for (int i = 0; i < samples; ++i)
-            sum += fine[3 * (std::size_t(y * samples + j) * w + x * samples + i) + k];
-        image.rgb[3 * (std::size_t(y) * width + x) + k] = (std::uint8_t)(sum / (samples * samples));
-      }
-  return image;
+  return shrunk(fine, width, height);
 }
 
 Image side_by_side(const std::vector<Image>& images) {

@@ -2,7 +2,6 @@
 #include "lib/mesh2d/adapt.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace meshpipe {
 namespace {

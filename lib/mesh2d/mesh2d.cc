@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -106,11 +105,11 @@ class Numbers {
   Place place(const LinePoint& p) const {
     int k = find(p.a), first = k < 0 ? -1 : half_edge_[k], h = first;
     if (h < 0) return {};
-    if (p.a == p.b) return on_edge(h, 1, 0);
+    if (p.a == p.b) return place_on_edge(h, 1, 0);
     do {
-      if (vertex(target(chart_.mesh.tris, h)) == p.b) return on_edge(h, 1 - p.t, p.t);
+      if (vertex(target(chart_.mesh.tris, h)) == p.b) return place_on_edge(h, 1 - p.t, p.t);
       int in = prev(h);  // runs towards a
-      if (vertex(origin(chart_.mesh.tris, in)) == p.b) return on_edge(in, p.t, 1 - p.t);
+      if (vertex(origin(chart_.mesh.tris, in)) == p.b) return place_on_edge(in, p.t, 1 - p.t);
       h = chart_.opposite[in];
     } while (h >= 0 && h != first);
     return {};
@@ -118,12 +117,6 @@ class Numbers {
 
  private:
   int vertex(int local) const { return chart_.mesh.vertex[local]; }
-  static Place on_edge(int h, double origin_weight, double target_weight) {
-    double b[3] = {0, 0, 0};
-    b[h % 3] = origin_weight;
-    b[(h + 1) % 3] = target_weight;
-    return {h / 3, b[0], b[1], b[2]};
-  }
   int find(int vertex) const {
     auto i = std::lower_bound(global_.begin(), global_.end(), vertex);
     return i != global_.end() && *i == vertex ? (int)(i - global_.begin()) : -1;
@@ -247,7 +240,7 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
 }  // namespace
 
 PartLines::PartLines(const Lines& given, int n_parts)
-    : lines(given), shared(given.lines.size()), point(given.points.size()) {
+    : lines(given), shared(given.lines.size()), point(identity(given.points.size())) {
   std::vector<int> part(lines.lines.size(), -1);
   for (const LineUse& u : lines.uses) {
     if (part[u.line] >= 0 && part[u.line] != u.part) shared[u.line] = 1;
@@ -259,7 +252,6 @@ PartLines::PartLines(const Lines& given, int n_parts)
   auto& [start, line] = lines_of_part;
   for (int p = 0; p < n_parts; ++p) std::sort(line.begin() + start[p], line.begin() + start[p + 1]);
 
-  std::iota(point.begin(), point.end(), 0);
   std::vector<std::pair<int, int>> ends;  // vertex, row
   for (const Line& l : lines.lines)
     for (int row : {l.first, l.first + l.count - 1})

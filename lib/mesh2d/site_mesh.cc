@@ -21,6 +21,62 @@ double worst_shape(const SiteMesh& m, int v, Vec3 x) {
   return worst;
 }
 
+/// What a triangle covers of the chart: area, and the vertex farthest from it, both over the size.
+struct Cover {
+  double area = 0, distance = 0;
+  Missed farthest{};
+};
+
+/// Measures how far corner `corner` of the chart's triangle `face`, which triangle t covers, is from t.
+void measure(const SiteMesh& m, const Chart& chart, int face, int corner, int t, Cover& cover) {
+  const int vertex = chart.mesh.tris[face][corner];
+  const Vec2 p = chart.uv[vertex];
+  const Tri& v = m.cdt.tris[t];
+  const Vec2 a = m.cdt.points[v[0]] - p, b = m.cdt.points[v[1]] - p, c = m.cdt.points[v[2]] - p;
+  const double bc = cross(b, c), ca = cross(c, a), sum = bc + ca + cross(a, b), b0 = bc / sum, b1 = ca / sum;
+  if (!(sum > 0)) return;
+  const Site &s0 = m.site[v[0]], &s1 = m.site[v[1]], &s2 = m.site[v[2]];
+  const Vec3 flat = b0 * s0.space + b1 * s1.space + (1 - b0 - b1) * s2.space;
+  const double size = b0 * s0.size + b1 * s1.size + (1 - b0 - b1) * s2.size;
+  const double d = norm(chart.mesh.points[vertex] - flat) / size;
+  if (d > cover.distance) cover.distance = d, cover.farthest = {p, face, t};
+}
+
+/// Returns for each vertex of the chart the triangle that covers it, negative: none, and measures `cover` of
+/// each triangle except the area. Goes over the chart from neighbor to neighbor, so that walks are short.
+std::vector<int> cover_vertices(const SiteMesh& m, const Chart& chart, std::vector<Cover>& cover) {
+  constexpr int unknown = -2;
+  std::vector<int> covered_by(chart.uv.size(), unknown);
+  struct Step {
+    int face, triangle;
+  };
+  std::vector<char> done(chart.mesh.tris.size(), 0);
+  std::vector<Step> stack;
+  for (int first = 0; first < (int)done.size(); ++first) {
+    if (done[first]) continue;
+    stack.push_back({first, 0});
+    done[first] = 1;
+    while (!stack.empty()) {
+      auto [face, t] = take_last(stack);
+      for (int i = 0; i < 3; ++i) {
+        int& s = covered_by[chart.mesh.tris[face][i]];
+        if (s == unknown) {
+          s = m.cdt.walk(chart.uv[chart.mesh.tris[face][i]], t, Cdt::border_segment);
+          if (s >= 0) measure(m, chart, face, i, s, cover[s]);
+        }
+        if (s >= 0) t = s;  // else between a border and its chord
+      }
+      for (int h = 3 * face; h < 3 * face + 3; ++h) {
+        const int o = chart.opposite[h] / 3;
+        if (chart.opposite[h] < 0 || done[o]) continue;
+        done[o] = 1;
+        stack.push_back({o, t});
+      }
+    }
+  }
+  return covered_by;
+}
+
 }  // namespace
 
 bool insert_site(SiteMesh& m, Vec2 p, const Site& there, int t, Spacing spacing) {
@@ -74,56 +130,8 @@ bool split_long_edge(SiteMesh& m, const SizeMetric& field, int h, double longest
 std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) {
   constexpr double far = 0.5, many = 2;  // over the size, and over the area of a triangle of the size
   const Chart& chart = field.chart();
-  const Cdt& cdt = m.cdt;
-  struct Cover {
-    double area = 0, distance = 0;  // over the size
-    Missed farthest{};
-  };
-  std::vector<Cover> cover(cdt.tris.size());
-  constexpr int unknown = -2;
-  std::vector<int> covered_by(chart.uv.size(), unknown);
-  auto measure = [&](int face, int corner, int t) {
-    const int vertex = chart.mesh.tris[face][corner];
-    const Vec2 p = chart.uv[vertex];
-    const Tri& v = cdt.tris[t];
-    const Vec2 a = cdt.points[v[0]] - p, b = cdt.points[v[1]] - p, c = cdt.points[v[2]] - p;
-    const double bc = cross(b, c), ca = cross(c, a), sum = bc + ca + cross(a, b), b0 = bc / sum,
-                 b1 = ca / sum;
-    if (!(sum > 0)) return;
-    const Site &s0 = m.site[v[0]], &s1 = m.site[v[1]], &s2 = m.site[v[2]];
-    const Vec3 flat = b0 * s0.space + b1 * s1.space + (1 - b0 - b1) * s2.space;
-    const double size = b0 * s0.size + b1 * s1.size + (1 - b0 - b1) * s2.size;
-    const double d = norm(chart.mesh.points[vertex] - flat) / size;
-    if (d > cover[t].distance) cover[t].distance = d, cover[t].farthest = {p, face, t};
-  };
-  // over the chart from neighbor to neighbor, so that each walk starts close by
-  struct Step {
-    int face, triangle;
-  };
-  std::vector<char> done(chart.mesh.tris.size(), 0);
-  std::vector<Step> stack;
-  for (int first = 0; first < (int)done.size(); ++first) {
-    if (done[first]) continue;
-    stack.push_back({first, 0});
-    done[first] = 1;
-    while (!stack.empty()) {
-      auto [face, t] = take_last(stack);
-      for (int i = 0; i < 3; ++i) {
-        int& s = covered_by[chart.mesh.tris[face][i]];
-        if (s == unknown) {
-          s = cdt.walk(chart.uv[chart.mesh.tris[face][i]], t, Cdt::border_segment);
-          if (s >= 0) measure(face, i, s);
-        }
-        if (s >= 0) t = s;  // else between a border and its chord
-      }
-      for (int h = 3 * face; h < 3 * face + 3; ++h) {
-        const int o = chart.opposite[h] / 3;
-        if (chart.opposite[h] < 0 || done[o]) continue;
-        done[o] = 1;
-        stack.push_back({o, t});
-      }
-    }
-  }
+  std::vector<Cover> cover(m.cdt.tris.size());
+  const std::vector<int> covered_by = cover_vertices(m, chart, cover);
   std::vector<Missed> missed;
   if (std::none_of(cover.begin(), cover.end(), [](const Cover& c) { return c.distance > far; }))
     return missed;
@@ -133,7 +141,7 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     for (int corner : v) {
       const int t = covered_by[corner];
       if (t < 0) continue;
-      const Site& near = m.site[cdt.tris[t][0]];
+      const Site& near = m.site[m.cdt.tris[t][0]];
       cover[t].area += area / 3 / (near.size * near.size);
     }
   }

@@ -6,7 +6,9 @@
 #include <limits>
 #include <numbers>
 
+#include "lib/core/lists.h"
 #include "lib/core/segments.h"
+#include "lib/core/spatial_order.h"
 
 namespace meshpipe {
 namespace {
@@ -28,22 +30,21 @@ struct Stop {
 void shorten(std::vector<Stop>& path) {
   const int n = path.size();
   const Vec2 chord = path.back().at - path.front().at;
-  std::vector<int> order(n);
-  for (int i = 0; i < n; i++) order[i] = i;
+  std::vector<int> order = identity(n);
   std::stable_sort(order.begin() + 1, order.end() - 1,
                    [&](int a, int b) { return dot(path[a].at, chord) < dot(path[b].at, chord); });
   auto d = [&](int a, int b) { return norm(path[order[a]].at - path[order[b]].at); };
   const double least = 1e-9 * norm(chord);
   for (bool better = true; better;) {
     better = false;
-    for (int i = 1; i < n - 1; i++)
-      for (int j = i + 1; j < n - 1; j++)
+    for (int i = 1; i < n - 1; ++i)
+      for (int j = i + 1; j < n - 1; ++j)
         if (d(i - 1, j) + d(i, j + 1) < d(i - 1, i) + d(j, j + 1) - least) {
           std::reverse(order.begin() + i, order.begin() + j + 1);
           better = true;
         }
-    for (int i = 1; i < n - 1; i++)
-      for (int j = 0; j < n - 1; j++) {
+    for (int i = 1; i < n - 1; ++i)
+      for (int j = 0; j < n - 1; ++j) {
         if (j == i || j == i - 1) continue;
         double gain = d(i - 1, i) + d(i, i + 1) - d(i - 1, i + 1);
         if (d(j, i) + d(i, j + 1) - d(j, j + 1) < gain - least) {
@@ -55,9 +56,7 @@ void shorten(std::vector<Stop>& path) {
         }
       }
   }
-  std::vector<Stop> sorted(n);
-  for (int i = 0; i < n; i++) sorted[i] = path[order[i]];
-  path.swap(sorted);
+  path = rearranged(path, order);
 }
 
 /// Where a segment of the parent's line, from outside to the set's center, first meets the set's border: as
@@ -66,7 +65,7 @@ double entry_angle(const Level& set, Vec2 from) {
   const Vec2 d = set.center - from;
   const std::size_t n = set.border.size();
   double first = 2, angle = 0, nearest = 1e300, angle_of_nearest = 0;
-  for (std::size_t i = 0; i < n; i++) {
+  for (std::size_t i = 0; i < n; ++i) {
     const Vec2 a = set.border[i], b = set.border[(i + 1) % n];
     const double sa = cross(d, a - from), sb = cross(d, b - from);
     if (double r = norm(a - from); r < nearest) {
@@ -90,7 +89,7 @@ bool turn_ends(std::vector<Stop>& path) {
   const double bend = std::remainder(to - from, 2 * pi);
   const double turn = (pi - std::abs(bend)) / 2;
   double radius = 0.25;
-  for (std::size_t i = 1; i + 1 < path.size(); i++)
+  for (std::size_t i = 1; i + 1 < path.size(); ++i)
     radius = std::max(radius, 1.3 * (norm(path[i].at) + path[i].radius));
   if (turn < 0.1 || radius > 0.8) return false;
   const double sign = bend < 0 ? -1 : 1;
@@ -127,11 +126,11 @@ class Sides {
     double start = angle_of(line.front()), end = angle_of(line.back());
     if (start < end) start += 2 * pi;
     constexpr int steps = 8;
-    for (int i = 0; i <= steps; i++) polygon_.push_back(20 * unit(end + i * (start - end) / steps));
+    for (int i = 0; i <= steps; ++i) polygon_.push_back(20 * unit(end + i * (start - end) / steps));
   }
   double operator()(Vec2 p) const {
     double nearest = 1e300;
-    for (std::size_t i = 0; i + 1 < n_; i++)
+    for (std::size_t i = 0; i + 1 < n_; ++i)
       nearest = std::min(nearest, distance_to_segment(p, polygon_[i], polygon_[i + 1]));
     return encloses(polygon_, p) ? nearest : -nearest;
   }
@@ -147,12 +146,12 @@ std::vector<std::vector<Vec2>> cut_lines(const FilledDisk& disk, const std::vect
                                          double direction) {
   std::vector<std::vector<Vec2>> lines(levels.size());
   std::vector<std::array<double, 2>> ends(levels.size());  // where the parent's line meets the set's circle
-  for (std::size_t l = 0; l < levels.size(); l++) {
+  for (std::size_t l = 0; l < levels.size(); ++l) {
     std::vector<Stop> path = stops_of(disk, levels, levels[l]);
     const bool root = levels[l].parent < 0;
     if (root) {
       Vec2 middle;
-      for (std::size_t i = 1; i + 1 < path.size(); i++)
+      for (std::size_t i = 1; i + 1 < path.size(); ++i)
         middle = middle + (1. / (path.size() - 2)) * path[i].at;
       path.front().at = middle - 3 * unit(direction);
       path.back().at = middle + 3 * unit(direction);
@@ -167,7 +166,7 @@ std::vector<std::vector<Vec2>> cut_lines(const FilledDisk& disk, const std::vect
       path.insert(path.begin(), from);
       path.push_back(to);
     }
-    for (std::size_t i = 1; i + 1 < path.size(); i++)
+    for (std::size_t i = 1; i + 1 < path.size(); ++i)
       if (int c = path[i].child; c >= 0)
         ends[c] = {entry_angle(levels[c], path[i - 1].at), entry_angle(levels[c], path[i + 1].at)};
     if (!root) lines[l].push_back(3 * path.front().at);
@@ -182,27 +181,27 @@ std::vector<double> cut_line_field(const FilledDisk& disk, const std::vector<Lev
   // a vertex between levels is the mean of what they say, each as a distance in space: value over gradient
   std::vector<double> sum(disk.part_vertices, 0), weight(disk.part_vertices, 0);
   std::vector<double> value, gradient, area;
-  for (std::size_t l = 0; l < levels.size(); l++) {
+  for (std::size_t l = 0; l < levels.size(); ++l) {
     const Level& level = levels[l];
     const Sides side(lines[l]);
     const std::size_t n = level.vertex.size();
     value.resize(n);
-    for (std::size_t v = 0; v < n; v++) value[v] = side(level.uv[v]);
+    for (std::size_t v = 0; v < n; ++v) value[v] = side(level.uv[v]);
     gradient.assign(n, 0);
     area.assign(n, 0);
-    for (std::size_t i = 0; i < level.tris.size(); i++) {
+    for (std::size_t i = 0; i < level.tris.size(); ++i) {
       if (level.tris[i] >= disk.part_tris) continue;
       const Tri& c = level.corners[i];
       const Tri& t = disk.tris[level.tris[i]];
       Vec3 p[3] = {disk.points[t[0]], disk.points[t[1]], disk.points[t[2]]};
       double twice = norm(area_vector(p[0], p[1], p[2]));
       Vec3 rise = value[c[0]] * (p[2] - p[1]) + value[c[1]] * (p[0] - p[2]) + value[c[2]] * (p[1] - p[0]);
-      for (int k = 0; k < 3; k++) {
+      for (int k = 0; k < 3; ++k) {
         gradient[c[k]] += norm(rise);  // over the double area, times it
         area[c[k]] += twice;
       }
     }
-    for (std::size_t v = 0; v < n; v++) {
+    for (std::size_t v = 0; v < n; ++v) {
       if (level.vertex[v] >= disk.part_vertices || !(gradient[v] > 0)) continue;
       double& s = sum[level.vertex[v]];
       double& w = weight[level.vertex[v]];
@@ -211,7 +210,7 @@ std::vector<double> cut_line_field(const FilledDisk& disk, const std::vector<Lev
       w += area[v];
     }
   }
-  for (std::size_t v = 0; v < sum.size(); v++) {
+  for (std::size_t v = 0; v < sum.size(); ++v) {
     if (weight[v] > 0) sum[v] /= weight[v];
     if (!(std::abs(sum[v]) >= std::numeric_limits<double>::min()))
       sum[v] = std::numeric_limits<double>::min();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
 
@@ -34,7 +33,7 @@ FilledDisk fill_holes(const Mesh& part) {
   disk.opposite = opposite_halfedges(part.tris, part.points.size());
   const std::vector<std::vector<int>> loops = boundary_loops(disk.opposite);
   const std::size_t longest = longest_loop(part, loops);
-  for (std::size_t l = 0; l < loops.size(); l++) {
+  for (std::size_t l = 0; l < loops.size(); ++l) {
     if (l == longest) {
       for (int h : loops[l]) disk.rim.push_back(origin(part.tris, h));
       continue;
@@ -43,7 +42,7 @@ FilledDisk fill_holes(const Mesh& part) {
     disk.fan_begin.push_back(first);
     Vec3 center;
     for (int h : loops[l]) center = center + (1. / loops[l].size()) * part.points[origin(part.tris, h)];
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
       const int h = loops[l][i], t = first + i;
       disk.tris.push_back({target(part.tris, h), origin(part.tris, h), (int)disk.points.size()});
       disk.opposite[h] = 3 * t;  // and its neighbors in the fan: the half-edge before on the loop, the next
@@ -54,12 +53,12 @@ FilledDisk fill_holes(const Mesh& part) {
   }
   disk.fan_begin.push_back(disk.tris.size());
   disk.weights.resize(3 * disk.tris.size());
-  for (std::size_t t = 0; t < disk.tris.size(); t++) {
+  for (std::size_t t = 0; t < disk.tris.size(); ++t) {
     const Tri& c = disk.tris[t];
     auto w = cotangent_weights(disk.points[c[0]], disk.points[c[1]], disk.points[c[2]]);
     std::copy(w.begin(), w.end(), disk.weights.begin() + 3 * t);
   }
-  for (int h = 0; h < (int)disk.weights.size(); h++) {
+  for (int h = 0; h < (int)disk.weights.size(); ++h) {
     const int o = disk.opposite[h];
     if (o < 0)
       disk.weights[h] = std::max(disk.weights[h], least_weight);

@@ -8,7 +8,6 @@
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
 #include "lib/core/lists.h"
-#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/laplacian.h"
 

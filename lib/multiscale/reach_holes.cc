@@ -2,7 +2,6 @@
 #include "lib/multiscale/reach_holes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "lib/core/shortest_paths.h"
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lib/core/error.h"
-#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 #include "lib/param/intrinsic.h"
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/param/ears.h"
 
-#include <algorithm>
-
 #include "lib/core/cut.h"
-#include "lib/core/loops.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/partition/aggregates.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "lib/core/lists.h"

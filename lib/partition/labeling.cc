@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
-#include <numeric>
-#include <string>
 
 #include "lib/core/coarsen.h"
 #include "lib/core/connectivity.h"
+#include "lib/core/lists.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/topology.h"
@@ -70,19 +69,15 @@ bool cut_label(const Component& c, std::vector<int>& label, int mine, int k, dou
     if (links.empty() || links.back().a != a || links.back().b != b) links.push_back({a, b, 0});
     links.back().weight += c.weight[h];
   }
-  Graph graph;
-  graph.start.assign(n + 1, 0);
-  for (const Link& l : links) ++graph.start[l.a + 1], ++graph.start[l.b + 1];
-  std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
-  graph.adjacency.resize(graph.start.back());
-  graph.edge_weight.resize(graph.start.back());
-  std::vector<int> fill(graph.start.begin(), graph.start.end() - 1);
-  for (const Link& l : links)
-    for (auto [from, to] : {std::pair(l.a, l.b), std::pair(l.b, l.a)}) {
-      graph.adjacency[fill[from]] = to;
-      graph.edge_weight[fill[from]++] = l.weight;
+  const Lists arcs = lists_of(n, [&](auto use) {
+    for (int i = 0; i < (int)links.size(); ++i) use(links[i].a, i), use(links[i].b, i);
+  });
+  Graph graph{arcs.start, {}, {}, std::vector<int>(n, 1)};
+  for (int g = 0; g < n; ++g)
+    for (int i : arcs[g]) {
+      graph.adjacency.push_back(links[i].a == g ? links[i].b : links[i].a);
+      graph.edge_weight.push_back(links[i].weight);
     }
-  graph.vertex_weight.assign(n, 1);
   for (int g = 0; g < c.aggregates.n; ++g)
     if (node[g] >= 0 && total > 0)
       graph.vertex_weight[node[g]] = (int)std::clamp(std::round(10 * load[g] * n / total), 1.0, 1000.0);

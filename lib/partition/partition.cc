@@ -2,12 +2,10 @@
 #include "lib/partition/partition.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <string>
 
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
-#include "lib/partition/labeling.h"
 
 namespace meshpipe {
 std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,

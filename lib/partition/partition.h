@@ -6,22 +6,21 @@
 #include <string>
 
 #include "lib/core/connectivity.h"
-#include "lib/core/mesh.h"
 #include "lib/partition/labeling.h"
 #include "lib/partition/merge.h"
 #include "lib/partition/thresholds.h"
 
 namespace meshpipe {
 
-/// Checks the rule of formats/mply.md on parts; returns an empty string, or what is wrong and where.
+/// Returns what breaks the rule of formats/mply.md on parts (`part`: per triangle), and where; or "".
 std::string part_fault(const Connectivity& mesh, const std::vector<int>& part);
 
-/// Marks the parts 0..n_parts-1 (part[t] = -1: none) that are in several pieces, do not map to
+/// Flags the parts 0..n_parts-1 (`part`: per triangle, -1: none) that are in several pieces, do not map to
 /// the plane, or have more than max_faces triangles (0: any number).
 std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
                                int max_faces);
 
-/// An edge, not of the border, that bends by more is a crease to cuts, marked by mfeature or not.
+/// The bend of an inner edge, in radians, above which it is a crease to cuts, marked by mfeature or not.
 constexpr double sharp_edge = 40 * std::numbers::pi / 180;
 bool is_crease(const Connectivity& mesh, int h);
 
@@ -34,15 +33,14 @@ struct Interfaces {
   double turning_angle = 0, largest_angle = 0;
   int junctions = 0;  ///< vertices with three or more interface edges
 };
-/// `part` is per triangle.
+/// Measures the interfaces between the parts (`part`: per triangle).
 Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& part);
 
 /// Moves the interface of each pair of parts (face column `part`, 0..n_parts-1) to the zero level of a
-/// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h); where
-/// that fails, as on triangles much longer than wide, it is only pulled straight. All other parts only get
-/// split along. Model edges stay interfaces. An interface stays as it was where the result would be longer,
-/// or a part broken (broken_parts).
-/// Requires: parts without fault.
+/// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h, `snap`
+/// as there); where that fails, as on triangles much longer than wide, only pulls it straight. Model edges
+/// stay interfaces. An interface stays as it was where the result would be longer, or a part broken
+/// (broken_parts). Other parts are only split along the new interfaces. Requires: parts without fault.
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0);
 
 }  // namespace meshpipe

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts a surface until every part has genus 0 and a border.
 #include <algorithm>
-#include <numeric>
 
 #include "lib/core/cut.h"
 #include "lib/core/error.h"

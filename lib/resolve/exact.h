@@ -3,7 +3,6 @@
 // meet planes and each other.
 #pragma once
 #include <boost/multiprecision/cpp_int.hpp>
-#include <span>
 #include <vector>
 
 #include "lib/core/mesh.h"
@@ -11,7 +10,7 @@
 
 namespace meshpipe {
 
-/// Two coordinates that a plane is seen in: 0 x, 1 y, 2 z.
+/// The two coordinates in which a plane is seen: 0 x, 1 y, 2 z.
 struct Projection {
   int i = 0, j = 1;
 };
@@ -20,29 +19,28 @@ struct Projection {
 /// floating-point filter on the rounded coordinates, then in integers.
 class ExactPoints {
  public:
-  /// The first points are `vertices`; new points are compared with those that are `used`. Requires:
+  /// Takes the vertices as the first points; new points are compared with those with used[v] != 0. Requires:
   /// vertices with the same coordinates are one.
   ExactPoints(std::vector<Vec3> vertices, const std::vector<char>& used);
 
   int size() const { return (int)near_.size(); }
   bool is_vertex(int p) const { return p < vertices_; }
-  /// The point with each coordinate rounded to the nearest double.
+  /// Returns the point with each coordinate rounded to the nearest double.
   const Vec3& near(int p) const { return near_[p]; }
 
-  /// Returns coordinates to see triangle `t` in, such that it turns left. Requires: `t` has area.
+  /// Returns coordinates in which triangle `t` is seen to turn left. Requires: `t` has area.
   Projection view(const Tri& t) const;
 
-  /// Returns the point where the line through vertices p, q meets the plane of vertices `t`.
+  /// Returns the point where the line through vertices p and q meets the plane of vertices `t`.
   int line_and_plane(int p, int q, const Tri& t);
-  /// Returns the point where the lines p q and a b of one plane meet, which are not parallel as seen.
+  /// Returns the point where the lines p q and a b of one plane meet. Requires: not parallel as seen.
   int line_and_line(int p, int q, int a, int b, Projection view);
 
-  /// +1 if a, b, c turn left as seen, -1 right, 0 collinear.
+  /// Returns +1 if a, b, c turn left as seen, -1 if right, 0 if they are collinear.
   int turn(int a, int b, int c, Projection view) const;
-  /// +1 if p lies on the side of the plane of vertices `t` from which they turn left, -1 on the other, 0 on
-  /// it.
+  /// Returns +1 if p lies where vertices `t` are seen to turn left, -1 if behind their plane, 0 if in it.
   int side(const Tri& t, int p) const;
-  /// The sign of the difference q - p of coordinate k.
+  /// Returns the sign of q - p in coordinate k.
   int compare(int p, int q, int k) const;
 
  private:

@@ -9,7 +9,6 @@
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
-#include "lib/core/predicates.h"
 #include "lib/core/ray.h"
 #include "lib/core/union_find.h"
 

@@ -10,7 +10,6 @@
 #include "lib/core/edges.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
-#include "lib/core/predicates.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/weld.h"
 #include "lib/resolve/arrange.h"

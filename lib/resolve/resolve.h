@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Self-intersections resolved: triangles divided where they meet, and what lies inside dropped.
 #pragma once
-#include <string>
 
 #include "lib/core/mesh.h"
 
@@ -28,12 +27,12 @@ struct ResolveReport {
   bool nothing = false;  ///< the surface is as it was
 };
 
-/// Divides triangles where they intersect, and keeps what separates winding numbers above 0 from others: of
-/// closed components the result is closed and oriented outward. Its edges have two triangles, or more where
-/// it touches itself. Components with borders lose what is behind another, or partitions and fins.
-/// Vertices at intersections are rounded, and what intersects then is divided again. All edges that meet
-/// share their vertices. Vertex data of type double are interpolated, face data copied.
-/// Throws: NotAdmissible if borders leave open what is outside. Source: lib/resolve/outer.h.
+/// Divides triangles where they intersect, and with `outer` keeps what separates winding numbers above 0 from
+/// others: of closed components the result is closed and oriented outward, with edges of two triangles, or
+/// more where it touches itself. Components with borders lose what is behind another, or partitions and fins.
+/// All edges that meet share their vertices; vertices at intersections are rounded, and what then intersects
+/// is divided again. Vertex columns of type double are interpolated, face columns copied. Throws:
+/// NotAdmissible if borders leave open what is outside. Source: lib/resolve/outer.h.
 ResolveReport resolve(Surface& surface, const ResolveOptions& options = {});
 
 }  // namespace meshpipe

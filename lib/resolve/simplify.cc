@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/resolve/simplify.h"
 
-#include <algorithm>
-
 #include "lib/core/edges.h"
 #include "lib/core/intersect.h"
 #include "lib/core/lists.h"

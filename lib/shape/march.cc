@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lib/core/error.h"
+#include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/shape/shape.h"
@@ -199,7 +200,7 @@ Mesh march(const Implicit& f, Vec3 lo, Vec3 hi, int n) {
 void relax_on(Mesh& mesh, const Implicit& f, int rounds) {
   const int n = (int)mesh.points.size();
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, n);
-  std::vector<Vec3> sum(n), normal(n);
+  std::vector<Vec3> sum(n);
   std::vector<double> weight(n);
   std::vector<Vec3> plane(n);  // of the border through a vertex, from its neighbors on it
   std::vector<char> border(n, 0);
@@ -215,15 +216,10 @@ void relax_on(Mesh& mesh, const Implicit& f, int rounds) {
   }
   for (int round = 0; round < rounds; ++round) {
     std::fill(sum.begin(), sum.end(), Vec3{});
-    std::fill(normal.begin(), normal.end(), Vec3{});
+    const std::vector<Vec3> normal = vertex_area_vectors(mesh);
     std::fill(weight.begin(), weight.end(), 0);
     for (std::size_t h = 0; h < opposite.size(); ++h) {
       const int a = origin(mesh.tris, (int)h), b = target(mesh.tris, (int)h);
-      if (h % 3 == 0) {
-        const Tri& t = mesh.tris[h / 3];
-        const Vec3 w = area_vector(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-        for (int v : t) normal[v] = normal[v] + w;
-      }
       for (auto [v, w] : {std::pair{a, b}, std::pair{b, a}})
         if (!border[v] || opposite[h] < 0) {
           sum[v] = sum[v] + mesh.points[w];

@@ -86,9 +86,8 @@ std::vector<std::pair<int, int>> find_faults(const Mesh& mesh, const Implicit& f
   std::vector<char> folded(mesh.tris.size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (int t = 0; t < (int)folded.size(); ++t) {
-    const auto& [i, j, k] = mesh.tris[t];
-    const Vec3 a = mesh.points[i], b = mesh.points[j], c = mesh.points[k], normal = area_vector(a, b, c);
-    const Vec3 middle = 1.0 / 3 * (a + b + c), step = 0.05 * std::sqrt(norm(normal)) * normalized(normal);
+    const Vec3 middle = centroid(mesh, t), normal = area_vector(mesh, t);
+    const Vec3 step = 0.05 * std::sqrt(norm(normal)) * normalized(normal);
     folded[t] = f(middle + step) < f(middle - step);
   }
   for (int t = 0; t < (int)folded.size(); ++t)
@@ -203,11 +202,10 @@ class Tree {
       for (auto [d, b] : found)
         if (d <= closest + across + 2 * blend) near[c].push_back(b);
     }
-    start_.assign(1, 0);
-    for (const auto& list : near) {
-      near_.insert(near_.end(), list.begin(), list.end());
-      start_.push_back((int)near_.size());
-    }
+    near_ = lists_of(cells, [&](auto use) {
+      for (int c = 0; c < cells; ++c)
+        for (int b : near[c]) use(c, b);
+    });
   }
 
   double operator()(Vec3 p) const {
@@ -215,8 +213,8 @@ class Tree {
     const Vec3 d = p - lo;
     const int c = (cell(d.z, 2) * n_[1] + cell(d.y, 1)) * n_[0] + cell(d.x, 0);
     double result = 1e300, closest = 1e300, blend = widest;
-    for (int i = start_[c]; i < start_[c + 1]; ++i) {
-      const Branch& b = branches[near_[i]];
+    for (int i : near_[c]) {
+      const Branch& b = branches[i];
       const double distance = branch_distance(b, p);
       result = smooth_min(result, distance, std::min(blend, b.blend));
       if (distance < closest) {
@@ -236,7 +234,7 @@ class Tree {
 
   double h_ = 1;
   int n_[3] = {1, 1, 1};
-  std::vector<int> start_, near_;
+  Lists near_;  ///< branches by cell
 };
 
 /// Grows the tree over leaves that are spread evenly over a disk, which stands for the directions within an

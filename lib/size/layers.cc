@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/error.h"
 #include "lib/core/number.h"

@@ -9,7 +9,6 @@
 
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"

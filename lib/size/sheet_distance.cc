@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/topology.h"

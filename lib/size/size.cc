@@ -11,7 +11,6 @@
 #include "lib/core/failure_facts.h"
 #include "lib/core/junctions.h"
 #include "lib/core/lists.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/split_edges.h"

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "lib/core/error.h"
-#include "lib/core/neighbors.h"
 #include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"

@@ -2,7 +2,6 @@
 #include "lib/solids/solids.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "lib/core/around.h"
 #include "lib/core/bvh.h"
