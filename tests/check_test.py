@@ -120,6 +120,20 @@ class Comments(unittest.TestCase):
         self.assertEqual(self.longest("// a\n// b\n#pragma once\n// c\n\nint f();\n"), 0)
 
 
+class Verbs(unittest.TestCase):
+    def count(self, text):
+        return len(source.facts(text)["verbs"])
+
+    def test_comments_on_functions_begin_with_one(self):
+        self.assertEqual(self.count("/// Returns a.\n/// The rest.\nint f(int a);\n\n/// Adds.\ntemplate <class T>\nvoid g(T t) {\n}\n"), 0)
+        self.assertEqual(self.count("/// The sum\n/// Returns it.\nint f(int a);\n"), 1)
+        self.assertEqual(self.count("struct A {\n  /// Is it one?\n  bool is() const { return true; }\n};\n"), 1)
+
+    def test_others_need_none(self):
+        self.assertEqual(self.count("/// A mesh.\nstruct A {\n  int f();\n};\n/// At (x, y).\nint a = f(1);\n"
+                                    "/// A call.\nusing F = std::function<void(int)>;\n"), 0)
+
+
 class Words(unittest.TestCase):
     def words(self, text, path="lib/a/a.h"):
         return [hit.split("'")[1] for hit in check.word_hits(path, text)]

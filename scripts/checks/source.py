@@ -243,6 +243,19 @@ def comments(text):
     return result
 
 
+def without_verb(text):
+    """Returns (line, first words, 1) of each `///` comment on a function that does not begin with a verb, such as "Returns"."""
+    result = []
+    for found in re.finditer(r"^([ \t]*)/// (.*)\n(?:\1///.*\n)*(?! *//)", text, re.M):
+        rest = re.split(r"[;{]", text[found.end():found.end() + 1000])[0]
+        words = without_template(TOKEN.findall(blank(rest)))
+        if not words or words[0] in ("struct", "class", "enum", "using", "namespace") or "function" in words or not is_function(words):
+            continue
+        if not re.match(r"(?!Has |Does |Was |Its |This )[A-Z][a-z]+s\b", found[2]):
+            result.append((text.count("\n", 0, found.start()) + 1, found[2][:60], 1))
+    return result
+
+
 def opposite_parameters(text):
     """Returns (line, text) of each parameter that is the column of opposite half-edges."""
     plain = blank(text)
@@ -265,9 +278,9 @@ def opposite_parameters(text):
 
 
 def facts(text):
-    """Returns what is found in the text of one file: functions, classes, comments and opposite, each a list of (line, name,
-    size)."""
+    """Returns what is found in the text of one file: functions, classes, comments, opposite and verbs, each a list of (line,
+    name, size)."""
     scanner = Scanner(text)
     scanner.scope("namespace")
     return {"functions": scanner.functions, "classes": scanner.classes, "comments": comments(text),
-            "opposite": opposite_parameters(text)}
+            "opposite": opposite_parameters(text), "verbs": without_verb(text)}
