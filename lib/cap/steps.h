@@ -86,8 +86,8 @@ struct Growth {
 /// Raises the rims of an end to a plane above them, by walls on which their notches are smoothed: a stub,
 /// such as is left of a branch. The borders of the stub become the rims.
 void raise_end(Mesh& mesh, End& end, Growth& growth);
-/// Raises the rims of the flagged ends, along their normals or a little off. Returns per end what is in the
-/// way where that is impossible. owner[t] becomes the end for which triangle t was made.
+/// Calls raise_end for the flagged ends, along their normals or a little off. Returns per end what is in the
+/// way, if it was left alone. owner[t] becomes the end for which triangle t was made.
 std::vector<std::string> raise_ends(Mesh& mesh, std::vector<End>& ends, const std::vector<char>& flagged,
                                     Growth& growth, std::vector<int>& owner);
 /// Extends the rims of an end along its normal by tubes of this length that become circular; the circles

@@ -25,9 +25,9 @@ struct Patch {
 std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& opposite,
                               const std::function<std::string(int)>& name);
 
-/// Returns a sentence for each patch of the reference that is lost in the result or has another extent: a
-/// bounding box off by more than its longest edge, or an area by more than half of it plus half that edge
-/// along the border.
+/// Returns a sentence for each patch of the reference that the result lacks or gives another extent: a
+/// bounding box off by more than the patch's longest edge in the result, or an area off by more than half of
+/// the reference's plus half that edge times the perimeter. Requires: both sorted by name.
 std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
                                          const std::vector<Patch>& result);
 

@@ -24,7 +24,8 @@ struct FeatureLines {
   std::vector<char> open;      ///< per line: it ends at nodes
   std::vector<char> rank;  ///< per line: 0 edge of a wrinkle, 1 crease, 2 given or between patches, 3 border
 };
-/// Finds the lines. `given`: as in remove_small_features; `wrinkles`: flags half-edges of no model edge.
+/// Chains the hard edges of the mesh into lines. `given`: as in remove_small_features; `wrinkles`: per
+/// half-edge, whether it is hard only as the edge of a wrinkle.
 FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std::vector<int>* given,
                         const std::vector<char>& wrinkles);
 

@@ -33,8 +33,7 @@ struct Lines {
   std::vector<LinePoint> points;
 };
 
-/// Radians by which a line turns at a corner, at least: a regular octagon has 8 corners, a circle none.
-constexpr double corner_turn = 0.7;  ///< radians; a regular octagon has 8 corners, a circle none
+constexpr double corner_turn = 0.7;  ///< radians, at least: a regular octagon has 8 corners, a circle none
 
 /// Marks the vertices that a remeshed surface keeps: ends and junctions of the mesh border and model edges;
 /// vertices where these turn by more than corner_turn at every scale from their edges up to the size (so that
@@ -52,8 +51,8 @@ std::vector<char> model_corners(const Surface& surface);
 Lines make_lines(const Surface& surface, const std::vector<Chart>& charts,
                  const std::vector<int>* tag = nullptr, bool keep_border = false, bool sheets_meet = false);
 
-/// Marks the vertices of a surface that a mesh with these lines keeps: model_corners, vertices where the
-/// label of lines changes, and those of borders that are kept.
+/// Marks the vertices that a mesh with these lines keeps: model_corners, ends of border or model lines of two
+/// tags and, if any line is `kept`, corners of the input's border (all without face column `origin`).
 std::vector<char> line_corners(const Surface& surface, const Lines& lines);
 
 }  // namespace meshpipe

@@ -44,13 +44,13 @@ struct Missed {
 std::vector<Missed> missed_vertices(const SiteMesh& mesh, const SizeMetric& field);
 
 /// Flips free edges, starting with the half-edges in `todo` (emptied), until the two angles in space opposite
-/// to an edge sum to at most pi. Always ends.
+/// to every edge sum to at most pi, or ten times as many were tried as were in `todo`.
 void flip_to_delaunay(SiteMesh& mesh, std::vector<int>& todo);
-/// Flips all edges in this way.
+/// Flips like the other flip_to_delaunay, starting with all edges.
 void flip_to_delaunay(SiteMesh& mesh);
 
-/// Moves inner vertices towards the mean of their neighbors, `sweeps` times; with `flips`, calls
-/// flip_to_delaunay before and after each sweep.
+/// Moves inner vertices towards the mean of their neighbors, `sweeps` times, where no triangle folds or
+/// becomes a needle; with `flips`, flip_to_delaunay comes before and after each sweep.
 void smooth_in_plane(SiteMesh& mesh, const SizeMetric& field, int sweeps, bool flips = true);
 
 }  // namespace meshpipe

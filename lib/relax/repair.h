@@ -24,7 +24,7 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
                               const Judge& judge = {});
 
 /// Repairs the triangles that are not good enough, the worst first, then vertices of a valence other than 5,
-/// 6, 7. Stops after 200 + n/100 of n triangles: then the size field is at fault.
+/// 6, 7: in each of 4 rounds at most 200 + n/100 of n triangles, since more mean that sizes are at fault.
 void repair_worst(State& s, Repairs& memory);
 
 // --- missed_features.cc ---

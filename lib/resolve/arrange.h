@@ -21,7 +21,7 @@ struct Pieces {
 Pieces arrange(const std::vector<Tri>& tris, const std::vector<int>& weight,
                const std::vector<std::pair<int, int>>& pairs, ExactPoints& points);
 
-/// Unites triangles with the same three vertices: the first stays, with the sum of the weights.
+/// Unites triangles of the same vertices: the first stays; weights are added, or subtracted if opposite.
 void unite_coincident(Pieces& pieces);
 
 }  // namespace meshpipe

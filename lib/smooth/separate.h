@@ -8,9 +8,9 @@
 
 namespace meshpipe {
 
-/// Moves vertices back towards `start` where triangles newly intersect: three times half the way, then, in
-/// growing neighborhoods, all of it, which ends with the surface as it was. Flags the vertices moved back in
-/// `held`, and returns their number.
+/// Moves vertices back towards `start` around triangles that intersect and did not there: half the way in
+/// each of three rounds, then all of it, every round one ring farther out, until none does; at worst the
+/// surface is as it was. Flags the vertices moved back in `held`, and returns their number.
 int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held);
 
 /// Returns the root mean square of the angles between adjacent triangles (pairs) as oriented, in degrees.

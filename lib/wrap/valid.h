@@ -44,8 +44,8 @@ std::vector<std::uint8_t> triangles_that_meet_others(const Mesh& mesh,
                                                      const std::vector<std::uint8_t>& wanted, double least);
 
 /// Contracts short edges (`spacing`: the length of regular ones) and flips long ones at slivers, as long as
-/// normals hardly turn, the mesh stays valid as in keep_valid, and allowed(mesh, t) holds for each changed
-/// triangle t. Requires: the mesh is valid, the soup's triangles have area.
+/// normals hardly turn, the mesh stays valid as in keep_valid (`least`: as there), and allowed(mesh, t) holds
+/// for each changed triangle t. Requires: the mesh is valid, the soup's triangles have area.
 void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing, double least,
                     const std::function<bool(const Mesh&, int)>& allowed);
 
