@@ -14,17 +14,23 @@ namespace {
 
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
-constexpr double most_sag = 0.3;      ///< of the gap; triangles sag by 4/3 of what edges do
+constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do
+constexpr double longest = 1.4;       ///< edge, in sizes: a longer one is split
 constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
-constexpr double least_share = 1.0 / 16;  ///< of the size asked for: less is not asked for by sheets
-constexpr double lowered = 0.62;          ///< of the size asked for: sheets that permit more have not failed
-constexpr double needle = 0.1;            ///< height of a triangle over the width of its strip
-constexpr int most_needles = 8;           ///< side by side along a line
-constexpr double opposed = 0.5;           ///< least cosine between the way across and the sides that face it
-constexpr double sharp_corner = 0.54;     ///< radians between lines that taper to a sharp corner
+constexpr double least_share =
+    1.0 / 16;                          ///< of the size asked for: less is not asked for by sheets and arches
+constexpr double lowered = 0.62;       ///< of the size asked for: sheets that permit more have not failed
+constexpr double needle = 0.1;         ///< height of a triangle over the width of its strip
+constexpr int most_needles = 8;        ///< side by side along a line
+constexpr double opposed = 0.5;        ///< least cosine between the way across and the sides that face it
+constexpr double sharp_corner = 0.54;  ///< radians between lines that taper to a sharp corner
 constexpr double most_opening = 2;   ///< of the width over the way to the corner: more is the end of a strip
 constexpr double least_bend = 1e-3;  ///< radians: edges across flatter ones hardly sag
 constexpr double flat_triangle = 1e-7;  ///< height over length, below which rounding decides on the normal
+constexpr double arch_turn = 2.1;       ///< radians: a chord of a third of a turn is half as long off its arc
+constexpr double quarter = 0.785;       ///< of a circle, over its diameter: edges across arches turn as much
+constexpr int most_of_arch = 64;        ///< triangles between its lines: more of them follow it anyway
+constexpr double rounding = 1e-9;       ///< of a distance to the same point, from two triangles
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
 constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
 constexpr double least_piece = 1e-4;    ///< of an edge: bounds the measurements of one
@@ -64,8 +70,8 @@ class Search {
     return queue_.size() == triangles.size();
   }
 
-  /// Calls visit(t) for the triangles nearer to p than reach(), from the first one on, across edges that pass
-  /// the test; it returns false to stop.
+  /// Calls visit(t) for the first triangles and those that are connected with them across edges nearer to p
+  /// than reach() that pass the test; it returns false to stop.
   template <class Crosses, class Reach, class Visit>
   void flood(const std::vector<int>& first, Vec3 p, Crosses crosses, Reach reach, Visit visit) {
     ++turn_;
@@ -79,8 +85,10 @@ class Search {
         if (surface_.is_border(h) || !crosses(h)) continue;
         const int u = surface_.opposite[h] / 3;
         if (seen_[u] == turn_) continue;
+        const Vec3 a = surface_.point(surface_.from(h)), b = surface_.point(surface_.to(h));
+        if (!(norm(lerp(a, b, nearest_fraction(p, a, b)) - p) < reach())) continue;
         seen_[u] = turn_;
-        if (norm(closest_point(surface_.mesh, u, p) - p) < reach()) queue_.push_back(u);
+        queue_.push_back(u);
       }
     }
   }
@@ -149,6 +157,8 @@ class Measure {
   SizeBound sheet(int h, Vec3 p, Search& search) const;
   Vec3 inward(int h, double width) const;
   bool adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const;
+  SizeBound arch(int h, Vec3 p, Search& search) const;
+  bool is_ridge(int t, Vec3 p, double distance) const;
   double until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const;
 
   const Connectivity& surface_;
@@ -232,12 +242,45 @@ SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
         }
         return true;
       });
+  return found.size < infinity ? found : arch(h, p, search);
+}
+
+/// As strip, where the surface between two lines bends so much that edges across it must be shorter than the
+/// lines are apart.
+SizeBound Measure::arch(int h, Vec3 p, Search& search) const {
+  SizeBound found{h, p, infinity, 0};
+  double width = longest * asked(h);
+  const double least = least_share * width;
+  int looks = 0;
+  // from one line at a right angle, over its region or at least not away from it
+  auto faces = [&](int g, Vec3 d) {
+    const Vec3 along = surface_.point(surface_.to(g)) - surface_.point(surface_.from(g));
+    const double l = norm(d);
+    return std::abs(dot(d, along)) < opposed * l * norm(along) && dot(d, inward(g, l)) > -opposed * l;
+  };
+  search.flood(
+      {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
+      [&](int t) {
+        for (int g = 3 * t; g < 3 * t + 3; ++g) {
+          if (g == h || !is_line(g)) continue;
+          const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
+          const Vec3 q = lerp(a, b, nearest_fraction(p, a, b)), d = q - p;
+          const double l = norm(d);
+          if (!(l < width) || l < least || !faces(h, d) || !faces(g, p - q) ||
+              angle(normal_[h / 3], normal_[t]) < arch_turn || adjacent_along(h, p, g, q, l))
+            continue;
+          width = l;
+          found.size = quarter * l;
+          found.gap = l;
+        }
+        return ++looks < most_of_arch;
+      });
   return found;
 }
 
 /// Returns the distance from p at which the surface, connected without model edges, rises by `most`.
 double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const {
-  double reach = 0.5 * asked(h);
+  double reach = 0.5 * longest * asked(h);
   search.flood(
       {h / 3, surface_.opposite[h] / 3}, p, [&](int g) { return !is_line(g); }, [&] { return reach; },
       [&](int t) {
@@ -268,7 +311,16 @@ Bend Measure::bend(int h) const {
   const double most = asked(h);
   const double sag = std::min(0.125 * most * most * std::abs(angle) / ((at_s + at_t) / 3), 0.5 * most);
   return {normalized((angle > 0 ? -1.0 : 1.0) * (normal_[s] + normal_[t])), at_s + at_t,
-          lowered * lowered * sag / most_sag};
+          longest * longest * lowered * lowered * sag / most_sag};
+}
+
+/// Whether t, whose edges or corners are nearest to p at a distance, has no neighbor that is nearer.
+bool Measure::is_ridge(int t, Vec3 p, double distance) const {
+  for (int h = 3 * t; h < 3 * t + 3; ++h)
+    if (!surface_.is_border(h) &&
+        norm(closest_point(surface_.mesh, surface_.opposite[h] / 3, p) - p) < (1 - rounding) * distance)
+      return false;
+  return true;
 }
 
 SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
@@ -279,18 +331,19 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   int other = -1;
   tree_.in_cone(p, up, opposed, gap, [&, &up = up, &gap = gap](int u) {
     ++search.work;
-    if (u == s || u == t || std::abs(dot(normal_[u], up)) < opposed) return gap;
+    if (u == s || u == t) return gap;
     const auto& [i, j, k] = surface_.mesh.tris[u];
     auto rises = [&](int v) { return dot(surface_.point(v) - p, up) > 0; };
     if (!rises(i) && !rises(j) && !rises(k)) return gap;
     const Vec3 d = closest_point(surface_.mesh, u, p) - p;
     const double l = norm(d);
     if (l > gap || dot(d, up) < opposed * l || l == 0) return gap;
+    if (std::abs(dot(normal_[u], up)) < opposed && !is_ridge(u, p, l)) return gap;
     if (l < gap || u < other) other = u;
     return gap = l;
   });
   if (other < 0) return none;
-  const double most = asked(h), size = std::max({2 * until_sag(h, p, up, most_sag * gap, search),
+  const double most = asked(h), size = std::max({2 / longest * until_sag(h, p, up, most_sag * gap, search),
                                                  least_height * heights, least_share * most});
   // what is connected within the size is a fold that a mesh of this size leaves out
   if (size > lowered * most || joins(

@@ -32,6 +32,8 @@ constexpr double count_error = 1e-3;          ///< of the number of triangles as
 constexpr double most_times = 10;             ///< triangles of narrow strips, over those asked for,
 constexpr double many_triangles = 5e4;        ///< unless they are no more than this: seconds
 constexpr double wide_strip = 0.1;            ///< over the size: beyond what mfeature removes unasked
+constexpr double much_less = 0.8;             ///< of the size: a bound on a field that has met others
+constexpr char permitted_before[] = "permitted_before";  ///< column of the vertices while a field is made
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
 /// A vertex column and the share of it that is asked for.
@@ -54,6 +56,7 @@ struct Field {
   // Where the surface is near itself: the bounds by half-edge of the surface as it came and along it, the
   // triangles of that, and which of them each triangle is part of. Empty where nothing is bounded.
   std::vector<SizeBound> bounds{};
+  double strips = 0;  ///< triangles of strips that were bounded before these
   Surface given{};
   std::vector<int> root{};
   std::unordered_map<std::uint64_t, double> asked{};  ///< by the two vertices, see there
@@ -160,9 +163,14 @@ void each_bound(const Field& f, int h, Visit visit) {
   }
 }
 
-/// Lowers what the surface permits at the ends of every edge by the bounds on it.
+/// The number of triangles of strips beyond those that their area stands for.
+double strip_triangles(const Field& f, double most) { return f.strips + triangles_of_strips(f.bounds, most); }
+
+/// Lowers what the surface permits at the ends of every edge by the bounds on it, or has permitted before.
 void bound_vertices(Field& f) {
-  f.permits.assign(f.s.points.size(), infinity);
+  const Column* before = f.s.vertex.find(permitted_before);
+  f.permits =
+      before ? f.s.vertex.get<double>(permitted_before) : std::vector<double>(f.s.points.size(), infinity);
   if (f.bounds.empty()) return;
   for (int h = 0; h < (int)f.opposite.size(); ++h)
     each_bound(f, h, [&](const SizeBound& x) {
@@ -192,7 +200,7 @@ void set_sizes(Field& f, double uniform, double scale) {
 void meet_count(Field& f) {
   auto count_at = [&](double x) {
     set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinity, x > 0 ? std::exp(x) : 1);
-    const double strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
+    const double strips = strip_triangles(f, std::min({f.uniform, f.cap, f.diagonal}));
     return std::log((count_for_size(f.s, f.size) + strips) / f.o.triangles);
   };
   // without other sources all x > 0 are one: narrow places that ask for more there do so everywhere
@@ -334,7 +342,7 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
 /// Puts the surface back as it was before it was split for its bounds (not the chart table), and throws
 /// GoalMissed, if the field asks for more triangles than `limit`, or has taken as many vertices.
 void refuse_costly_field(Field& f, double limit, double triangles, const SizeReport& r) {
-  const double count = count_for_size(f.s, f.size) + triangles_of_strips(f.bounds, infinity);
+  const double count = count_for_size(f.s, f.size) + strip_triangles(f, infinity);
   if (count <= limit && (double)(f.s.points.size() - f.given.points.size()) <= limit) return;
   f.s = std::move(f.given);
   throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
@@ -451,6 +459,24 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
   return {kind.column, kind.edges, (int)measured, values[at], kind.factor() * values[at], f.s.points[at]};
 }
 
+/// Bounds a field again that has met its bounds, and returns whether there are any: sheets that were joined
+/// within the size asked for need not be within what it is now. The smallest size stays.
+bool bound_again(Field& f, double most_triangles) {
+  const double least = *std::min_element(f.size.begin(), f.size.end());
+  auto bounds = permitted_sizes({f.s, f.opposite, model_of(f.s)}, f.size, least, most_triangles);
+  std::erase_if(bounds, [&](const SizeBound& x) {
+    const int a = origin(f.s.tris, x.half_edge), b = target(f.s.tris, x.half_edge);
+    return !(x.size < much_less * 0.5 * (f.size[a] + f.size[b]));
+  });
+  if (bounds.empty()) return false;
+  f.strips += triangles_of_strips(f.bounds, infinity);
+  f.bounds = std::move(bounds);
+  f.s.vertex.set(permitted_before, f.permits);
+  f.given = f.s;
+  f.root = identity(f.s.tris.size());
+  return true;
+}
+
 /// Makes a field that is not uniform; `bounds` and the number of `triangles` are those of a uniform size, or
 /// not known (0).
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
@@ -502,7 +528,12 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   }
   lower_where_narrow(f, report);
   if (!f.bounds.empty()) refuse_costly_field(f, limit, triangles, report);
-  report.strips = triangles_of_strips(f.bounds, std::min({f.uniform, f.cap, f.diagonal}));
+  if (!f.bounds.empty() && may_split && bound_again(f, limit)) {
+    follow_field();
+    f.s.vertex.erase(permitted_before);
+    refuse_costly_field(f, limit, triangles, report);
+  }
+  report.strips = strip_triangles(f, std::min({f.uniform, f.cap, f.diagonal}));
   report.added = (int)(s.points.size() - n_before);
   report.scale = f.scale;
   return std::move(f.size);

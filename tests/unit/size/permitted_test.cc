@@ -40,6 +40,22 @@ void add_tube(Mesh& mesh, double radius, double length) {
     }
 }
 
+/// Half an open tube along z, hollow to +y, of eight flat faces; its edge along the bottom starts at row 4.
+Mesh groove(double radius, double length) {
+  constexpr int n = 8;
+  Mesh mesh;
+  for (double z : {0.0, length})
+    for (int j = 0; j <= n; ++j) {
+      const double a = std::numbers::pi * (1 + (double)j / n);
+      mesh.points.push_back({radius * std::cos(a), radius * std::sin(a), z});
+    }
+  for (int j = 0; j < n; ++j) {
+    mesh.tris.push_back({j, j + 1, j + n + 2});
+    mesh.tris.push_back({j, j + n + 2, j + n + 1});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST(Permitted, SevenWidthsOfAStrip) {
@@ -84,6 +100,37 @@ TEST(Permitted, ChordsOfASheetStayOffTheNext) {
     EXPECT_NEAR(b.gap, 0.02, 1e-3);
   }
   EXPECT_TRUE(bounds_of(mesh, 0.2).empty());
+}
+
+TEST(Permitted, EdgesAcrossAGrooveTurnByAQuarter) {
+  int along = 0;
+  for (const SizeBound& b : bounds_of(groove(1, 40), 4))
+    if (b.length > 0 && std::abs(std::abs(b.place.x) - 1) < 1e-12) {
+      EXPECT_NEAR(b.size, std::numbers::pi / 2, 2e-3);
+      EXPECT_NEAR(b.gap, 2, 1e-12);
+      ++along;
+    }
+  EXPECT_GT(along, 4);
+  EXPECT_TRUE(bounds_of(groove(1, 40), 1.3).empty()) << "shorter edges follow it anyway";
+}
+
+TEST(Permitted, ChordsOfAGrooveStayOffARidgeInIt) {
+  Mesh mesh = groove(1, 8);
+  const int ridge = (int)mesh.points.size();
+  for (double z : {0.0, 8.0})
+    for (Vec3 p : {Vec3{-0.1, 1.5, z}, Vec3{0, -0.5, z}, Vec3{0.1, 1.5, z}}) mesh.points.push_back(p);
+  for (int i : {ridge, ridge + 1}) {
+    mesh.tris.push_back({i, i + 3, i + 4});
+    mesh.tris.push_back({i, i + 4, i + 1});
+  }
+  int bottom = 0;
+  for (const SizeBound& b : bounds_of(mesh, 4))
+    if (std::abs(b.place.x) < 1e-9 && std::abs(b.place.y + 1) < 1e-9 && b.place.z > 0 && b.place.z < 8) {
+      EXPECT_NEAR(b.gap, 0.5, 1e-9);
+      EXPECT_LT(b.size, 1.5);
+      ++bottom;
+    }
+  EXPECT_GT(bottom, 0);
 }
 
 TEST(Permitted, FlatSheetsAreAsNearAsTheyLike) {
