@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Single points far out of their surface, as scanners and broken files have them.
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
 #include "lib/clean/clean.h"

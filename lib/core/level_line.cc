@@ -11,6 +11,7 @@ namespace meshpipe {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double sharp_peak = 15 * pi / 180;  ///< radians around: within a part its map is too uneven
 
 using Edge = std::pair<int, int>;
 
@@ -76,6 +77,7 @@ struct Star {
   std::vector<double> angle;
   bool closed;
   double total() const { return angle.back(); }
+  bool is_peak() const { return closed && total() < sharp_peak; }
   int triangles() const { return (int)half_edge.size(); }
 
   /// Gathers the star of the origin of `first`, the first half-edge there on a border.
@@ -109,6 +111,11 @@ class Pull {
     }
     for (int v = 0; v < (int)first_.size(); ++v)
       if (c_.sign[v] == 0 && first_[v] >= 0) on_.push_back(v);
+    for (int i = 0, n = (int)c_.crossed.size(); i < n; ++i)
+      for (int v : {c.from(c_.crossed[i]), c.to(c_.crossed[i])}) {
+        star_.gather(c_, first_[v]);
+        if (c_.sign[v] != 0 && hold[v] == Hold::moves && star_.is_peak()) put_on(v);
+      }
   }
 
   void sweep(double snap) {
@@ -193,7 +200,7 @@ class Pull {
   void leave(int v) {
     constexpr double bent = 0.02, well = 1.2;
     star_.gather(c_, first_[v]);
-    if (!find_branches(v) || (int)branches_.size() != (star_.closed ? 2 : 1)) return;
+    if (star_.is_peak() || !find_branches(v) || (int)branches_.size() != (star_.closed ? 2 : 1)) return;
     const int n = star_.triangles();
     // a side: from one branch to the other counter-clockwise, or between the branch and the border
     struct Side {

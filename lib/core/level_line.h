@@ -31,8 +31,9 @@ enum class Hold : char { stays, moves };
 /// where the line is shortest between its neighbors (on the mesh's border, to where the line is perpendicular
 /// to it), so that bends about as many edges wide vanish. Where the line comes within `snap`, a fraction of
 /// the edge, of a vertex that `hold` lets move, it runs through it, and leaves it again on the inside of a
-/// bend: so it may pass over vertices, but keeps the topology of both sides. Only that snapping may make it
-/// longer. Requires: no pinched vertices.
+/// bend: so it may pass over vertices, but keeps the topology of both sides. It also runs through peaks of
+/// less than 15 degrees that it passes next to. Only these two may make it longer. Requires: no pinched
+/// vertices.
 void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<Hold>& hold, double snap,
                    int sweeps);
 

@@ -4,7 +4,6 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
-#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>

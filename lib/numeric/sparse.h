@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sparse solves, by Eigen's simplicial LDL^T, multigrid or conjugate gradients.
 #pragma once
-#include <complex>
 #include <memory>
 #include <vector>
 

@@ -288,11 +288,6 @@ void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamR
   if (report.apart.empty()) report.apart.push_back(extremes);
 }
 
-std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options) {
-  ParamReport report;
-  return Search(part, options, report).plain(options.map);
-}
-
 std::vector<Vec2> map_part(const SubMesh& part, const ParamOptions& options, ParamReport& report,
                            double most_uneven) {
   return Search(part, options, report).run(most_uneven);

@@ -49,10 +49,6 @@ struct ParamReport {
 /// is empty. Triangles without area in space are left out.
 void measure_distortion(const SubMesh& part, const std::vector<Vec2>& uv, ParamReport& report);
 
-/// Returns the map asked for, a point per vertex, without proof or repair; scaled to the part's area. Throws:
-/// NotAdmissible if the part is not a disk with holes; GoalMissed if equations are singular.
-std::vector<Vec2> plain_map(const SubMesh& part, const ParamOptions& options);
-
 /// Maps a part one-to-one (exact orientation of every triangle, simple borders): by the map asked for, else
 /// its repair, else the next of conformal, conformal with a border bent towards a circle, harmonic, convex
 /// (after a circle map that was asked for, the conformal ones); with `strict` only by the map asked for.

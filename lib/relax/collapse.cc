@@ -188,6 +188,30 @@ void merge_corners(State& s) {
   }
 }
 
+void open_peaks(State& s) {
+  const EditMesh& m = s.mesh;
+  for (int v = 0; v < (int)m.out.size(); ++v) {
+    if (m.out[v] < 0 || s.hold[v] != anchored || m.on_border(v)) continue;
+    for (bool narrow = true; narrow;) {
+      std::vector<std::pair<double, int>> spokes;
+      double around = 0, ring = 0, size = 0;
+      m.star(v, [&](int h) {
+        const Vec3 a = s.points[m.to(h)] - s.points[v], b = s.points[m.apex(h)] - s.points[v];
+        spokes.push_back({norm(a), h});
+        around += m.hard[h] ? 1e300 : angle(a, b);
+        ring += norm(b - a), size += s.target(m.to(h)) / m.valence(v);
+      });
+      if (around > rules::sharp_peak) break;
+      std::sort(spokes.begin(), spokes.end());
+      s.size[v] = std::max(s.size[v], 2 * spokes.front().first - size);
+      auto removes = [&](const auto& spoke) {
+        return collapse_edge(s, spoke.second, m.to(spoke.second), rules::into_peak);
+      };
+      narrow = ring < rules::around_peak * size && std::any_of(spokes.begin(), spokes.end(), removes);
+    }
+  }
+}
+
 void remove_irregular(State& s) {
   const EditMesh& m = s.mesh;
   const int n = (int)m.out.size();

@@ -43,6 +43,9 @@ void collapse_short(State& s, double below, double least);
 void collapse_short_segments(State& s);
 /// Merges corners joined by a line's edge shorter than 0.05 of the size: no good triangle fits between them.
 void merge_corners(State& s);
+/// Takes vertices out around peaks of less than 9 degrees until the ring is wide enough for good triangles:
+/// one fan of needles is forced there. Sets the sizes at the peaks.
+void open_peaks(State& s);
 /// Collapses loose inside vertices of valence 3 and 4.
 void remove_irregular(State& s);
 

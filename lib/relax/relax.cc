@@ -40,6 +40,7 @@ void hold_seams(const std::vector<Vec3>& points, const std::vector<char>& on_bor
 void coarse_rounds(State& s) {
   split_chords(s);
   for (int i = 0; i < rules::coarse_rounds; ++i) {
+    open_peaks(s);
     merge_corners(s);
     collapse_short_segments(s);
     split_long(s, rules::split_above, 1e9);

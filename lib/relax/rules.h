@@ -51,11 +51,14 @@ constexpr double junction_segment = 1.3;  // length: below it one segment is nea
 constexpr int largest_valence = 9;        // of a vertex that a collapse leaves
 constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};
 constexpr Collapse near_corners{1e9, 1.6};  // needles between three of them go with the last one only
+constexpr Collapse into_peak{1e9, 1e9};     // the ring around it is narrower than a triangle
 constexpr Collapse kept_border{2000, 3};    // almost anything, to have no new vertex on it
 constexpr Collapse on_trial{1e9, 2};        // the objective judges
 constexpr Collapse at_fault{1e9, 8, true};  // the same: a needle at a corner may take in those next to it
-constexpr double same_place = 1e-6;         // length: copies of a vertex this close are at the same place
-constexpr double open_seam = 1e-3;          // length: borders this close are two sides of a seam
+constexpr double sharp_peak = 9 * std::numbers::pi / 180;  // radians around: needles there are forced
+constexpr double around_peak = 3.5;  // sizes of the ring: between three triangles and four
+constexpr double same_place = 1e-6;  // length: copies of a vertex this close are at the same place
+constexpr double open_seam = 1e-3;   // length: borders this close are two sides of a seam
 
 // flips (flip.cc)
 constexpr double sound_for_valence = 3;          // shape: what a flip for the valence may leave

@@ -11,6 +11,7 @@
 #include "lib/core/topology.h"
 #include "lib/shape/shape.h"
 #include "tests/unit/parts.h"
+#include "tests/unit/spire.h"
 #include "tests/unit/squares.h"
 
 using namespace meshpipe;
@@ -112,6 +113,21 @@ TEST(LevelLine, IsHeld) {
       if (v < (int)field.size()) {
         EXPECT_EQ(side[t], field[v] > 0);
       }
+}
+
+// a line that passes next to a slender peak runs through it, next to a blunt one it need not
+TEST(LevelLine, RunsThroughASharpPeak) {
+  for (double radius : {0.2, 8.0}) {
+    const Surface cone = surface_of(spire(radius, 20, 24));
+    const auto near = [&](Vec3 p) { return p.x - 0.021 * radius; };
+    const Surface s = cut_straight(cone, field_of(cone, near), 0, 0);
+    int sides = 0;
+    for (std::size_t t = 0; t < s.tris.size(); ++t)
+      for (int v : s.tris[t])
+        if (v == 0) sides |= 1 << s.face.get<int>("part")[t];
+    EXPECT_EQ(sides, radius < 1 ? 3 : 1) << radius;
+    EXPECT_EQ(part_fault(s), "");
+  }
 }
 
 // a rough tube of 20 triangles around, cut lengthwise by a ragged line, stays in two halves

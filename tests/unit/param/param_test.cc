@@ -12,6 +12,12 @@
 using namespace meshpipe;
 using std::numbers::pi;
 
+/// The map asked for, or none.
+static std::vector<Vec2> plain_map(const SubMesh& part, ParamOptions options) {
+  ParamReport report;
+  options.strict = true;
+  return map_part(part, options, report);
+}
 static std::vector<Vec2> conformal_map(const SubMesh& m) { return plain_map(m, {}); }
 static std::vector<Vec2> convex_map(const SubMesh& m) { return plain_map(m, {.map = MapKind::convex}); }
 

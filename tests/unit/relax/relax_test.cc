@@ -13,6 +13,7 @@
 #include "lib/lift/lift.h"
 #include "lib/shape/shape.h"
 #include "tests/unit/relax/drawn.h"
+#include "tests/unit/spire.h"
 
 using namespace meshpipe;
 
@@ -77,6 +78,30 @@ TEST(Relax, SliversAndNoiseGo) {
   EXPECT_GT(relax(m, s, {}).kappa_min, 0.6);
   EXPECT_EQ(topology_of(m).genus, 0);
   expect_on_surface(m, s);
+}
+
+// around a peak of 7 degrees no triangle is good: there are four long ones, and the others are not affected
+TEST(Relax, ASharpPeakGetsOneFan) {
+  const Surface s = sized(spire(0.2, 60, 12), 1500);
+  LiftedMesh m = lifted_of(s);
+  std::vector<char> corner(s.points.size(), 0);
+  corner[0] = 1;
+  const RelaxReport r = relax(m, s, {}, corner);
+  EXPECT_TRUE(r.intersections.empty());
+  const std::size_t peak = std::find(m.points.begin(), m.points.end(), s.points[0]) - m.points.begin();
+  ASSERT_LT(peak, m.points.size());
+  int around = 0;
+  for (const auto& [a, b, c] : m.tris) {
+    const double k = kappa(m.points[a], m.points[b], m.points[c]);
+    if (a != (int)peak && b != (int)peak && c != (int)peak) {
+      EXPECT_GT(k, 0.3);
+      continue;
+    }
+    ++around;
+    EXPECT_GT(k, 0.02);
+  }
+  EXPECT_GE(around, 3);
+  EXPECT_LE(around, 5);
 }
 
 TEST(Relax, TheSameInputGivesTheSameBytes) {
