@@ -23,9 +23,8 @@ namespace {
 
 /// Returns the reference as it was before cuts, or the cut one if it has no origins.
 Mesh before_cuts(const Surface& reference) {
-  const Mesh& cut = reference;
-  if (!reference.face.has("origin")) return cut;
-  return recover_triangles(cut, reference.face.get<int>("origin"));
+  return reference.face.has("origin") ? recover_triangles(reference, reference.face.get<int>("origin"))
+                                      : Mesh(reference);
 }
 
 /// The mean length of the edges at each vertex; 0 if it is unused.
@@ -231,7 +230,6 @@ void measure_distances(Findings& f, const Surface& result, const Surface& given,
                        int samples, double most, double least_size, std::optional<Measured>& measured) {
   const std::vector<double> edges = mean_edges(result);
   f.mean_size = size_for_count(total_area(result), (double)result.tris.size());
-  const std::vector<double> size = sizes_or(result, edges);
   if (measured) {
     f.off = std::move(measured->off);
     f.distance = std::move(measured->distance);
@@ -242,7 +240,8 @@ void measure_distances(Findings& f, const Surface& result, const Surface& given,
     for (std::size_t v = 0; v < smooth_off.size(); ++v) smooth_off[v] -= f.off[v];
     f.distance = distance_between(
         before, *reference_tree, mesh, *mesh_tree, samples,
-        allowed_distances(result, size, smooth_off, std::max(least_size, f.mean_size)), most);
+        allowed_distances(result, sizes_or(result, edges), smooth_off, std::max(least_size, f.mean_size)),
+        most);
   }
   for (std::size_t v = 0; v < f.off.size(); ++v)
     f.off[v] = edges[v] > 0 ? f.off[v] / edges[v] : f.off[v] > 0 ? 1e300 : 0;
@@ -283,9 +282,7 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   const bool marked = result.face.has("model"), reference_marked = given.face.has("model");
   const auto& model = marked ? result.face.get<std::uint8_t>("model") : no_bits;
   const Connectivity mesh{result, f.mesh.opposite, model};
-  const std::vector<double> size =
-      result.vertex.has("size") ? result.vertex.get<double>("size") : std::vector<double>();
-  f.quality = quality_of(mesh, size);
+  f.quality = quality_of(mesh, sizes_or(result, {}));
   const Connectivity before{reference, f.reference.opposite};
   f.reference_quality = quality_of(before, {});
 

@@ -14,6 +14,10 @@ constexpr double flatness = 1e-12;
 /// A flat triangle is a needle, and may collapse, if its shortest edge is below this part of the longest. The
 /// flip, which moves nothing, comes first.
 constexpr double needle = 1e-6;
+/// Two flat triangles are flipped if the sum of their longest edges falls to this part: more than rounding.
+constexpr double shorter = 1 - 1e-9;
+/// Times that each may be flipped so: a slit of n points between fans takes n.
+constexpr int most_slit_flips = 100;
 
 class Flat {
  public:
@@ -25,9 +29,10 @@ class Flat {
     for (int t = 0; t < (int)r_.tris.size(); ++t)
       if (is_flat(r_.tris[t])) flat.push_back(t);
     // What is done may free neighbors, which are tried next, or others by the edges it takes away: as long
-    // as something is done, which lowers their number, all are tried again.
+    // as something is done, which lowers their number, all are tried again; then slits are flipped.
     std::vector<char> waits(r_.tris.size(), 0);
     std::vector<int> queue, close;
+    int slits = 0;
     for (bool again = !flat.empty(); again;) {
       again = false;
       queue = flat;
@@ -45,7 +50,7 @@ class Flat {
           for (int g = 3 * u; g < 3 * u + 3; ++g)
             if (r_.opposite[g] >= 0) close.push_back(r_.opposite[g] / 3);
         }
-        if (!(drop_on_border(t) || flip_longest(t) || collapse(t))) continue;
+        if (!(drop_on_border(t) || flip_longest(t, true) || collapse(t))) continue;
         counts.removed.push_back(face);
         again = true;
         for (int u : close)
@@ -55,6 +60,8 @@ class Flat {
           }
       }
       std::erase_if(flat, [&](int t) { return gone_[t] || !is_flat(r_.tris[t]); });
+      if (again || ++slits > most_slit_flips) continue;
+      for (int t : flat) again |= flip_longest(t, false);
     }
     counts.left = (int)flat.size();
     if (std::count(gone_.begin(), gone_.end(), 1)) drop(r_, gone_);
@@ -67,17 +74,15 @@ class Flat {
 
   Vec3 normal(const Tri& t) const { return area_vector(point(t[0]), point(t[1]), point(t[2])); }
 
-  bool is_flat(const Tri& t) const {
+  double longest(const Tri& t) const {
     const Vec3 a = point(t[0]), b = point(t[1]), c = point(t[2]);
-    const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-    return norm(normal(t)) <= flatness * longest;
+    return std::sqrt(std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)}));
   }
 
+  bool is_flat(const Tri& t) const { return norm(normal(t)) <= flatness * longest(t) * longest(t); }
+
   int longest_edge(int t) const {
-    int best = 3 * t;
-    for (int h : {3 * t + 1, 3 * t + 2})
-      if (length(h) > length(best)) best = h;
-    return best;
+    return std::max({3 * t, 3 * t + 1, 3 * t + 2}, [&](int g, int h) { return length(g) < length(h); });
   }
 
   void connect(int h, int o) {
@@ -121,10 +126,10 @@ class Flat {
 
   //      c            c          the edge a-b of the flat triangle t becomes c-d;
   //   t / \          /|\         both triangles now are pieces of u, and take its
-  //    a---b   ->   a | b        columns
-  //   u \ /          \|/
+  //    a---b   ->   a | b        columns. `fewer`: only if fewer are flat then; else only if two are that
+  //   u \ /          \|/         stay flat, of a slit between points in line, and their edges get shorter
   //      d            d
-  bool flip_longest(int t) {
+  bool flip_longest(int t, bool fewer) {
     const int h = longest_edge(t), o = r_.opposite[h];
     if (o < 0) return false;
     const int u = o / 3;
@@ -132,7 +137,11 @@ class Flat {
               d = origin(r_.tris, prev(o));
     if (c == d || joined(prev(h), prev(o))) return false;
     const Tri left{a, d, c}, right{d, b, c};
-    if (1 + is_flat(r_.tris[u]) <= is_flat(left) + is_flat(right)) return false;
+    const int before = 1 + is_flat(r_.tris[u]), after = is_flat(left) + is_flat(right);
+    if (fewer ? before <= after
+              : before + after < 4 ||
+                    !(longest(left) + longest(right) < shorter * (longest(r_.tris[t]) + longest(r_.tris[u]))))
+      return false;
     const int bc = r_.opposite[next(h)], ca = r_.opposite[prev(h)], ad = r_.opposite[next(o)],
               db = r_.opposite[prev(o)];
     r_.tris[t] = left;
@@ -153,9 +162,8 @@ class Flat {
   //   \ /            |
   //    c             c
   bool collapse(int t) {
-    int h = 3 * t;
-    for (int g : {3 * t + 1, 3 * t + 2})
-      if (length(g) < length(h)) h = g;
+    const int h =
+        std::min({3 * t, 3 * t + 1, 3 * t + 2}, [&](int f, int g) { return length(f) < length(g); });
     if (length(h) > needle * length(longest_edge(t))) return false;
     const int o = r_.opposite[h];
     auto link = [&](int spoke, std::vector<int>& vertices) {
@@ -192,9 +200,7 @@ class Flat {
     for (int g : spokes) r_.tris[g / 3][g % 3] = kept;
     for (int side : {h, o}) {
       if (side < 0) continue;
-      const int p = r_.opposite[next(side)], q = r_.opposite[prev(side)];
-      connect(p, q);
-      connect(q, p);
+      connect(r_.opposite[next(side)], r_.opposite[prev(side)]);
       gone_[side / 3] = 1;
     }
     return true;

@@ -127,18 +127,15 @@ struct Piece {
   std::array<double, 3> distance;
   std::array<int, 3> face;
 
+  double side(int i) const { return norm(corner[next(i)] - corner[i]); }
   int longest() const {
-    int k = 0;
-    for (int i : {1, 2})
-      if (norm(corner[next(i)] - corner[i]) > norm(corner[next(k)] - corner[k])) k = i;
-    return k;
+    return std::max({0, 1, 2}, [&](int i, int k) { return side(i) < side(k); });
   }
   /// Is no point farther than `limit`? None is farther from a corner than the longest side over sqrt(3), and
   /// distance from one triangle of the reference is convex.
   bool within(double limit, const Mesh& reference) const {
-    const int k = longest();
     const double most = *std::max_element(distance.begin(), distance.end());
-    if (most + norm(corner[next(k)] - corner[k]) / std::numbers::sqrt3 <= limit) return true;
+    if (most + side(longest()) / std::numbers::sqrt3 <= limit) return true;
     return std::any_of(face.begin(), face.end(), [&](int f) {
       return std::all_of(corner.begin(), corner.end(),
                          [&](Vec3 p) { return norm(closest_point(reference, f, p) - p) <= limit; });

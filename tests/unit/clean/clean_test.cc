@@ -361,6 +361,46 @@ TEST(Clean, FlipsACapIntoItsNeighbor) {
   EXPECT_EQ(std::count(patch.begin(), patch.end(), 11), 0);
 }
 
+//    up        1 and 2 lie on the edges 0-2 and 1-3: the sheets above and below are divided differently, and
+//   / | \      two flat triangles between them share the edge 0-3. Neither can be flipped into a sheet at
+//   once
+//  0-12--3
+//   \ | /
+//   down
+TEST(Clean, ClosesASlitBetweenPointsInLine) {
+  Surface s = surface({{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {8, 0, 0}, {4, 5, 0}, {4, -5, 0}},
+                      {{0, 1, 4}, {1, 3, 4}, {2, 0, 5}, {3, 2, 5}, {0, 2, 3}, {0, 3, 1}});
+  CleanReport r = clean(s);
+  EXPECT_EQ(r.degenerate, 2);
+  EXPECT_EQ(r.flat, 0);
+  EXPECT_DOUBLE_EQ(total_area(s), 40);
+  expect_manifold(s);
+  EXPECT_EQ(topology_of(s).loops, 1);
+}
+
+TEST(Clean, ClosesALongSlit) {
+  // n segments above, shifted against those below; all flat triangles share one vertex
+  const int n = 40;
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int i = 0; i <= 2 * n; ++i) points.push_back({(double)i, 0, 0});
+  points.push_back({(double)n, 2.0 * n, 0});
+  points.push_back({(double)n, -2.0 * n, 0});
+  std::vector<int> above, below;
+  for (int i = 0; i <= 2 * n; ++i) {
+    if (i % 2 == 0) above.push_back(i);
+    if (i % 2 == 1 || i == 0 || i == 2 * n) below.push_back(i);
+  }
+  for (std::size_t i = 1; i < above.size(); ++i) tris.push_back({above[i - 1], above[i], 2 * n + 1});
+  for (std::size_t i = 1; i < below.size(); ++i) tris.push_back({below[i], below[i - 1], 2 * n + 2});
+  std::vector<int> ring = below;
+  ring.insert(ring.end(), above.rbegin() + 1, above.rend() - 1);
+  for (std::size_t i = 2; i < ring.size(); ++i) tris.push_back({0, ring[i - 1], ring[i]});
+  Surface s = surface(points, tris);
+  EXPECT_EQ(clean(s).flat, 0);
+  expect_manifold(s);
+}
+
 TEST(Clean, DropsACapOnTheBorder) {
   Surface s = surface({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, -1, 0}}, {{0, 2, 1}, {0, 3, 2}, {2, 3, 1}});
   CleanReport r = clean(s);
