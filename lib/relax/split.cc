@@ -125,7 +125,10 @@ void split_chords(State& s) {
       if (!starts_chord(s, h, s.points[m.to(h)]) && !starts_chord(s, g, s.points[m.to(g)])) continue;
       const int a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(g);
       const bool unfolded = std::min(s.cosine(a, d, c), s.cosine(b, c, d)) > 0;
-      if (unfolded && !m.joined(c, d) && m.valence(a) > 3 && m.valence(b) > 3)
+      // else one vertex may take in a whole strip, rung by rung
+      const bool sound = std::max(s.shape(a, d, c), s.shape(b, c, d)) <=
+                         std::max({rules::sound_for_valence, s.shape(a, b, c), s.shape(b, a, d)});
+      if (unfolded && sound && !m.joined(c, d) && m.valence(a) > 3 && m.valence(b) > 3)
         flip_edge(s, h), again = true;
       else
         again = split_edge(s, h) || again;

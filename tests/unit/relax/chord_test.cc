@@ -11,10 +11,9 @@ namespace {
 
 /// A tube with a rhombus a b c d for a section, sharp at b and d, a cap with the edge b d on it, and an open
 /// end e f h g below b a d c. The surface next to b has the edge b e.
-Surface capped() {
+Surface capped(Vec3 e = {3, 0, -2}) {
   Mesh mesh;
-  mesh.points = {{0, -1, 0}, {3, 0, 0},   {0, 1, 0},  {-3, 0, 0},
-                 {3, 0, -2}, {0, -1, -2}, {0, 1, -2}, {-3, 0, -2}};
+  mesh.points = {{0, -1, 0}, {3, 0, 0}, {0, 1, 0}, {-3, 0, 0}, e, {0, -1, -2}, {0, 1, -2}, {-3, 0, -2}};
   const char* const tris[] = {"abd", "bcd", "bae", "cbe", "afe", "ceg", "cgh", "chd", "dha", "ahf"};
   for (const char* t : tris) mesh.tris.push_back({t[0] - 'a', t[1] - 'a', t[2] - 'a'});
   Surface s = surface_of(mesh);
@@ -51,6 +50,15 @@ TEST(Chord, IsSplitOrFlippedAway) {
   m.s.hold['e' - 'a'] = loose;
   split_chords(m.s);
   EXPECT_EQ(m.edge('a', 'c'), -1);
+}
+
+TEST(Chord, IsNotFlippedIntoANeedle) {
+  Drawn m(capped({-4.5, 0, -1}));
+  m.s.mesh.flip(m.edge('b', 'e'));
+  m.s.hold['e' - 'a'] = loose;
+  split_chords(m.s);
+  EXPECT_EQ(m.edge('a', 'c'), -1);
+  EXPECT_EQ(m.edge('b', 'e'), -1);
 }
 
 }  // namespace
