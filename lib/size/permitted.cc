@@ -221,27 +221,37 @@ Vec3 Measure::inward(int h, double width) const {
   return normalized(cross(normal_[g / 3], surface_.point(surface_.to(h)) - surface_.point(surface_.from(h))));
 }
 
+/// Calls visit(t, g, q) for the lines around the region of h that are less than `width` from p: q is the
+/// point of half-edge g of triangle t nearest to p. Looks at no more than `most` triangles.
+template <class Visit>
+void lines_near(const Measure& m, int h, Vec3 p, const double& width, int most, Search& search, Visit visit) {
+  const Connectivity& s = m.surface();
+  search.flood(
+      {h / 3}, p, [&](int g) { return !m.is_line(g); }, [&] { return width; },
+      [&](int t) {
+        for (int g = 3 * t; g < 3 * t + 3; ++g) {
+          if (g == h || !m.is_line(g)) continue;
+          const Vec3 a = s.point(s.from(g)), b = s.point(s.to(g));
+          const Vec3 q = lerp(a, b, nearest_fraction(p, a, b));
+          if (norm(q - p) < width) visit(t, g, q);
+        }
+        return --most > 0;
+      });
+}
+
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
   double width = asked(h) / per_width;
   const double least = surface_.length(h) < asked(h) ? least_width_ : 0;
   SizeBound found{h, p, infinity, 0};
-  search.flood(
-      {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
-      [&](int t) {
-        for (int g = 3 * t; g < 3 * t + 3; ++g) {
-          if (g == h || !is_line(g)) continue;
-          const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
-          const Vec3 q = lerp(a, b, nearest_fraction(p, a, b));
-          const double d = norm(q - p);
-          if (!(d < width) || d <= least || dot(q - p, inward(h, d)) < opposed * d ||
-              dot(p - q, inward(g, d)) < opposed * d || adjacent_along(h, p, g, q, d))
-            continue;
-          width = d;
-          found.size = per_width * d;
-          found.gap = d;
-        }
-        return true;
-      });
+  lines_near(*this, h, p, width, surface_.n_tris(), search, [&](int, int g, Vec3 q) {
+    const double d = norm(q - p);
+    if (d <= least || dot(q - p, inward(h, d)) < opposed * d || dot(p - q, inward(g, d)) < opposed * d ||
+        adjacent_along(h, p, g, q, d))
+      return;
+    width = d;
+    found.size = per_width * d;
+    found.gap = d;
+  });
   return found.size < infinity ? found : arch(h, p, search);
 }
 
@@ -251,30 +261,21 @@ SizeBound Measure::arch(int h, Vec3 p, Search& search) const {
   SizeBound found{h, p, infinity, 0};
   double width = longest * asked(h);
   const double least = least_share * width;
-  int looks = 0;
   // from one line at a right angle, over its region or at least not away from it
   auto faces = [&](int g, Vec3 d) {
     const Vec3 along = surface_.point(surface_.to(g)) - surface_.point(surface_.from(g));
     const double l = norm(d);
     return std::abs(dot(d, along)) < opposed * l * norm(along) && dot(d, inward(g, l)) > -opposed * l;
   };
-  search.flood(
-      {h / 3}, p, [&](int g) { return !is_line(g); }, [&] { return width; },
-      [&](int t) {
-        for (int g = 3 * t; g < 3 * t + 3; ++g) {
-          if (g == h || !is_line(g)) continue;
-          const Vec3 a = surface_.point(surface_.from(g)), b = surface_.point(surface_.to(g));
-          const Vec3 q = lerp(a, b, nearest_fraction(p, a, b)), d = q - p;
-          const double l = norm(d);
-          if (!(l < width) || l < least || !faces(h, d) || !faces(g, p - q) ||
-              angle(normal_[h / 3], normal_[t]) < arch_turn || adjacent_along(h, p, g, q, l))
-            continue;
-          width = l;
-          found.size = quarter * l;
-          found.gap = l;
-        }
-        return ++looks < most_of_arch;
-      });
+  lines_near(*this, h, p, width, most_of_arch, search, [&](int t, int g, Vec3 q) {
+    const double d = norm(q - p);
+    if (d < least || !faces(h, q - p) || !faces(g, p - q) || angle(normal_[h / 3], normal_[t]) < arch_turn ||
+        adjacent_along(h, p, g, q, d))
+      return;
+    width = d;
+    found.size = quarter * d;
+    found.gap = d;
+  });
   return found;
 }
 
@@ -463,11 +464,10 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
     {
       constexpr long long most = 3LL * chunk * most_looks;
       Search search(surface);
-      std::vector<SizeBound> edges;
 #pragma omp for schedule(dynamic)
       for (int c = 0; c < (int)found.size(); ++c) {
+        std::vector<SizeBound> edges;
         search.work = 0;
-        edges.clear();
         for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;

@@ -33,7 +33,8 @@ constexpr double most_times = 10;             ///< triangles of narrow strips, o
 constexpr double many_triangles = 5e4;        ///< unless they are no more than this: seconds
 constexpr double wide_strip = 0.1;            ///< over the size: beyond what mfeature removes unasked
 constexpr double much_less = 0.8;             ///< of the size: a bound on a field that has met others
-constexpr char permitted_before[] = "permitted_before";  ///< column of the vertices while a field is made
+/// Column of the vertices while a field is made: no column of a stream has a name with a space.
+constexpr char permitted_before[] = "permitted before";
 constexpr double most_growth = 1.5;  ///< of a uniform size, to make up for places that permit smaller ones
 
 /// A vertex column and the share of it that is asked for.
@@ -61,8 +62,6 @@ struct Field {
   std::vector<int> root{};
   std::unordered_map<std::uint64_t, double> asked{};  ///< by the two vertices, see there
 };
-
-std::vector<double> curvature_of(const Field& f) { return face_curvature({f.s, f.opposite, model_of(f.s)}); }
 
 /// Returns the local feature size where it is below the size; `curvature` may be empty.
 std::vector<double> feature_size(const Connectivity& surface, const std::vector<double>& curvature,
@@ -168,9 +167,8 @@ double strip_triangles(const Field& f, double most) { return f.strips + triangle
 
 /// Lowers what the surface permits at the ends of every edge by the bounds on it, or has permitted before.
 void bound_vertices(Field& f) {
-  const Column* before = f.s.vertex.find(permitted_before);
-  f.permits =
-      before ? f.s.vertex.get<double>(permitted_before) : std::vector<double>(f.s.points.size(), infinity);
+  f.permits.assign(f.s.points.size(), infinity);
+  if (f.s.vertex.has(permitted_before)) f.permits = f.s.vertex.get<double>(permitted_before);
   if (f.bounds.empty()) return;
   for (int h = 0; h < (int)f.opposite.size(); ++h)
     each_bound(f, h, [&](const SizeBound& x) {
@@ -323,8 +321,7 @@ double most_for(double triangles) { return std::max(most_times * triangles, many
 
 /// Throws: GoalMissed if narrow strips ask for many times as many triangles as there should be.
 void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const SizeReport& r) {
-  const double strips = triangles_of_strips(bounds, infinity);
-  const double limit = most_for(triangles);
+  const double strips = triangles_of_strips(bounds, infinity), limit = most_for(triangles);
   if (strips <= limit) return;
   FailureFacts facts;
   facts.strip_width = std::max(wide_strip * r.narrow_from, 2 * r.narrow_gap);
@@ -488,7 +485,8 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (!(o.size > 0 || o.triangles > 0 || o.max > 0 || o.at || !o.data.empty()))
     f.cap = default_size * f.diagonal;
   f.opposite = opposite_halfedges(f.s);
-  if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature)) f.curvature = curvature_of(f);
+  if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature))
+    f.curvature = face_curvature({f.s, f.opposite, model_of(f.s)});
   const std::size_t n_before = s.points.size();
   if (!o.data.empty()) f.sources.push_back({o.data, 1});
   for (const Measured& kind : {Measured{"radius", o.around, 1, 2 * std::numbers::pi, SheetDistance::inside},
@@ -633,8 +631,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   }
   report.triangles = count_for_size(surface, size) + report.strips;
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
-  report.smallest = *least;
-  report.largest = *most;
+  report.smallest = *least, report.largest = *most;
   refuse_more_triangles(surface, size, options.most_triangles);
   refuse_unresolved_sizes(surface, size);
   surface.vertex.set("size", std::move(size));
