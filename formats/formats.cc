@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/formats.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "formats/foreign/abaqus.h"
@@ -78,6 +79,12 @@ Stream read_any(std::string_view bytes, const std::string& where) {
     return read_any(file, where);
   }
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);  // byte-order mark of UTF-8
+  auto has = [&](char c) { return bytes.find(c) != bytes.npos; };
+  if (!has('\n') && has('\r') && !has('\0')) {  // lines end as on old Macintosh computers
+    std::string text(bytes);
+    std::replace(text.begin(), text.end(), '\r', '\n');
+    return read_any(text, where);
+  }
   for (const Reader& r : readers())
     if (r.matches(bytes)) return r.read(bytes, where);
   std::string known;

@@ -248,6 +248,14 @@ TEST(Stl, EachSolidIsAPatch) {
   EXPECT_EQ(s.surface.points[1], (Vec3{1, 0, 0}));
 }
 
+TEST(Stl, LinesMayEndInCarriageReturns) {
+  std::string text = std::string("solid\n") + facet + "endsolid\n";
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  EXPECT_EQ(read_any(text, "in").surface.tris.size(), 1u);
+  text.resize(text.size() - 9);
+  EXPECT_EQ(failure(text), "in:8: expected 'endsolid', found the end of the file");
+}
+
 TEST(Stl, MalformedTextNamesTheLine) {
   const std::string f = facet;
   EXPECT_EQ(failure("solid\n" + f), "in:8: expected 'endsolid', found the end of the file");
