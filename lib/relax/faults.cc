@@ -104,69 +104,64 @@ void find_folds(const State& s, Known& known, Fault& found) {
   }
 }
 
-/// Climbs on the reference from a place where the distance f is `most`, by ever shorter steps from `first`
-/// on, while it may still come to `limit`. Returns the largest value, and sets where.
-template <class F>
-double climb(const SurfaceWalk& walk, Place& at, double most, double first, double limit, F f) {
-  for (double step = first; step > rules::last_step * first; step /= 2) {
-    if (most + 2 * step < limit) break;  // f grows by no more than the way that is left
-    const Place from = at;
-    const Vec3 p = walk.point(from);
-    for (const Vec3 way : {Vec3{step, 0, 0}, Vec3{0, step, 0}, Vec3{0, 0, step}})
-      for (const Vec3 target : {p + way, p - way}) {
-        const Place place = walk.closest(from, target, true);
-        if (const double d = f(place); d > most) most = d, at = place;
-      }
-  }
-  return most;
-}
-
-/// A part of a triangle of the mesh, with the nearest triangles of the reference.
+/// A part of a triangle, with the triangles of another surface that are nearest to its corners.
 struct Piece {
   std::array<Vec3, 3> corner;
-  std::array<double, 3> distance;
   std::array<int, 3> face;
+  std::array<double, 3> distance;
 
   double side(int i) const { return norm(corner[next(i)] - corner[i]); }
   int longest() const {
     return std::max({0, 1, 2}, [&](int i, int k) { return side(i) < side(k); });
   }
   /// Is no point farther than `limit`? None is farther from a corner than the longest side over sqrt(3), and
-  /// distance from one triangle of the reference is convex.
-  bool within(double limit, const Mesh& reference) const {
+  /// distance from one triangle of the other surface is convex.
+  bool within(double limit, const Mesh& other) const {
     const double most = *std::max_element(distance.begin(), distance.end());
     if (most + side(longest()) / std::numbers::sqrt3 <= limit) return true;
     return std::any_of(face.begin(), face.end(), [&](int f) {
       return std::all_of(corner.begin(), corner.end(),
-                         [&](Vec3 p) { return norm(closest_point(reference, f, p) - p) <= limit; });
+                         [&](Vec3 p) { return norm(closest_point(other, f, p) - p) <= limit; });
     });
   }
 };
 
-/// Returns a distance of triangle t from the reference that is larger than `limit`, if one is found, else the
-/// largest that is. A walk may end on the wrong sheet, so it is searched for.
-double distance_of(const State& s, int t, const Bvh& tree, double limit) {
-  const Mesh& reference = s.reference->surface;
-  const auto [a, b, c] = s.mesh.tris[t];
-  std::vector<Piece> pieces{{{s.points[a], s.points[b], s.points[c]},
-                             {0, 0, 0},
-                             {s.place[a].face, s.place[b].face, s.place[c].face}}};
-  double most = 0;
+/// Returns a point of the piece that is farther from the other surface than allowed(f), where triangle f of
+/// that is nearest, if one is found, else the farthest that is; and its hit, which `nearest` returns.
+template <class Allowed, class Nearest>
+std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowed allowed, Nearest nearest) {
+  std::vector<Piece> pieces{whole};
+  std::pair<Vec3, Bvh::Hit> most;
   for (int halvings = 0; !pieces.empty() && halvings < rules::most_halvings; ++halvings) {
     const Piece piece = pieces.back();
     pieces.pop_back();
-    if (piece.within(limit, reference)) continue;
+    if (piece.within(std::min({allowed(piece.face[0]), allowed(piece.face[1]), allowed(piece.face[2])}),
+                     other))
+      continue;
     const int k = piece.longest();
     const Vec3 middle = lerp(piece.corner[k], piece.corner[next(k)], 0.5);
-    const Bvh::Hit near = tree.nearest(middle);
-    most = std::max(most, near.distance);
-    if (most > limit) break;
+    const Bvh::Hit hit = nearest(middle);
+    const bool too_far = hit.distance > allowed(hit.place.face);
+    if (too_far || hit.distance > most.second.distance) most = {middle, hit};
+    if (too_far) break;
     for (int end : {k, next(k)}) {
       Piece& half = pieces.emplace_back(piece);
-      half.corner[end] = middle, half.distance[end] = near.distance, half.face[end] = near.place.face;
+      half.corner[end] = middle, half.distance[end] = hit.distance, half.face[end] = hit.place.face;
     }
   }
   return most;
+}
+
+/// Returns a distance of triangle t from the reference that is larger than `limit`, if one is found, else the
+/// largest that is. A walk may end on the wrong sheet, so it is searched for.
+double distance_of(const State& s, int t, const Bvh& tree, double limit) {
+  const auto [a, b, c] = s.mesh.tris[t];
+  const Piece whole{{s.points[a], s.points[b], s.points[c]},
+                    {s.place[a].face, s.place[b].face, s.place[c].face},
+                    {0, 0, 0}};
+  auto allowed = [&](int) { return limit; };
+  return farthest(whole, s.reference->surface, allowed, [&](Vec3 p) { return tree.nearest(p); })
+      .second.distance;
 }
 
 /// How far triangle t and what is nearest to it may be apart, where the mean size is `mean`.
@@ -176,36 +171,6 @@ double bearable_distance(const State& s, int t, double mean) {
   for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
   const double size = (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3;
   return rules::too_far * std::max(mean, std::min(size, size_over_longest * longest));
-}
-
-/// Adds samples that are farther from the mesh than they may be, in triangles of the reference where one that
-/// was measured after `time` is nearly as far.
-void add_far_samples(const State& s, Samples& samples, std::vector<double>& distance, int time, double mean) {
-  std::vector<int> from;
-  for (int i = 0; i < (int)distance.size(); ++i)
-    if (samples.list[i].time > time && distance[i] > rules::nearly_far * rules::too_far * mean)
-      from.push_back(i);
-  std::vector<Sample> found(from.size());
-#pragma omp parallel for schedule(dynamic, 16) if (from.size() > 100)
-  for (int i = 0; i < (int)from.size(); ++i) {
-    const Sample& x = samples.list[from[i]];
-    Sample& y = found[i];
-    const double limit = bearable_distance(s, x.near, mean);
-    auto nearest = [&](const Place& place) {
-      return samples.search.nearest(s.reference->walk.point(place), 1e300, 0);
-    };
-    y.place = x.place;
-    y.distance = nearest(y.place).distance;
-    if (y.distance < rules::nearly_far * limit || y.distance > limit) continue;
-    y.distance =
-        climb(s.reference->walk, y.place, y.distance, rules::first_step * s.target(s.mesh.tris[x.near][0]),
-              limit, [&](const Place& place) { return nearest(place).distance; });
-    const int near = nearest(y.place).place.face;
-    if (y.distance > bearable_distance(s, near, mean)) y.near = near;
-    y.time = s.clocks.now;
-  }
-  for (const Sample& y : found)
-    if (y.near >= 0) samples.list.push_back(y), distance.push_back(y.distance);
 }
 
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags.
@@ -225,6 +190,42 @@ void look_at_changed(const State& s, Known& known) {
   known.time = s.clocks.now;
 }
 
+/// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
+/// those on vertices and edges do not show these. Looks where one at a corner was measured after `time`.
+void add_missed_places(const State& s, Samples& samples, int time) {
+  const Surface& reference = s.reference->surface;
+  const double mean = mean_size(s);
+  const Mesh mesh{s.points, s.mesh.tris};
+  std::vector<int> sample(reference.points.size(), -1);  // of each vertex; a tile does not have all
+  for (int i = 0; i < (int)samples.list.size(); ++i)
+    if (const Place& p = samples.list[i].place; std::max({p.b0, p.b1, p.b2}) == 1)
+      sample[reference.tris[p.face][nearest_corner(p)]] = i;
+  std::vector<Sample> missed;
+#pragma omp parallel for schedule(dynamic, 256) if (reference.tris.size() > 10000)
+  for (int f = 0; f < (int)reference.tris.size(); ++f) {
+    const auto [a, b, c] = reference.tris[f];
+    if (std::min({sample[a], sample[b], sample[c]}) < 0) continue;
+    const Sample &x = samples.list[sample[a]], &y = samples.list[sample[b]], &z = samples.list[sample[c]];
+    if (std::max({x.time, y.time, z.time}) <= time) continue;
+    const Piece whole{{reference.points[a], reference.points[b], reference.points[c]},
+                      {x.near, y.near, z.near},
+                      {x.distance, y.distance, z.distance}};
+    if (whole.within(rules::too_far * mean, mesh)) continue;
+    const Vec3 normal = normalized(area_vector(reference, f));
+    if (std::ranges::all_of(whole.face,
+                            [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
+      continue;
+    auto allowed = [&](int t) { return bearable_distance(s, t, mean); };
+    const auto [p, hit] =
+        farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
+    if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
+#pragma omp critical
+    missed.push_back({closest_place(reference, f, p), hit.place.face, s.clocks.now, hit.distance});
+  }
+  std::ranges::sort(missed, {}, [](const Sample& x) { return x.place.face; });
+  samples.list.insert(samples.list.end(), missed.begin(), missed.end());
+}
+
 /// Triangles that are farther from the reference than a share of the size, and those that samples of it are
 /// nearest to and yet as far from.
 void find_far(const State& s, Known& known, Fault& found) {
@@ -235,10 +236,10 @@ void find_far(const State& s, Known& known, Fault& found) {
     if (distance > bearable) far.push_back({t, -distance / bearable});
     return distance > bearable;
   };
-  std::vector<double> distance = sample_distances(s, known.samples, least);
-  add_far_samples(s, known.samples, distance, known.time, mean);
-  for (std::size_t i = 0; i < distance.size(); ++i)
-    if (const Sample& x = known.samples.list[i]; distance[i] > least && look(x.near, distance[i]))
+  sample_distances(s, known.samples, least);
+  add_missed_places(s, known.samples, known.time);
+  for (const Sample& x : known.samples.list)
+    if (x.distance > least && look(x.near, x.distance))
       found.missed.push_back({x.near, s.reference->walk.point(x.place)});
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {

@@ -100,11 +100,8 @@ constexpr double forced_share = 0.8,
 // faults (faults.cc)
 constexpr double parallel = 0.8;    // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;   // of the size; a half is the limit of mcheck
-constexpr double nearly_far = 0.7;  // of the bearable: from there the farthest place is looked for
 constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
 constexpr int most_halvings = 400;  // of a triangle, to find its largest distance
-constexpr double first_step = 0.5;  // of the size: of the climb to it
-constexpr double last_step = 0.05;  // of the first step
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
