@@ -31,8 +31,7 @@ struct Known {
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
 
-/// What is wrong, and how wrong: a count of pairs and folds, and a sum of distances and 1/kappa over what is
-/// bearable.
+/// What is wrong: a count of pairs and folds, and a sum of distances and 1/kappa over what is bearable.
 struct Fault {
   std::vector<std::pair<int, int>> pairs;
   int of_reference = 0;
@@ -95,13 +94,6 @@ std::vector<int> folded_edges(const State& s, Known& known) {
       folded.push_back(h);
   }
   return folded;
-}
-
-void find_folds(const State& s, Known& known, Fault& found) {
-  for (int h : folded_edges(s, known)) {
-    ++found.folds;
-    found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
-  }
 }
 
 /// A part of a triangle, with the triangles of another surface that are nearest to its corners.
@@ -173,7 +165,8 @@ double bearable_distance(const State& s, int t, double mean) {
   return rules::too_far * std::max(mean, std::min(size, size_over_longest * longest));
 }
 
-/// Walks from the corners of triangles that have changed, except where no edge between their normals sags.
+/// Walks from the corners of triangles that have changed, except where no edge between their normals sags. A
+/// border or model edge cuts bends of its line, however flat the surface is.
 void look_at_changed(const State& s, Known& known) {
   const int n = (int)s.mesh.tris.size(), before = (int)known.walked.size();
   known.walked.resize(n), known.searched.resize(n);
@@ -182,8 +175,9 @@ void look_at_changed(const State& s, Known& known) {
     if (s.mesh.dead(t) || (t < before && !changed_since(s, t, known.time))) continue;
     const auto [a, b, c] = s.mesh.tris[t];
     const Vec3 normal = s.face_normal(t);
-    const bool flat = std::min({dot(normal, s.normal[a]), dot(normal, s.normal[b]),
-                                dot(normal, s.normal[c])}) > rules::parallel;
+    const bool on_line = s.mesh.hard[3 * t] || s.mesh.hard[3 * t + 1] || s.mesh.hard[3 * t + 2];
+    const bool flat = !on_line && std::min({dot(normal, s.normal[a]), dot(normal, s.normal[b]),
+                                            dot(normal, s.normal[c])}) > rules::parallel;
     known.walked[t] = flat ? 0 : deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
     known.searched[t] = -1;
   }
@@ -389,7 +383,10 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
 Fault find_faults(const State& s, Known& known) {
   Fault found;
   find_intersections(s, known, found);
-  find_folds(s, known, found);
+  for (int h : folded_edges(s, known)) {
+    ++found.folds;
+    found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
+  }
   find_far(s, known, found);
   find_needles(s, found);
   sort_unique(found.triangles);

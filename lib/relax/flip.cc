@@ -32,8 +32,7 @@ bool valence_is_free(const State& s, int h) {
   return true;
 }
 
-/// The edges of the star of v: those at v and those opposite to it. Returns their number, 0 if they are too
-/// many.
+/// The edges of the star of v: those at v and those opposite to it. Returns their number, 0 if too many.
 int edges_of_star(const EditMesh& m, int v, int (&edges)[2 * rules::largest_star]) {
   int n = 0;
   if (m.valence(v) <= rules::largest_star) m.star(v, [&](int e) { edges[n++] = e, edges[n++] = next(e); });

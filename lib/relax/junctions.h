@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where sheets meet: vertices and edges that are there once for each sheet, and change together; for
-// lib/relax/ only.
+// Where sheets meet: vertices and edges once per sheet, which change together; for lib/relax/ only.
 #pragma once
 #include <utility>
 #include <vector>

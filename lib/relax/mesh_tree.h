@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of the mesh from before, so that only what has changed is looked at again; for lib/relax/
-// only.
+// What is known of the mesh from before, so that only changes are looked at; for lib/relax/ only.
 #pragma once
 #include <optional>
 #include <utility>

@@ -6,13 +6,7 @@
 namespace meshpipe {
 namespace {
 
-/// A walk over the mesh towards p from triangle t, see walk_to.
-double walk_near(const State& s, Vec3 p, int& t, double enough) {
-  return walk_to(p, s.points, s.mesh.tris, s.mesh.opp, t, enough);
-}
-
-/// For each triangle of the reference a triangle of the mesh that should not be far: of a vertex on it, or on
-/// a triangle around it.
+/// For each triangle of the reference one of the mesh that should be near: of a vertex on it or around it.
 std::vector<int> first_guesses(const State& s) {
   const Mesh& surface = s.reference->surface;
   std::vector<int> at(surface.points.size(), -1), guess(surface.tris.size(), -1);
@@ -40,14 +34,14 @@ void measure(const State& s, Samples& samples, std::vector<double>& distance, do
     for (int i = first; i < std::min(n, first + chunk); ++i) {
       if (distance[i] <= enough) continue;
       Sample& x = list[i];
-      // most are as they were, or still near to the triangle that they were near to, or to that of the sample
-      // before
+      // most are as they were, or still near to the same triangle, or to that of the sample before
       if (x.near < 0 && !guess.empty()) x.near = guess[x.place.face];
       const bool lost = x.near < 0 || s.mesh.dead(x.near);
       if (lost && i > first) x.near = list[i - 1].near;
       if (x.near < 0 || s.mesh.dead(x.near)) continue;
       if (lost || !(x.distance <= enough) || changed_since(s, x.near, x.time)) {
-        x.distance = walk_near(s, s.reference->walk.point(x.place), x.near, enough);
+        x.distance =
+            walk_to(s.reference->walk.point(x.place), s.points, s.mesh.tris, s.mesh.opp, x.near, enough);
         x.time = now;
       }
       distance[i] = x.distance;
@@ -92,6 +86,13 @@ std::vector<std::pair<double, int>> farthest_samples(const State& s, Samples& sa
   return farthest;
 }
 
+/// Does a walk from v, or a slide along its line, end at p?
+bool reaches(const State& s, int v, Vec3 p, bool on_line) {
+  const SurfaceWalk& walk = s.reference->walk;
+  const Place to = on_line ? walk.slide(s.place[v], p) : walk.closest(s.place[v], p);
+  return norm(walk.point(to) - p) < rules::reached * s.target(v);
+}
+
 /// The neighborhood of the first triangle with a vertex of that at `place`, or a new one on one of its edges,
 /// whichever leaves the better mesh when all around it has settled. None if the place cannot be walked to,
 /// would spoil the mesh, or if then the mesh would be farther from the reference than `least`.
@@ -99,14 +100,11 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
                                 const std::vector<int>& triangles) {
   const int t = triangles.front();
   const double size = s.target(s.mesh.tris[t][0]);
+  const double farther = std::clamp(least / (rules::missed * size), 1.0, rules::spoils_farther);
   const double spoils =
-      rules::spoils * std::pow(std::clamp(least / (rules::missed * size), 1.0, rules::spoils_farther), 1.5);
+      least > rules::too_far * size ? rules::spoils_if_lost : rules::spoils * std::pow(farther, 1.5);
   const SurfaceWalk& walk = s.reference->walk;
   const Vec3 p = walk.point(place);
-  auto reaches = [&](int v, bool on_line) {
-    const Place to = on_line ? walk.slide(s.place[v], p) : walk.closest(s.place[v], p);
-    return norm(walk.point(to) - p) < rules::reached * s.target(v);
-  };
   // a vertex on a line may know the other side of it
   const std::vector<int>* patches = s.reference->patches;
   const bool same_side = dot(walk.normal(place), s.face_normal(t)) > rules::same_side &&
@@ -124,7 +122,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
     const bool stays = !insert ? s.hold[from] != loose && s.hold[from] != slides
                                : hard && (seam || (before.mesh.opp[h] >= 0 && end_on_line(s, from, to) < 0));
     const bool on_line = insert ? hard : s.hold[from] == slides;
-    const bool reached = reaches(from, on_line) || (insert && hard && reaches(to, true));
+    const bool reached = reaches(s, from, p, on_line) || (insert && hard && reaches(s, to, p, true));
     if (insert && !hard && s.hold[from] != loose && !same_side) continue;
     if (stays || !reached) continue;
     State& after = trials.emplace_back(Trial{0, before}).state;
@@ -196,9 +194,6 @@ std::vector<Sample> feature_samples(const Reference& reference, double h) {
       }
     }
   });
-  std::size_t all = samples.size();
-  for (const auto& list : inside) all += list.size();
-  samples.reserve(all);
   for (const auto& list : inside) samples.insert(samples.end(), list.begin(), list.end());
   return samples;
 }
@@ -212,6 +207,7 @@ std::vector<double> sample_distances(const State& s, Samples& samples, double en
 bool reach_features(State& s, Samples& samples, double least, int most) {
   if (s.mesh.live == 0 || samples.list.empty()) return false;
   double wanted = 0;
+  std::vector<int> guess;
   const auto farthest = farthest_samples(s, samples, least, wanted);
   using Item = std::pair<double, int>;
   auto around = [&](const Item& item, std::vector<int> before) -> std::vector<int> {
@@ -219,13 +215,25 @@ bool reach_features(State& s, Samples& samples, double least, int most) {
     const Sample& sample = samples.list[item.second];
     const Vec3 p = s.reference->walk.point(sample.place);
     int t = sample.near;
-    if (s.mesh.dead(t) || walk_near(s, p, t, wanted) <= wanted) return {};
-    t = sample.near;
-    double least = 1e300;
-    for (int near : triangles_around(s, sample.near, rules::rings))
-      if (const double d = norm(nearest_point(s, near, p) - p); d < least) least = d, t = near;
-    if (least <= wanted) return {};
-    return triangles_around(s, t, rules::rings);
+    if (s.mesh.dead(t) || walk_to(p, s.points, s.mesh.tris, s.mesh.opp, t, wanted) <= wanted) return {};
+    auto leads_to_it = [&](int near) {
+      const Tri& v = s.mesh.tris[near];
+      return std::any_of(v.begin(), v.end(), [&](int i) { return reaches(s, i, p, false); });
+    };
+    // the nearest triangle may be of another sheet
+    for (bool own_sheet : {false, true}) {
+      if (own_sheet && guess.empty()) guess = first_guesses(s);
+      const int from = own_sheet ? guess[sample.place.face] : sample.near;
+      if (from < 0 || s.mesh.dead(from)) return {};
+      double least = 1e300;
+      for (int near : triangles_around(s, from, rules::rings))
+        if (const double d = norm(nearest_point(s, near, p) - p);
+            d < least && (!own_sheet || leads_to_it(near)))
+          least = d, t = near;
+      if (least <= wanted) return {};
+      if (least < 1e300 && leads_to_it(t)) return triangles_around(s, t, rules::rings);
+    }
+    return {};
   };
   auto attempt = [&](const Item& item, const std::vector<int>& patch) {
     return reached(s, samples.list[item.second].place, wanted, patch);

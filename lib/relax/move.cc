@@ -239,8 +239,7 @@ int slide_shared(State& s) {
   return moves;
 }
 
-/// Returns where v and its copies are when v is at `place`, whose point is p; none if a star would fold, or a
-/// copy would be elsewhere.
+/// Returns where v and its copies are when v is at `place`, at p; none if a star folds or copies part.
 std::vector<CopyPlace> places_at(const State& s, int v, const Place& place, Vec3 p) {
   std::vector<CopyPlace> places = copies_at(s, v, place, p);
   for (const CopyPlace& c : places) {

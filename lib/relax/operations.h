@@ -17,8 +17,7 @@ bool split_edge(State& s, int h, double at = 0.5, bool may_fold = false);
 void insert_vertex(State& s, int h, const Place& place, Vec3 p, Vec3 normal);
 /// Returns an end of the edge a-b of a line that slides, and so knows its line; -1 if both are corners.
 int end_on_line(const State& s, int a, int b);
-/// Splits inside edges longer than `above` sizes, the longest first, while there are fewer than `most`
-/// triangles.
+/// Splits inside edges longer than `above` sizes, the longest first, while triangles are fewer than `most`.
 void split_long(State& s, double above, double most);
 
 /// Returns whether an edge from the origin of half-edge `spoke` to q would be a chord; see lib/core/chord.h.
@@ -35,8 +34,7 @@ void split_chords(State& s);
 bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, bool merge = false);
 /// Collapses the edge of h, takes its vertex `gone` out, without looking at the triangles.
 void remove_vertex(State& s, int h, int gone);
-/// Collapses inside edges below `below` sizes, the shortest first, while there are more than `least`
-/// triangles.
+/// Collapses inside edges below `below` sizes, the shortest first, down to `least` triangles.
 void collapse_short(State& s, double below, double least);
 /// Collapses segments of borders and model edges shorter than 0.6 of the size. Where the border is kept,
 /// collapses every border segment that can be: only vertices that the input does not have can go.
@@ -51,8 +49,7 @@ void remove_irregular(State& s);
 
 // --- flip.cc ---
 
-/// Returns whether a flip of h is allowed: not if a triangle folds, the surface bends more or a chord
-/// appears.
+/// Returns whether h may be flipped: not if a triangle folds, the surface bends more or a chord appears.
 bool may_flip(const State& s, int h);
 void flip_edge(State& s, int h);
 /// Returns the number of neighbors that v has beyond the regular one: 6 inside, 4 on a border.

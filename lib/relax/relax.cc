@@ -19,8 +19,7 @@
 namespace meshpipe {
 namespace {
 
-/// Holds the vertices of open seams: mlines divides borders this close alike, and chords that differ would
-/// cross.
+/// Holds the vertices of open seams: mlines divides borders this close alike; chords that differ cross.
 template <class Size>
 void hold_seams(const std::vector<Vec3>& points, const std::vector<char>& on_border, Size size,
                 std::vector<Hold>& hold) {

@@ -81,8 +81,7 @@ void add_slides_at_corners(const State& s, int t, std::vector<Edit>& edits) {
   }
 }
 
-/// The flips, splits and collapses of the edges of t and of the triangles next to it; `wide`: of all that
-/// share a vertex with it.
+/// The flips, splits and collapses of the edges of t and of its neighbors; `wide`: of all that touch it.
 std::vector<Edit> edits_around(const State& s, int t, bool wide, const Judge& judge) {
   const EditMesh& m = s.mesh;
   std::vector<int> halfedges;

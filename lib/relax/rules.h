@@ -111,7 +111,7 @@ constexpr double refinement = 0.8;    // of the size, each round
 constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,
-                 few = 100;  // of the triangles, and triangles: what the removal of faults may add
+                 few = 300;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10, few_faults = 100;  // rounds, and places: of more the sizes are at fault
 constexpr double far_weight = 10, pair_weight = 5;   // of the objective
@@ -130,6 +130,7 @@ constexpr double along_border = 0.1;    // of the distance: a sample that slides
 constexpr int features = 4, triangles_per_feature = 800;  // the larger: more cost the mesh its regularity
 constexpr double spoils = 1.8e-3;      // of the objective: one triangle with 0.9 of the quality wanted
 constexpr double spoils_farther = 5;   // of `missed`: up to where distance excuses more
+constexpr double spoils_if_lost = 3;   // of the objective: five triangles of kappa 0.3
 constexpr int tries_per_feature = 20;  // places tried for each that may be reached; real surfaces take 8
 constexpr int promising_features = 3;  // trials that go on, of 6
 constexpr double reached = 1e-6;       // length

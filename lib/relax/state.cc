@@ -39,8 +39,7 @@ void hold_at_corner(State& s, int v, const std::vector<char>& corner) {
   }
 }
 
-/// Holds the ends of triangles that fill sharp corners, as mlines has placed them: what makes others better
-/// makes these worse.
+/// Holds the ends of triangles that fill sharp corners where mlines has placed them: moves make them worse.
 void hold_sharp_corners(State& s) {
   constexpr double widest = 0.125, equal = 0.01;  // radians; of the length: sides that differ by less
   const EditMesh& m = s.mesh;
