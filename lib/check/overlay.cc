@@ -73,8 +73,7 @@ double plane_height(const Frame& f, const Vec3& a, const Vec3& b, const Vec3& c)
 /// A point in a frame, as a corner of a polygon.
 using Polygon = std::array<Vec3, 8>;
 
-/// Keeps the part of a convex polygon of n corners where `height`, linear, is not negative; nothing if that
-/// has no area.
+/// Keeps the part of a convex polygon of n corners where `height`, linear, is >= 0; nothing of zero area.
 template <class Height>
 int clip(Polygon*& polygon, Polygon*& spare, int n, const Height& height) {
   double heights[std::tuple_size_v<Polygon>];

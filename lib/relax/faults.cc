@@ -434,12 +434,20 @@ Intersections remove_faults(State& s, Samples& samples) {
   std::optional<std::pair<State, Fault>> best;
   Known known{s.reference->surface, samples};
   Repairs memory;
+  bool again = false;
   for (int round = 0, since_best = 0, repairs = 0;; ++round) {
     Fault found = find_faults(s, known);
     const bool better = !best || found.less_than(best->second);
     since_best = better ? 0 : since_best + 1;
     if (better) best = {s, found};
     if (found.none()) break;
+    if ((repairs > 0 && !better) || repairs == rules::fault_repairs) {
+      if (std::exchange(again, true) || round >= rules::fault_rounds) break;
+      // what repair has left is refined again, without what it has cured
+      s = best->first, found = best->second;
+      known.forget(), memory = {};
+      since_best = repairs = 0;
+    }
     if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
         s.mesh.live <= most) {
       refine_at(s, found);
@@ -448,9 +456,7 @@ Intersections remove_faults(State& s, Samples& samples) {
       repair_worst(s, memory);
       continue;
     }
-    if ((repairs > 0 && !better) || repairs == rules::fault_repairs ||
-        best->second.places() > rules::few_faults)
-      break;
+    if (best->second.places() > rules::few_faults) break;
     if (!better) {
       s = best->first;
       known.forget();

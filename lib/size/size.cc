@@ -474,8 +474,7 @@ bool bound_again(Field& f, double most_triangles) {
   return true;
 }
 
-/// Makes a field that is not uniform; `bounds` and the number of `triangles` are those of a uniform size, or
-/// not known (0).
+/// Makes a field that is not uniform; `bounds` and `triangles` are those of a uniform size, 0: not known.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
                                SizeReport& report, std::vector<SizeBound> bounds = {}, double triangles = 0) {
   const bool bounds_known = triangles > 0;
