@@ -95,14 +95,14 @@ bool reaches(const State& s, int v, Vec3 p, bool on_line) {
 
 /// The neighborhood of the first triangle with a vertex of that at `place`, or a new one on one of its edges,
 /// whichever leaves the better mesh when all around it has settled. None if the place cannot be walked to,
-/// would spoil the mesh, or if then the mesh would be farther from the reference than `least`.
-std::optional<State> reached_at(const State& s, const Place& place, double least,
+/// would spoil the mesh (`lost`: much), or if then the mesh would be farther from the reference than `least`.
+std::optional<State> reached_at(const State& s, const Place& place, double least, bool lost,
                                 const std::vector<int>& triangles) {
   const int t = triangles.front();
   const double size = s.target(s.mesh.tris[t][0]);
   const double farther = std::clamp(least / (rules::missed * size), 1.0, rules::spoils_farther);
   const double spoils =
-      least > rules::too_far * size ? rules::spoils_if_lost : rules::spoils * std::pow(farther, 1.5);
+      lost && least > rules::too_far * size ? rules::spoils_if_lost : rules::spoils * std::pow(farther, 1.5);
   const SurfaceWalk& walk = s.reference->walk;
   const Vec3 p = walk.point(place);
   // a vertex on a line may know the other side of it
@@ -149,17 +149,17 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
 }
 
 /// The same for a sample; one of the farthest that would spoil the mesh is gone half way to.
-std::optional<State> reached(const State& s, const Place& sample, double wanted,
+std::optional<State> reached(const State& s, const Place& sample, double wanted, bool lost,
                              const std::vector<int>& triangles) {
   const SurfaceWalk& walk = s.reference->walk;
   const Vec3 p = walk.point(sample), q = nearest_point(s, triangles.front(), p);
   const double least = norm(q - p);
-  if (auto state = reached_at(s, sample, least, triangles)) return state;
+  if (auto state = reached_at(s, sample, least, lost, triangles)) return state;
   if (least < rules::retry * wanted) return {};
   const Vec3 half = lerp(q, p, 0.5);
   const Place along = walk.slide(sample, half);  // stays if the sample is on no border
   const bool moved = norm(walk.point(along) - p) > rules::along_border * least;
-  return reached_at(s, moved ? along : walk.closest(sample, half), least, triangles);
+  return reached_at(s, moved ? along : walk.closest(sample, half), least, lost, triangles);
 }
 
 }  // namespace
@@ -236,7 +236,7 @@ bool reach_features(State& s, Samples& samples, double least, int most) {
     return {};
   };
   auto attempt = [&](const Item& item, const std::vector<int>& patch) {
-    return reached(s, samples.list[item.second].place, wanted, patch);
+    return reached(s, samples.list[item.second].place, wanted, least >= rules::too_far, patch);
   };
   return change_neighborhoods(s, farthest, most, rules::tries_per_feature * most, around, attempt,
                               [](const std::vector<int>&) {}) > 0;
