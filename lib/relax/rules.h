@@ -15,7 +15,6 @@ struct Collapse {
 
 // normals
 constexpr double least_cosine = 0.5;   // of normal and reference normal: a triangle with less is folded
-constexpr double thinnest = 1e-14;     // squared sine of an angle: rounding decides on smaller ones
 constexpr double same_cosine = 1e-12;  // cosines that differ by less are rounding errors
 
 // moves (move.cc)

@@ -103,11 +103,10 @@ struct State {
   double cosine(int a, int b, int c) const {
     return normal_cosine(points[a], points[b], points[c], normal[a] + normal[b] + normal[c]);
   }
-  /// Returns the unit normal of triangle t; zero if it is so thin that rounding would decide on it.
+  /// Returns the unit normal of triangle t.
   Vec3 face_normal(int t) const {
-    const auto [a, b, c] = mesh.tris[t];
-    const Vec3 p = points[b] - points[a], q = points[c] - points[a], n = cross(p, q);
-    return dot(n, n) > rules::thinnest * dot(p, p) * dot(q, q) ? normalized(n) : Vec3{};
+    const Tri& v = mesh.tris[t];
+    return normalized(area_vector(points[v[0]], points[v[1]], points[v[2]]));
   }
 
   const Reference* reference;
