@@ -67,12 +67,12 @@ void report(Io& io, const SizeOptions& o, const SizeReport& r, bool counted) {
                            {"too_thick_at_vertices", r.layers.all},
                            {"fits", r.layers.least},
                            {"at", {r.layers.at.x, r.layers.at.y, r.layers.at.z}}};
-  if (r.narrow > 0)
-    io.report["narrow"] = {{"places", r.narrow},
-                           {"at", {r.narrow_at.x, r.narrow_at.y, r.narrow_at.z}},
-                           {"gap", r.narrow_gap},
-                           {"asked", r.narrow_from},
-                           {"permitted", r.narrow_to}};
+  if (r.narrow.places > 0)
+    io.report["narrow"] = {{"places", r.narrow.places},
+                           {"at", {r.narrow.at.x, r.narrow.at.y, r.narrow.at.z}},
+                           {"gap", r.narrow.gap},
+                           {"asked", r.narrow.from},
+                           {"permitted", r.narrow.to}};
 }
 
 /// Drops lines that came with the file, and counts the triangles of the parts again.

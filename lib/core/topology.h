@@ -16,7 +16,7 @@ inline std::vector<int> opposite_halfedges(const Mesh& mesh) {
   return opposite_halfedges(mesh.tris, (int)mesh.points.size());
 }
 
-/// Returns for each vertex the vertices joined to it by an edge: once per triangle of the edge. Linear.
+/// Returns for each vertex the other two vertices of each of its triangles, one pair after the other. Linear.
 inline Lists neighbors_of(const Mesh& mesh) {
   return lists_of((int)mesh.points.size(), [&](auto use) {
     for (const auto& [a, b, c] : mesh.tris) use(a, b), use(a, c), use(b, c), use(b, a), use(c, a), use(c, b);

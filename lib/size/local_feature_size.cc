@@ -25,6 +25,7 @@ constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not 
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
 constexpr double opposite_sides = -0.31;     ///< largest cosine between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
+constexpr double flat = 0.8;    ///< cosine between them at an edge; 0.6 to 0.9 tell the same loops from rings
 constexpr double per_length = 1.5;    ///< size over the length of a line: kappa 0.8 between such edges
 constexpr double least_line = 0.001;  ///< of the size asked for: a shorter line is a point
 constexpr double least_area = 0.2;    ///< of a circle as long: a path there and back the same way has none
@@ -74,22 +75,35 @@ class TubeFinder {
     const Vec3 p = mesh_.points[v], x = mesh_.points[branch_[a]] - p, y = mesh_.points[branch_[b]] - p;
     if (dot(x, y) > opposite_sides * norm(x) * norm(y)) return false;
     Vec3 area = cross(mesh_.points[a] - p, mesh_.points[b] - p);
-    for (int x = a; x != v; x = from_[x])
-      area = area + cross(mesh_.points[from_[x]] - p, mesh_.points[x] - p);
-    for (int x = b; x != v; x = from_[x])
-      area = area + cross(mesh_.points[x] - p, mesh_.points[from_[x]] - p);
-    double along = 0;
-    int n = 1;
-    auto look = [&](int u) { along += std::abs(dot(normalized(area), normalized(normal_[u]))), ++n; };
-    look(v);
     for (int end : {a, b})
-      for (int u = end; u != v; u = from_[u]) look(u);
+      for (int u = end; u != v; u = from_[u])
+        area = area + (end == a ? 1.0 : -1.0) * cross(mesh_.points[from_[u]] - p, mesh_.points[u] - p);
+    const Vec3 axis = normalized(area);
+    if (lies_flat(a, b, axis)) return false;
+    double along = std::abs(dot(axis, normalized(normal_[v])));
+    int n = 2;
+    for (int end : {a, b})
+      for (int u = end; u != v; u = from_[u], ++n) {
+        if (lies_flat(u, from_[u], axis)) return false;
+        along += std::abs(dot(axis, normalized(normal_[u])));
+      }
     const double length = distance_[a] + distance_[b] + norm(mesh_.points[a] - mesh_.points[b]);
     return along < across * n && norm(area) > least_area * length * length / (2 * pi);
   }
 
+  /// Whether an edge is within a flat face in a loop's plane, as where it crosses the rim of a plate.
+  bool lies_flat(int u, int w, Vec3 axis) const {
+    double least = 1;
+    for (std::size_t i = 0; i < next_[u].size(); i += 2)
+      if (const int x = next_[u][i], y = next_[u][i + 1]; x == w || y == w) {
+        const Vec3 n = cross(mesh_.points[x] - mesh_.points[u], mesh_.points[y] - mesh_.points[u]);
+        least = std::min(least, std::abs(dot(axis, normalized(n))));
+      }
+    return least > flat;
+  }
+
   const Mesh& mesh_;
-  const Lists next_;
+  const Lists next_;  ///< as neighbors_of
   std::vector<Vec3> normal_;
   std::vector<double> distance_;
   std::vector<int> from_, branch_, reached_, near_;
@@ -117,9 +131,8 @@ std::vector<double> closed_line_lengths(const Connectivity& surface) {
   for (int h = 0; h < surface.n_half_edges(); ++h) {
     const int o = surface.opposite[h], a = surface.from(h), b = surface.to(h);
     if (o > h || (o >= 0 && !surface.is_model(h) && !surface.is_model(o))) continue;
-    if (degree[a] < 2) ends[a][degree[a]] = b;
-    if (degree[b] < 2) ends[b][degree[b]] = a;
-    ++degree[a], ++degree[b];
+    for (const auto& [x, y] : {std::array{a, b}, std::array{b, a}})
+      if (degree[x]++ < 2) ends[x][degree[x] - 1] = y;
   }
   std::vector<char> seen(n, 0);
   std::vector<int> loop;

@@ -141,6 +141,7 @@ double wish_between(Field& f, int h) {
 /// Calls visit(bound) for the bounds on the given edge that half-edge h is part of.
 template <class Visit>
 void each_bound(const Field& f, int h, Visit visit) {
+  if (f.bounds.empty()) return;
   constexpr double slack = 1e-6;  // of the given edge, for rounding
   const Vec3 a = f.s.points[origin(f.s.tris, h)], b = f.s.points[target(f.s.tris, h)];
   const int t = f.root[h / 3];
@@ -169,7 +170,6 @@ double strip_triangles(const Field& f, double most) { return f.strips + triangle
 void bound_vertices(Field& f) {
   f.permits.assign(f.s.points.size(), infinity);
   if (f.s.vertex.has(permitted_before)) f.permits = f.s.vertex.get<double>(permitted_before);
-  if (f.bounds.empty()) return;
   for (int h = 0; h < (int)f.opposite.size(); ++h)
     each_bound(f, h, [&](const SizeBound& x) {
       for (int v : {origin(f.s.tris, h), target(f.s.tris, h)})
@@ -183,8 +183,7 @@ double bounded(const Field& f, double wish) {
 
 /// Sets the sizes: the wishes times `scale`, at most `uniform`, bounded and graded.
 void set_sizes(Field& f, double uniform, double scale) {
-  f.uniform = uniform;
-  f.scale = scale;
+  f.uniform = uniform, f.scale = scale;
   f.size.resize(f.wish.size());
   for (std::size_t v = 0; v < f.size.size(); ++v) {
     f.size[v] = bounded(f, f.wish[v]);
@@ -193,9 +192,10 @@ void set_sizes(Field& f, double uniform, double scale) {
   limit_gradation(f.s, f.o.gradation, f.size);
 }
 
-/// Sets the sizes to a field that asks for the given number of triangles. The number falls as x grows: while
-/// x < 0 the uniform length is e^x diagonals; beyond, the other sources are multiplied by e^x.
+/// Sets the sizes to a field that asks for the number of triangles, if one is given. The number falls as x
+/// grows: while x < 0 the uniform length is e^x diagonals; beyond, the other sources are multiplied by e^x.
 void meet_count(Field& f) {
+  if (!(f.o.triangles > 0)) return set_sizes(f, infinity, 1);
   auto count_at = [&](double x) {
     set_sizes(f, x < 0 ? f.diagonal * std::exp(x) : infinity, x > 0 ? std::exp(x) : 1);
     const double strips = strip_triangles(f, std::min({f.uniform, f.cap, f.diagonal}));
@@ -231,13 +231,6 @@ void meet_count(Field& f) {
   count_at(high);
 }
 
-void make_sizes(Field& f) {
-  if (f.o.triangles > 0)
-    meet_count(f);
-  else
-    set_sizes(f, infinity, 1);
-}
-
 /// Whether interpolation along the edge misses the field in its middle, on a scale that a mesh would show.
 bool bends(Field& f, int h) {
   const int a = origin(f.s.tris, h), b = target(f.s.tris, h), o = f.opposite[h];
@@ -255,14 +248,13 @@ bool bends(Field& f, int h) {
   const double error = f.bounds.empty() || linear > m ? interpolation_error : excess_error;
   if (l > m && std::abs(m - linear) > error * m) return true;
   bool misses = false;
-  if (!f.bounds.empty())
-    for (int side : {h, o})
-      if (side >= 0)
-        each_bound(f, side, [&](const SizeBound& x) {
-          const double t = norm(x.place - f.s.points[a]) / l;
-          const double least = std::max(x.size, f.o.min);
-          misses |= l > 2 * least && (1 - t) * f.size[a] + t * f.size[b] > (1 + interpolation_error) * least;
-        });
+  for (int side : {h, o})
+    if (side >= 0)
+      each_bound(f, side, [&](const SizeBound& x) {
+        const double t = norm(x.place - f.s.points[a]) / l;
+        const double least = std::max(x.size, f.o.min);
+        misses |= l > 2 * least && (1 - t) * f.size[a] + t * f.size[b] > (1 + interpolation_error) * least;
+      });
   return misses;
 }
 
@@ -294,18 +286,14 @@ bool split(Field& f, const Test& test) {
 void lower_where_narrow(Field& f, SizeReport& report) {
   const auto feature = feature_size({f.s, f.opposite, model_of(f.s)}, f.curvature, f.size);
   for (std::size_t v = 0; v < feature.size(); ++v) f.permits[v] = std::min(f.permits[v], feature[v]);
-  double most = 1;
+  LoweredSize& most = report.lowered;
   for (std::size_t v = 0; v < f.permits.size(); ++v) {
     const double r = std::max(f.permits[v], f.o.min);
     if (!(r < f.size[v])) continue;
-    ++report.lowered;
-    if (f.size[v] / r <= most) continue;
-    most = f.size[v] / r;
-    report.lowered_at = f.s.points[v];
-    report.lowered_from = f.size[v];
-    report.lowered_to = r;
+    if (const int n = ++most.places; n == 1 || f.size[v] / r > most.from / most.to)
+      most = {n, f.s.points[v], f.size[v], r};
   }
-  if (report.lowered > 0) make_sizes(f);
+  if (most.places > 0) meet_count(f);
 }
 
 /// Converts vertex data to doubles, in place.
@@ -324,15 +312,15 @@ void refuse_costly_strips(std::vector<SizeBound> bounds, double triangles, const
   const double strips = triangles_of_strips(bounds, infinity), limit = most_for(triangles);
   if (strips <= limit) return;
   FailureFacts facts;
-  facts.strip_width = std::max(wide_strip * r.narrow_from, 2 * r.narrow_gap);
+  facts.strip_width = std::max(wide_strip * r.narrow.from, 2 * r.narrow.gap);
   auto left = [&] {
     std::erase_if(bounds, [&](const SizeBound& x) { return x.gap < facts.strip_width; });
     return triangles_of_strips(bounds, infinity);
   };
   while (left() > limit) facts.strip_width *= 2;
   throw Informed<GoalMissed>("narrow strips ask for " + shown(std::round(strips)) + " triangles instead of " +
-                                 shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow_gap) +
-                                 " wide at " + shown(r.narrow_at),
+                                 shown(std::round(triangles)) + ": the narrowest is " + shown(r.narrow.gap) +
+                                 " wide at " + shown(r.narrow.at),
                              facts);
 }
 
@@ -344,7 +332,7 @@ void refuse_costly_field(Field& f, double limit, double triangles, const SizeRep
   f.s = std::move(f.given);
   throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
                    " triangles instead of " + shown(std::round(triangles)) + ": the nearest are " +
-                   shown(r.narrow_gap) + " apart at " + shown(r.narrow_at));
+                   shown(r.narrow.gap) + " apart at " + shown(r.narrow.at));
 }
 
 /// Throws: GoalMissed if closed components so slender that the size is more than their circumference, in the
@@ -354,13 +342,12 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
   std::vector<int> component;
   const int n = components(opposite, component);
   std::vector<double> area(n, 0);
-  std::vector<Box> box(n);
-  std::vector<char> seen(n, 0), open(n, 0);
+  std::vector<Box> box(n, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}});
+  std::vector<char> open(n, 0);
   for (int t = 0; t < (int)s.tris.size(); ++t) {
     const int c = component[t];
     area[c] += triangle_area(s, t);
-    box[c] = seen[c] ? join(box[c], box_of(s, t)) : box_of(s, t);
-    seen[c] = 1;
+    box[c] = join(box[c], box_of(s, t));
     for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= opposite[h] < 0;
   }
   double asked = 0, narrowest = infinity;
@@ -389,18 +376,14 @@ std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& op
     for (double& h : most) h *= most_growth;
   const double triangles = o.triangles > 0 ? o.triangles : count_for_size(s, size);
   auto bounds = permitted_sizes({s, opposite, model_of(s)}, most, o.min, most_for(triangles));
-  report.narrow = 0;
   for (const SizeBound& x : bounds) {
     const int a = origin(s.tris, x.half_edge), b = target(s.tris, x.half_edge);
     const double h = 0.5 * (size[a] + size[b]);
     if (!(x.size < h)) continue;
-    if (report.narrow++ > 0 && x.size >= report.narrow_to) continue;
-    report.narrow_at = x.place;
-    report.narrow_gap = x.gap;
-    report.narrow_from = h;
-    report.narrow_to = x.size;
+    if (const int n = ++report.narrow.places; n == 1 || x.size < report.narrow.to)
+      report.narrow = {n, x.place, h, x.size, x.gap};
   }
-  if (report.narrow == 0) bounds.clear();
+  if (report.narrow.places == 0) bounds.clear();
   refuse_costly_strips(bounds, triangles, report);
   return bounds;
 }
@@ -503,7 +486,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
       bound_vertices(f);
       const bool meets = !split_last;  // the count: on the surface as it comes, and again once it is split
       if (meets)
-        make_sizes(f);
+        meet_count(f);
       else
         set_sizes(f, f.uniform, f.scale);
       if ((double)(s.points.size() - f.given.points.size()) > limit) break;  // it is refused

@@ -40,6 +40,13 @@ struct MeasuredSize {
   Vec3 at{};  ///< of the smallest
 };
 
+/// Where sizes are lowered, and the place where that is most.
+struct LoweredSize {
+  int places = 0;
+  Vec3 at{};
+  double from = 0, to = 0, gap = 0;  ///< sizes asked for and permitted; the distance of lines or sheets
+};
+
 struct SizeReport {
   std::vector<MeasuredSize> measured;
   LayerReport layers;
@@ -48,12 +55,8 @@ struct SizeReport {
   double strips = 0;     ///< more of them, as narrow strips have more than their area stands for
   double scale = 1;      ///< factor of the other sources where they ask for more than `triangles`
   int added = 0;         ///< vertices
-  int lowered = 0;       ///< vertices where the local feature size is below the size that was asked for
-  Vec3 lowered_at{};     ///< where that is most, with
-  double lowered_from = 0, lowered_to = 0;
-  int narrow = 0;    ///< places where lines or sheets so near each other permit no uniform size
-  Vec3 narrow_at{};  ///< the narrowest
-  double narrow_from = 0, narrow_to = 0, narrow_gap = 0;  ///< sizes asked for and permitted there
+  LoweredSize lowered;   ///< vertices where the local feature size is below the size that was asked for
+  LoweredSize narrow;    ///< where lines or sheets so near each other permit no uniform size
 };
 
 /// Sets vertex column `size` to the minimum of all sources (a tenth of the diagonal if none sets it), bounded

@@ -43,15 +43,16 @@ std::vector<std::string> size_lines(const SizeReport& r, const SizeOptions& o, b
   if (r.scale != 1)
     lines.push_back("the requested sizes are multiplied by " + shown(r.scale) +
                     " for this number of triangles");
-  if (r.lowered > 0)
-    lines.push_back("the size is lowered at " + std::to_string(r.lowered) +
+  if (r.lowered.places > 0)
+    lines.push_back("the size is lowered at " + std::to_string(r.lowered.places) +
                     " vertices of narrow tubes or closed lines, which need four edges around them: at " +
-                    shown(r.lowered_at) + " from " + shown(r.lowered_from) + " to " + shown(r.lowered_to));
-  if (r.narrow > 0)
-    lines.push_back("lines or sheets are too near each other for the size at " + std::to_string(r.narrow) +
-                    " places: at " + shown(r.narrow_at) + ", " + shown(r.narrow_gap) +
-                    " apart, it is lowered from " + shown(r.narrow_from) + " to " + shown(r.narrow_to));
-  if (o.triangles > 0 && r.narrow > 0 && r.triangles > (1 + more) * o.triangles)
+                    shown(r.lowered.at) + " from " + shown(r.lowered.from) + " to " + shown(r.lowered.to));
+  if (r.narrow.places > 0)
+    lines.push_back("lines or sheets are too near each other for the size at " +
+                    std::to_string(r.narrow.places) + " places: at " + shown(r.narrow.at) + ", " +
+                    shown(r.narrow.gap) + " apart, it is lowered from " + shown(r.narrow.from) + " to " +
+                    shown(r.narrow.to));
+  if (o.triangles > 0 && r.narrow.places > 0 && r.triangles > (1 + more) * o.triangles)
     lines.push_back("no fewer than about " + std::to_string(std::llround(r.triangles)) +
                     " triangles are good there, instead of " + std::to_string(std::llround(o.triangles)));
   else if (counted && !within(r, o, much))

@@ -155,8 +155,8 @@ TEST(Permitted, SizesGrowAwayFromNarrowPlaces) {
   SizeOptions o;
   o.triangles = 40;
   const SizeReport r = set_size(s, nullptr, o);
-  EXPECT_GT(r.narrow, 0);
-  EXPECT_NEAR(r.narrow_to, 1.4, 1e-9);
+  EXPECT_GT(r.narrow.places, 0);
+  EXPECT_NEAR(r.narrow.to, 1.4, 1e-9);
   EXPECT_NEAR(r.triangles, 40, 0.5);
   const auto& size = s.vertex.get<double>("size");
   for (std::size_t v = 0; v < size.size(); ++v) EXPECT_TRUE(s.points[v].y > 0.3 || size[v] < 1.7);

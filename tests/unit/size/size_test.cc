@@ -291,15 +291,48 @@ TEST(Size, IsLoweredOnTubesAndReported) {
   o.at = [](Vec3 p, double) { return 0.1 + 0.2 * p.z; };
   const SizeReport r = set_size(s, nullptr, o);
   const std::vector<double>& h = s.vertex.get<double>("size");
-  EXPECT_GT(r.lowered, 0);
-  EXPECT_GT(r.lowered_from, 1.9);
-  EXPECT_NEAR(r.lowered_to, 0.25 * 3.14159, 0.1);
-  EXPECT_GT(r.lowered_at.z, 9);
+  EXPECT_GT(r.lowered.places, 0);
+  EXPECT_GT(r.lowered.from, 1.9);
+  EXPECT_NEAR(r.lowered.to, 0.25 * 3.14159, 0.1);
+  EXPECT_GT(r.lowered.at.z, 9);
   EXPECT_LT(largest(h), 0.95);
   for (std::size_t v = 0; v < h.size(); ++v)
     if (s.points[v].z < 2) {
       EXPECT_NEAR(h[v], 0.1 + 0.2 * s.points[v].z, 0.02);
     }
+}
+
+/// A plate with rounded corners, of size 40 and thickness 3; corners have 16 edges, sides one.
+Surface plate() {
+  Surface s;
+  const int n = 4 * 17;
+  for (double z : {0.0, 3.0})
+    for (int i = 0; i < n; ++i) {
+      const double a = M_PI / 2 * (i / 17 + i % 17 / 16.0), middle = M_PI / 2 * (i / 17 + 0.5);
+      s.points.push_back({2 * cos(a) + 25 * cos(middle), 2 * sin(a) + 25 * sin(middle), z});
+    }
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    s.tris.push_back({i, j, j + n});
+    s.tris.push_back({i, j + n, i + n});
+    if (i == 0 || j == 0) continue;
+    s.tris.push_back({0, j, i});
+    s.tris.push_back({n, i + n, j + n});
+  }
+  s.vertex.rows = s.points.size();
+  FeatureOptions sharp;
+  sharp.mode = FeatureOptions::angles;
+  mark_features(s, sharp);
+  return s;
+}
+
+TEST(Size, RimsOfPlatesAreNoTubes) {
+  Surface s = plate();
+  SizeOptions o;
+  o.triangles = 400;
+  const SizeReport r = set_size(s, nullptr, o);
+  EXPECT_EQ(r.lowered.places, 0);
+  EXPECT_NEAR(r.triangles, 400, 1);
 }
 
 /// A closed cone of height 1 with its apex, vertex 0, at the origin; `rings` divide its side.
