@@ -206,8 +206,8 @@ void add_missed_places(const State& s, Samples& samples, int time) {
                       {x.distance, y.distance, z.distance}};
     if (whole.within(rules::too_far * mean, mesh)) continue;
     const Vec3 normal = normalized(area_vector(reference, f));
-    if (std::ranges::all_of(whole.face,
-                            [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
+    if (std::all_of(whole.face.begin(), whole.face.end(),
+                    [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean); };
     const auto [p, hit] =
@@ -216,7 +216,8 @@ void add_missed_places(const State& s, Samples& samples, int time) {
 #pragma omp critical
     missed.push_back({closest_place(reference, f, p), hit.place.face, s.clocks.now, hit.distance});
   }
-  std::ranges::sort(missed, {}, [](const Sample& x) { return x.place.face; });
+  std::sort(missed.begin(), missed.end(),
+            [](const Sample& a, const Sample& b) { return a.place.face < b.place.face; });
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
 }
 
