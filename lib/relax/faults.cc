@@ -13,6 +13,7 @@ namespace {
 struct Known {
   const Surface& reference;
   Samples& samples;
+  double too_far = rules::too_far;  ///< of the size, from where distances are faults
   IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
@@ -24,9 +25,8 @@ struct Known {
   /// Forgets the mesh: call it before it becomes another.
   void forget() {
     samples.forget();
-    intersections = {};
+    intersections = {}, time = -1;
     walked.clear(), searched.clear();
-    time = -1;
   }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
@@ -157,12 +157,12 @@ double distance_of(const State& s, int t, const Bvh& tree, double limit) {
 }
 
 /// How far triangle t and what is nearest to it may be apart, where the mean size is `mean`.
-double bearable_distance(const State& s, int t, double mean) {
+double bearable_distance(const State& s, int t, double mean, double too_far) {
   const Tri& v = s.mesh.tris[t];
   double longest = 0;
   for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
   const double size = (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3;
-  return rules::too_far * std::max(mean, std::min(size, size_over_longest * longest));
+  return too_far * std::max(mean, std::min(size, size_over_longest * longest));
 }
 
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags. A
@@ -186,7 +186,7 @@ void look_at_changed(const State& s, Known& known) {
 
 /// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
 /// those on vertices and edges do not show these. Looks where one at a corner was measured after `time`.
-void add_missed_places(const State& s, Samples& samples, int time) {
+void add_missed_places(const State& s, Samples& samples, int time, double too_far) {
   const Surface& reference = s.reference->surface;
   const double mean = mean_size(s);
   const Mesh mesh{s.points, s.mesh.tris};
@@ -204,12 +204,12 @@ void add_missed_places(const State& s, Samples& samples, int time) {
     const Piece whole{{reference.points[a], reference.points[b], reference.points[c]},
                       {x.near, y.near, z.near},
                       {x.distance, y.distance, z.distance}};
-    if (whole.within(rules::too_far * mean, mesh)) continue;
+    if (whole.within(too_far * mean, mesh)) continue;
     const Vec3 normal = normalized(area_vector(reference, f));
     if (std::all_of(whole.face.begin(), whole.face.end(),
                     [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
-    auto allowed = [&](int t) { return bearable_distance(s, t, mean); };
+    auto allowed = [&](int t) { return bearable_distance(s, t, mean, too_far); };
     const auto [p, hit] =
         farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
     if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
@@ -221,18 +221,17 @@ void add_missed_places(const State& s, Samples& samples, int time) {
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
 }
 
-/// Triangles that are farther from the reference than a share of the size, and those that samples of it are
-/// nearest to and yet as far from.
+/// Triangles that are too far from the reference, and those nearest to samples of it that are.
 void find_far(const State& s, Known& known, Fault& found) {
-  const double mean = mean_size(s), least = rules::too_far * mean;
+  const double mean = mean_size(s), least = known.too_far * mean;
   std::vector<std::pair<int, double>> far;
   auto look = [&](int t, double distance) {
-    const double bearable = bearable_distance(s, t, mean);
+    const double bearable = bearable_distance(s, t, mean, known.too_far);
     if (distance > bearable) far.push_back({t, -distance / bearable});
     return distance > bearable;
   };
   sample_distances(s, known.samples, least);
-  add_missed_places(s, known.samples, known.time);
+  add_missed_places(s, known.samples, known.time, known.too_far);
   for (const Sample& x : known.samples.list)
     if (x.distance > least && look(x.near, x.distance))
       found.missed.push_back({x.near, s.reference->walk.point(x.place)});
@@ -240,14 +239,13 @@ void find_far(const State& s, Known& known, Fault& found) {
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
     if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
     if (known.searched[t] < 0)
-      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean));
+      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, known.too_far));
     look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());
   for (int last = -1; auto [t, ratio] : far) {
     if (std::exchange(last, t) == t) continue;
-    found.triangles.push_back(t);
-    found.excess -= ratio;
+    found.triangles.push_back(t), found.excess -= ratio;
   }
 }
 
@@ -299,10 +297,7 @@ void refine_at(State& s, const Fault& fault) {
       m.neighbors(v, [&](int w) { around.push_back(w); });
     }
   sort_unique(around);
-  for (int v : around) {
-    s.refinement[v] *= rules::refinement;
-    mark_changed(s, v);
-  }
+  for (int v : around) s.refinement[v] *= rules::refinement, mark_changed(s, v);
   for (int t : offending) {
     int longest = -1;
     double length = 0;
@@ -355,7 +350,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
     if (s.mesh.dead(t)) continue;
     const auto [a, b, c] = mesh.tris[t];
     same[t] = before.has(mesh, t);
-    const double most = bearable_distance(s, t, mean);
+    const double most = bearable_distance(s, t, mean, known.too_far);
     far[t] = same[t] ? before.deviation[t] : deviation(s, t);
     const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
     sum += rules::far_weight * std::max(0.0, there / most - 1);
@@ -442,6 +437,15 @@ Intersections remove_faults(State& s, Samples& samples) {
     since_best = better ? 0 : since_best + 1;
     if (better) best = {s, found};
     if (found.none()) break;
+    if (since_best == 1 && best->second.count() == 0 &&
+        best->second.excess < rules::within_limit / rules::too_far * best->second.places()) {
+      known.forget();
+      known.too_far = rules::within_limit;
+      const bool met = find_faults(best->first, known).none();
+      known.forget();
+      known.too_far = rules::too_far;
+      if (met) break;
+    }
     if ((repairs > 0 && !better) || repairs == rules::fault_repairs) {
       if (std::exchange(again, true) || round >= rules::fault_rounds) break;
       // what repair has left is refined again, without what it has cured
@@ -452,16 +456,12 @@ Intersections remove_faults(State& s, Samples& samples) {
     if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
         s.mesh.live <= most) {
       refine_at(s, found);
-      if (found.triangles.empty()) continue;
-      reach_features(s, samples, rules::too_far, (int)found.triangles.size());
-      repair_worst(s, memory);
+      const int most_reached = (int)found.triangles.size();
+      if (most_reached > 0) reach_features(s, samples, rules::too_far, most_reached), repair_worst(s, memory);
       continue;
     }
     if (best->second.places() > rules::few_faults) break;
-    if (!better) {
-      s = best->first;
-      known.forget();
-    }
+    if (!better) s = best->first, known.forget();
     repair_at(s, best->second, known);
     ++repairs;
   }

@@ -98,8 +98,9 @@ constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
 // faults (faults.cc)
-constexpr double parallel = 0.8;    // cosine: no edge between normals this close sags by `too_far`
-constexpr double too_far = 0.475;   // of the size; a half is the limit of mcheck
+constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
+constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
+constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
 constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
 constexpr int most_halvings = 400;  // of a triangle, to find its largest distance
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
