@@ -13,7 +13,6 @@ namespace {
 struct Known {
   const Surface& reference;
   Samples& samples;
-  double too_far = rules::too_far;  ///< of the size, from where distances are faults
   IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
@@ -156,13 +155,13 @@ double distance_of(const State& s, int t, const Bvh& tree, double limit) {
       .second.distance;
 }
 
-/// How far triangle t and what is nearest to it may be apart, where the mean size is `mean`.
-double bearable_distance(const State& s, int t, double mean, double too_far) {
+/// How far triangle t and what is nearest to it may be apart, by this share of the size; `mean`: its mean.
+double bearable_distance(const State& s, int t, double mean, double share = rules::too_far) {
   const Tri& v = s.mesh.tris[t];
   double longest = 0;
   for (int i = 0; i < 3; ++i) longest = std::max(longest, norm(s.points[v[i]] - s.points[v[next(i)]]));
   const double size = (s.size[v[0]] + s.size[v[1]] + s.size[v[2]]) / 3;
-  return too_far * std::max(mean, std::min(size, size_over_longest * longest));
+  return share * std::max(mean, std::min(size, size_over_longest * longest));
 }
 
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags. A
@@ -186,7 +185,7 @@ void look_at_changed(const State& s, Known& known) {
 
 /// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
 /// those on vertices and edges do not show these. Looks where one at a corner was measured after `time`.
-void add_missed_places(const State& s, Samples& samples, int time, double too_far) {
+void add_missed_places(const State& s, Samples& samples, int time, double share) {
   const Surface& reference = s.reference->surface;
   const double mean = mean_size(s);
   const Mesh mesh{s.points, s.mesh.tris};
@@ -204,12 +203,12 @@ void add_missed_places(const State& s, Samples& samples, int time, double too_fa
     const Piece whole{{reference.points[a], reference.points[b], reference.points[c]},
                       {x.near, y.near, z.near},
                       {x.distance, y.distance, z.distance}};
-    if (whole.within(too_far * mean, mesh)) continue;
+    if (whole.within(share * mean, mesh)) continue;
     const Vec3 normal = normalized(area_vector(reference, f));
     if (std::all_of(whole.face.begin(), whole.face.end(),
                     [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
-    auto allowed = [&](int t) { return bearable_distance(s, t, mean, too_far); };
+    auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
     const auto [p, hit] =
         farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
     if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
@@ -222,16 +221,16 @@ void add_missed_places(const State& s, Samples& samples, int time, double too_fa
 }
 
 /// Triangles that are too far from the reference, and those nearest to samples of it that are.
-void find_far(const State& s, Known& known, Fault& found) {
-  const double mean = mean_size(s), least = known.too_far * mean;
+void find_far(const State& s, Known& known, double share, Fault& found) {
+  const double mean = mean_size(s), least = share * mean;
   std::vector<std::pair<int, double>> far;
   auto look = [&](int t, double distance) {
-    const double bearable = bearable_distance(s, t, mean, known.too_far);
+    const double bearable = bearable_distance(s, t, mean, share);
     if (distance > bearable) far.push_back({t, -distance / bearable});
     return distance > bearable;
   };
   sample_distances(s, known.samples, least);
-  add_missed_places(s, known.samples, known.time, known.too_far);
+  add_missed_places(s, known.samples, known.time, share);
   for (const Sample& x : known.samples.list)
     if (x.distance > least && look(x.near, x.distance))
       found.missed.push_back({x.near, s.reference->walk.point(x.place)});
@@ -239,7 +238,7 @@ void find_far(const State& s, Known& known, Fault& found) {
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
     if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
     if (known.searched[t] < 0)
-      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, known.too_far));
+      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, share));
     look(t, known.searched[t]);
   }
   std::sort(far.begin(), far.end());
@@ -350,7 +349,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
     if (s.mesh.dead(t)) continue;
     const auto [a, b, c] = mesh.tris[t];
     same[t] = before.has(mesh, t);
-    const double most = bearable_distance(s, t, mean, known.too_far);
+    const double most = bearable_distance(s, t, mean);
     far[t] = same[t] ? before.deviation[t] : deviation(s, t);
     const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
     sum += rules::far_weight * std::max(0.0, there / most - 1);
@@ -376,14 +375,14 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
-Fault find_faults(const State& s, Known& known) {
+Fault find_faults(const State& s, Known& known, double share = rules::too_far) {
   Fault found;
   find_intersections(s, known, found);
   for (int h : folded_edges(s, known)) {
     ++found.folds;
     found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
   }
-  find_far(s, known, found);
+  find_far(s, known, share, found);
   find_needles(s, found);
   sort_unique(found.triangles);
   return found;
@@ -440,11 +439,8 @@ Intersections remove_faults(State& s, Samples& samples) {
     if (since_best == 1 && best->second.count() == 0 &&
         best->second.excess < rules::within_limit / rules::too_far * best->second.places()) {
       known.forget();
-      known.too_far = rules::within_limit;
-      const bool met = find_faults(best->first, known).none();
+      if (find_faults(best->first, known, rules::within_limit).none()) break;
       known.forget();
-      known.too_far = rules::too_far;
-      if (met) break;
     }
     if ((repairs > 0 && !better) || repairs == rules::fault_repairs) {
       if (std::exchange(again, true) || round >= rules::fault_rounds) break;
