@@ -117,24 +117,23 @@ struct Piece {
   }
 };
 
-/// Returns a point of the piece that is farther from the other surface than allowed(f), where triangle f of
-/// that is nearest, if one is found, else the farthest that is; and its hit, which `nearest` returns.
+/// Returns the point of the piece that is farthest from the other surface over allowed(f), where triangle f
+/// of that is nearest, as far as halving finds it; and its hit, which `nearest` returns.
 template <class Allowed, class Nearest>
 std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowed allowed, Nearest nearest) {
   std::vector<Piece> pieces{whole};
   std::pair<Vec3, Bvh::Hit> most;
+  double most_over = 0;  // its distance over what is allowed
   for (int halvings = 0; !pieces.empty() && halvings < rules::most_halvings; ++halvings) {
     const Piece piece = pieces.back();
     pieces.pop_back();
-    if (piece.within(std::min({allowed(piece.face[0]), allowed(piece.face[1]), allowed(piece.face[2])}),
-                     other))
-      continue;
+    const double least = std::min({allowed(piece.face[0]), allowed(piece.face[1]), allowed(piece.face[2])});
+    if (piece.within(std::max(1.0, rules::farther_by * most_over) * least, other)) continue;
     const int k = piece.longest();
     const Vec3 middle = lerp(piece.corner[k], piece.corner[next(k)], 0.5);
     const Bvh::Hit hit = nearest(middle);
-    const bool too_far = hit.distance > allowed(hit.place.face);
-    if (too_far || hit.distance > most.second.distance) most = {middle, hit};
-    if (too_far) break;
+    if (const double over = hit.distance / allowed(hit.place.face); over > most_over)
+      most = {middle, hit}, most_over = over;
     for (int end : {k, next(k)}) {
       Piece& half = pieces.emplace_back(piece);
       half.corner[end] = middle, half.distance[end] = hit.distance, half.face[end] = hit.place.face;
@@ -143,8 +142,8 @@ std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowe
   return most;
 }
 
-/// Returns a distance of triangle t from the reference that is larger than `limit`, if one is found, else the
-/// largest that is. A walk may end on the wrong sheet, so it is searched for.
+/// The largest distance of triangle t from the reference that is found, if any is larger than `limit`. A walk
+/// may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const auto [a, b, c] = s.mesh.tris[t];
   const Piece whole{{s.points[a], s.points[b], s.points[c]},

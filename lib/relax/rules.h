@@ -101,8 +101,9 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
-constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
-constexpr int most_halvings = 400;  // of a triangle, to find its largest distance
+constexpr double doubtful = 0.4;     // of the bearable, walked to: from there all of a triangle is searched
+constexpr double farther_by = 1.02;  // of a triangle's largest distance so far: halving looks for more
+constexpr int most_halvings = 400;   // of a triangle, to find its largest distance
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
@@ -114,7 +115,7 @@ constexpr double growth = 1.6,
                  few = 300;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10, few_faults = 100;  // rounds, and places: of more the sizes are at fault
-constexpr double far_weight = 10, pair_weight = 5;   // of the objective
+constexpr double far_weight = 10, pair_weight = 5;          // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples
