@@ -263,8 +263,7 @@ bool is_forced(const State& s, int t, double k) {
   return false;
 }
 
-/// Triangles that are needles and that no corner forces; of too many only the worst. None if even these are
-/// too many: then the sizes of all are at fault.
+/// Triangles that are needles and that no corner forces; of too many only the worst.
 void find_needles(const State& s, Fault& found) {
   const EditMesh& m = s.mesh;
   std::vector<std::pair<double, int>> needles;
@@ -276,7 +275,6 @@ void find_needles(const State& s, Fault& found) {
   }
   if ((int)needles.size() > rules::hopeless)
     std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });
-  if ((int)needles.size() > rules::hopeless) return;
   for (const auto& [k, t] : needles) {
     found.triangles.push_back(t);
     found.excess += std::min(rules::worst_needle, rules::bearable_kappa / k);

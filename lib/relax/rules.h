@@ -93,7 +93,7 @@ constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
 constexpr int thorough_repairs = 30,
               triangles_per_thorough = 1000;  // of pairs of edits: for the worst; the others may be forced
-constexpr int hopeless = 100;                 // triangles: if more are left, look whether rounds help
+constexpr int hopeless = 100;                 // triangles: of more needles those over the limit wait
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
@@ -115,7 +115,7 @@ constexpr double growth = 1.6,
                  few = 300;  // of the triangles, and triangles: what the removal of faults may add
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10, few_faults = 100;  // rounds, and places: of more the sizes are at fault
-constexpr double far_weight = 10, pair_weight = 5;          // of the objective
+constexpr double far_weight = 10, pair_weight = 5;   // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples
