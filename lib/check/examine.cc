@@ -146,22 +146,10 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
   return {mean(1), mean(0)};
 }
 
-/// Returns the pairs of triangles of which one has a chord for an edge and the other lies along it, sorted.
-std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
-  constexpr double rounding = 1e-6;  // sine: of vertices that were put on a plane
-  auto opposite = [&](int h) { return c.opposite[h]; };
-  auto hard = [&](int h) { return c.is_border(h) || c.is_model(h); };
-  std::vector<char> on_line(c.n_vertices(), 0);
-  for (int h = 0; h < c.n_half_edges(); ++h)
-    if (c.is_model(h)) on_line[c.from(h)] = on_line[c.to(h)] = 1;
-  std::vector<std::pair<int, int>> pairs;
-  for (int h = 0; h < c.n_half_edges(); ++h) {
-    if (!on_line[c.from(h)] || !on_line[c.to(h)] || hard(h)) continue;
-    const int t = triangle_along(c.mesh.tris, c.mesh.points, opposite, hard, h, c.point(c.to(h)), rounding);
-    if (t >= 0) pairs.push_back({std::min(h / 3, t), std::max(h / 3, t)});
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+std::vector<std::pair<int, int>> chords_of(const Connectivity& c) {
+  return chord_pairs(
+      c.mesh.tris, c.mesh.points, [&](int h) { return c.opposite[h]; },
+      [&](int h) { return c.is_border(h) || c.is_model(h); });
 }
 
 /// Finds intersections and chords, new ones where the reference has neither. Where sheets meet, their borders
@@ -176,7 +164,7 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
     return sheet_intersections(copy, tree);
   };
   f.intersections = measured ? measured->intersections : find(joined[0], result.mesh, *mesh_tree);
-  const auto chords = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
+  const auto chords = f.mesh.sound() ? chords_of(result) : std::vector<std::pair<int, int>>();
   if (f.intersections.empty() && chords.empty() && !sheets_meet) return;
   const auto old = before_tree ? find(joined[1], before, *before_tree) : self_intersections(before);
   const Mesh& reference = sheets_meet ? joined[1] : before;
@@ -193,7 +181,7 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
   sort_unique(f.intersections);
   f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, old));
   if (chords.empty() || f.new_intersections.empty() || !f.reference.sound()) return;
-  const auto theirs = chord_pairs({given, opposite_halfedges(given), model_of(given)});
+  const auto theirs = chords_of({given, opposite_halfedges(given), model_of(given)});
   f.new_intersections = new_intersections(mesh, f.new_intersections, contacts(given, theirs));
 }
 

@@ -3,6 +3,9 @@
 // a tube does that runs straight over the tube's cap. The exact predicates of lib/core/intersect.h see a
 // contact there or none, as the rounding of the vertices has it; volume meshers refuse both.
 #pragma once
+#include <algorithm>
+#include <utility>
+
 #include "lib/core/mesh.h"
 
 namespace meshpipe {
@@ -41,6 +44,27 @@ int triangle_along(const std::vector<Tri>& tris, const std::vector<Vec3>& points
     if (along()) return h / 3;
   }
   return -1;
+}
+
+/// Returns the pairs of triangles of which one has a chord for an edge and the other lies along it, as far as
+/// rounding leaves it on the plane; sorted. Rows of `tris` may be dead: their first vertex is negative.
+template <class Opposite, class Hard>
+std::vector<std::pair<int, int>> chord_pairs(const std::vector<Tri>& tris, const std::vector<Vec3>& points,
+                                             Opposite opposite, Hard hard) {
+  constexpr double rounding = 1e-6;  // sine
+  std::vector<char> on_line(points.size(), 0);
+  std::vector<std::pair<int, int>> pairs;
+  for (bool mark : {true, false})
+    for (int h = 0; h < 3 * (int)tris.size(); ++h) {
+      if (tris[h / 3][0] < 0) continue;
+      char &from = on_line[origin(tris, h)], &to = on_line[target(tris, h)];
+      if (mark && hard(h)) from = to = 1;
+      if (mark || !from || !to || hard(h)) continue;
+      const int t = triangle_along(tris, points, opposite, hard, h, points[target(tris, h)], rounding);
+      if (t >= 0) pairs.push_back({std::min(h / 3, t), std::max(h / 3, t)});
+    }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace meshpipe

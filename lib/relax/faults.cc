@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/bvh.h"
+#include "lib/core/chord.h"
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
@@ -61,10 +62,19 @@ void drop_contacts_of_sheets(const State& s, std::vector<std::pair<int, int>>& p
   std::erase_if(pairs, [&](const auto& p) { return !triangles_intersect(joined, p.first, p.second); });
 }
 
+std::vector<std::pair<int, int>> chords_of(const State& s) {
+  const EditMesh& m = s.mesh;
+  return chord_pairs(
+      m.tris, s.points, [&](int h) { return m.opp[h]; }, [&](int h) { return m.opp[h] < 0 || m.hard[h]; });
+}
+
+/// Pairs that intersect, and chords, where the reference has neither.
 void find_intersections(const State& s, Known& known, Fault& found) {
   renew(known.intersections, s, known.samples.search);
   found.pairs = known.intersections.pairs;
   if (!s.copy.empty()) drop_contacts_of_sheets(s, found.pairs);
+  for (const auto& pair : chords_of(s)) found.pairs.push_back(pair);
+  sort_unique(found.pairs);
   if (found.pairs.empty()) return;
   if (!known.contacts) {
     Mesh joined = known.reference;
@@ -365,6 +375,9 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
+  for (auto [t, u] : chords_of(s))
+    if (!(same[t] && same[u])) pairs.push_back({t, u});
+  sort_unique(pairs);
   if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
   for (auto [t, u] : before.pairs)
     if (same[t] && same[u]) pairs.push_back({t, u});
