@@ -11,6 +11,8 @@ using namespace meshpipe;
 
 namespace {
 
+constexpr std::size_t most_rows = 40;  ///< of a table on standard error, without -v
+
 /// Which of the conditions on parts fail, in words separated by commas: "2 pieces", "genus 1", "closed", "too
 /// long"; or "ok".
 std::string verdict(const Topology& t) {
@@ -43,7 +45,10 @@ void say(Io& io, const std::string& kind, const std::vector<Topology>& pieces, s
     std::snprintf(line, sizeof line, "%9zu %8d %8d %8d %3d %4d %10.4g %9.3g %9.3g %9.3g  %s", p, t.vertices,
                   t.edges, t.faces, t.genus, t.loops, t.longest_loop, t.eta_cyl, t.eta_box, t.eta_geo,
                   verdict(t).c_str());
-    io.say(line);
+    if (p < most_rows)
+      io.say(line);
+    else
+      io.detail(line);
     std::string lengths;
     for (double l : t.loop_length) {
       std::snprintf(line, sizeof line, "%s%.9g", lengths.empty() ? "" : ",", l);
@@ -69,6 +74,8 @@ void say(Io& io, const std::string& kind, const std::vector<Topology>& pieces, s
                     {"admissible", admissible(t)},
                     {"verdict", verdict(t)}});
   }
+  if (pieces.size() > most_rows)
+    io.say("and " + std::to_string(pieces.size() - most_rows) + " more, which -v, --tsv and --json show");
   io.report[kind + 's'] = std::move(rows);
   io.say(plural(pieces.size(), kind) + ", " +
          (bad ? std::to_string(bad) + " to be cut" : "all may be mapped to a disk"));
