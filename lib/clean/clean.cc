@@ -17,6 +17,9 @@
 namespace meshpipe {
 namespace {
 
+/// Wider slits may be meant; sizes take no notice of strips below this width.
+constexpr double slit_of_diagonal = 1e-5;
+
 /// Drops all components except the `keep` largest by area; returns whether there were more.
 bool keep_largest(Repair& r, const std::vector<Vec3>& points, int keep, CleanReport& report) {
   std::vector<int> component;
@@ -108,6 +111,7 @@ std::vector<int> weld_vertices(const Surface& surface, const CleanOptions& optio
   std::vector<int> same = first_equal(surface.points, used);
   for (int v = 0; v < report.input_vertices; ++v) report.welded += same[v] != v;
   report.tolerance = options.weld < 0 ? coordinate_noise(surface, used) : options.weld;
+  report.holes.slit = std::max(slit_of_diagonal * diagonal(surface), report.tolerance);
   if (options.weld < 0)
     report.welded_near =
         merge_noise(surface, ends_of_short_edges(surface, same, report.tolerance), report.tolerance, same);
@@ -161,6 +165,29 @@ void repair(Repair& r, const std::vector<Vec3>& points, const CleanOptions& opti
   }
 }
 
+bool has_border(const Repair& r) {
+  return std::find(r.opposite.begin(), r.opposite.end(), -1) != r.opposite.end();
+}
+
+/// Closes the slits of a repaired surface: the repair begins again where there are any, since they have torn
+/// fans apart, and goes on where it has opened some. `same`, `welded`: as repairs begin.
+void close_all_slits(const Surface& surface, const std::vector<int>& same, const CleanReport& welded,
+                     const CleanOptions& options, Repair& r, CleanReport& report) {
+  constexpr int most_passes = 5;  // two suffice in practice
+  for (int pass = 0; pass < most_passes && has_border(r); ++pass) {
+    CleanReport restarted = welded;
+    Repair divided = pass == 0 ? start(surface, same, restarted) : r;
+    if (pass > 0) unite(divided);
+    const int vertices = close_slits(divided, surface.points, report.holes.slit);
+    if (pass == 0 && vertices > 0) report = restarted;
+    if (pass > 0 && vertices == 0) return;
+    if (vertices == 0) continue;
+    report.holes.slit_vertices += vertices;
+    r = std::move(divided);
+    repair(r, surface.points, options, report);
+  }
+}
+
 /// Flags the vertices of the input on the border of the result.
 std::vector<char> border_vertices(const Repair& r, std::size_t n) {
   std::vector<char> border;
@@ -177,7 +204,8 @@ void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanRe
   const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
                         report.dropped_triangles || !report.nonorientable.empty();
   report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
-                     report.nonmanifold_vertices || report.sheets.flips.edges || report.holes.filled);
+                     report.nonmanifold_vertices || report.sheets.flips.edges || report.holes.filled ||
+                     report.holes.slit_vertices);
   if (report.nothing) return;
   if (as_it_was(r, surface)) {
     report.nothing = options.sheets != CleanOptions::keep || !mark_sheets(surface, r, report);
@@ -236,13 +264,13 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   report.input_vertices = (int)surface.points.size();
   report.input_triangles = (int)surface.tris.size();
   std::vector<int> same = weld_vertices(surface, options, report);
-  const CleanReport welded = report;
+  CleanReport restart = report;  // what repairs begin with
   Repair r = start(surface, same, report);
   repair(r, surface.points, options, report);
   if (automatic && (report.nonmanifold_edges || report.sheets.nested || report.sheets.flips.edges)) {
     CleanOptions keep = options;
     keep.sheets = CleanOptions::keep;
-    CleanReport kept = welded;
+    CleanReport kept = restart;
     const bool open = report.opened_edges + report.sheets.flips.edges > 0;
     if (Repair whole;
         keep_sheets(surface, same, keep, open, !report.sheets.flips.edges && is_one_sheet(r), whole, kept)) {
@@ -253,11 +281,12 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
   }
   if (options.weld < 0)  // seams
     if (const int n = merge_noise(surface, border_vertices(r, same.size()), report.tolerance, same); n > 0) {
-      report = welded;
-      report.welded_near += n;
+      restart.welded_near += n;
+      report = restart;
       r = start(surface, same, report);
       repair(r, surface.points, options, report);
     }
+  if (!options.keep_flat && !options.keep_slits) close_all_slits(surface, same, restart, options, r, report);
   for (std::size_t t = 0; t < r.tris.size(); ++t) {
     if (!r.flipped[t] || r.face[t] < 0) continue;  // triangles that fill a hole had no orientation before
     ++report.flipped;
@@ -300,6 +329,7 @@ void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {
 void clean_resolved(Surface& surface, const Mesh& input, CleanOptions options, CleanReport& report) {
   options.weld = 0;  // vertices at intersections may be as close as rounding permits
   options.fill_holes = 0;
+  options.keep_slits = true;
   CleanReport after;
   clean_once(surface, options, after);
   if (!after.sheets.kept) drop_crumbs(surface, input, after);

@@ -21,6 +21,7 @@ struct CleanOptions {
   int fill_holes = 0;        ///< fill border loops of at most this many edges; 0: none
   bool cap_patches = false;  ///< give each filled hole a patch of its own
   bool keep_flat = false;    ///< leave triangles of zero area, and fill no holes
+  bool keep_slits = false;   ///< leave edges that only one side divides
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices; or paired unless they, or solids within
   /// solids, divide space into regions (lib/solids/solids.h) or pairs leave borders, and else kept.
@@ -43,6 +44,8 @@ struct HoleCounts {
   int filled = 0, triangles = 0;  ///< loops, and the triangles they took
   int left = 0;                   ///< loops on non-manifold edges, or whose every filling doubles an edge
   std::vector<int> patches;       ///< of the loops filled, if each has its own
+  double slit = 0;                ///< the widest slit that is closed where only one side divides an edge
+  int slit_vertices = 0;          ///< put on such edges
 };
 
 /// Where components that are not orientable are cut: both sides are oriented differently there.
@@ -89,7 +92,8 @@ struct CleanReport {
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
-/// Repairs a surface in this order: welds vertices; drops degenerate and duplicate triangles; orients each
+/// Repairs a surface in this order: welds vertices; divides edges that the other side of a slit divides,
+/// narrower than 1e-5 of the diagonal; drops degenerate and duplicate triangles; orients each
 /// component, or cuts it open where that is impossible; splits non-manifold edges and vertices; removes
 /// triangles of zero area; drops small components; fills holes. With `resolve`, resolves self-intersections
 /// after that (`outer`: first tried right after welding), then repairs again. A sound surface stays bit for

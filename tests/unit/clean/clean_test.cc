@@ -565,7 +565,7 @@ TEST(Clean, FillsLongLoopsAndNamesEachCap) {
 TEST(Clean, FillsASlitWithoutATriangleOfNoArea) {
   Surface s = surface(tetra_points, {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}});
   s.points.push_back({0.5, 0, 0});
-  const CleanReport r = clean(s, {.fill_holes = 3});
+  const CleanReport r = clean(s, {.fill_holes = 3, .keep_slits = true});
   EXPECT_EQ(r.holes.filled, 1);
   EXPECT_EQ(r.degenerate, 0);
   EXPECT_TRUE(r.offending.empty());
@@ -985,6 +985,30 @@ TEST(Clean, SeamsThatRoundingOpensAreClosed) {
   const CleanReport r = clean(s);
   EXPECT_GT(r.welded_near, 15);
   EXPECT_EQ(topology_of(s).loops, 0);
+}
+
+// a tetrahedron of which one triangle is divided at an edge that the other is not
+TEST(Clean, SlitsAreClosed) {
+  for (double width : {0.0, 1e-14, 1e-7, 1e-3}) {
+    Surface s = surface(tetra_points, tetra_tris);
+    const auto [a, b, c] = s.tris[0];
+    const Vec3 middle = 0.5 * (s.points[a] + s.points[b]);
+    s.points.push_back(middle + width * (s.points[c] - middle));
+    s.tris[0] = {a, 4, c};
+    s.tris.push_back({4, b, c});
+    s = surface(s.points, s.tris);
+    const CleanReport r = clean(s);
+    EXPECT_EQ(r.holes.slit_vertices, width < 1e-5) << width;
+    EXPECT_EQ(topology_of(s).loops, width > 1e-5) << width;
+    EXPECT_EQ(r.holes.filled, 0);
+    expect_manifold(s);
+    EXPECT_TRUE(clean(s).nothing) << width;
+  }
+}
+
+TEST(Clean, ARibbonIsNoSlit) {
+  Surface s = surface({{0, 0, 0}, {1, 0, 0}, {1, 1e-7, 0}, {0, 1e-7, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_TRUE(clean(s).nothing);
 }
 
 TEST(Clean, DetailIsNotWelded) {

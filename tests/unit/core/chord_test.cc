@@ -34,7 +34,9 @@ TEST(Chord, PairsAreTheChordAndTheTriangleAlongIt) {
     const auto pairs = chord_pairs(
         tris, points, [&](int h) { return opposite[h]; }, hard);
     ASSERT_EQ(pairs.empty(), z < -1e-6);
-    if (!pairs.empty()) EXPECT_EQ(pairs[0].first, 0);
+    if (!pairs.empty()) {
+      EXPECT_EQ(pairs[0].first, 0);
+    }
   }
 }
 

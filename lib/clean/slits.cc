@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Edges that one side of a slit divides and the other does not.
+#include <algorithm>
+#include <array>
+#include <span>
+#include <tuple>
+
+#include "lib/clean/repair.h"
+#include "lib/core/bvh.h"
+#include "lib/core/edges.h"
+#include "lib/core/lists.h"
+
+namespace meshpipe {
+namespace {
+
+/// Height of a triangle in widths of a slit, below which it is not seen whether there is a slit or a ribbon.
+constexpr double least_height = 10;
+
+/// A vertex that the other side of a slit has on half-edge h, at a share of its length.
+struct OnEdge {
+  int h;
+  double at;
+  int vertex;
+  bool operator<(const OnEdge& o) const { return std::tie(h, at, vertex) < std::tie(o.h, o.at, o.vertex); }
+};
+
+/// A triangle, and the vertices to be put on each of its edges, in order.
+struct Divided {
+  Tri corner;
+  std::array<std::vector<int>, 3> on;
+};
+
+class Slits {
+ public:
+  Slits(const Repair& r, const std::vector<Vec3>& points, double width) : r_(r), width_(width) {
+    for (int v : r.vertex) edges_.points.push_back(points[v]);
+    std::vector<std::pair<int, int>> ends;  // vertex, open half-edge there
+    for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
+      const int h = half_edge(uses[0]);
+      if (uses.size() > 1 || !(height(h) >= least_height * width)) return;
+      open_.push_back(h);
+      edges_.tris.push_back({origin(r.tris, h), target(r.tris, h), target(r.tris, h)});
+      for (int v : edges_.tris.back()) ends.push_back({v, h});
+    });
+    sort_unique(ends);
+    for (const auto& [v, h] : ends) {
+      if (vertices_.empty() || vertices_.back() != v)
+        vertices_.push_back(v), first_.push_back((int)at_.size());
+      at_.push_back(h);
+    }
+    first_.push_back((int)at_.size());
+  }
+
+  /// All vertices of one side that lie within edges of the other, sorted.
+  std::vector<OnEdge> find() const {
+    std::vector<OnEdge> found;
+    if (open_.empty()) return found;
+    const Bvh tree(edges_);
+    const Vec3 reach{width_, width_, width_};
+    for (int i = 0; i < (int)vertices_.size(); ++i) {
+      const Vec3 p = edges_.points[vertices_[i]];
+      tree.overlapping({p - reach, p + reach}, [&](int e) {
+        const double at = place_on(e, i);
+        if (at > 0) found.push_back({open_[e], at, vertices_[i]});
+      });
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  Vec3 point(int v) const { return edges_.points[v]; }
+
+  double height(int h) const {
+    const Vec3 a = point(origin(r_.tris, h)), b = point(target(r_.tris, h)),
+               c = point(origin(r_.tris, prev(h)));
+    return norm(cross(b - a, c - a)) / norm(b - a);
+  }
+
+  /// Where vertex i lies within open edge e, as a share of its length, if its own border runs along the edge
+  /// in both directions; else 0.
+  double place_on(int e, int i) const {
+    const Tri& t = r_.tris[open_[e] / 3];
+    const int v = vertices_[i];
+    const Vec3 p = point(v), a = point(edges_.tris[e][0]), b = point(edges_.tris[e][1]);
+    const double at = nearest_fraction(p, a, b), length = norm(b - a);
+    if (t[0] == v || t[1] == v || t[2] == v || norm(lerp(a, b, at) - p) > width_) return 0;
+    if (std::min(at, 1 - at) * length <= width_) return 0;
+    auto runs_to = [&](Vec3 end) {
+      for (int k = first_[i]; k < first_[i + 1]; ++k) {
+        const int h = at_[k];
+        const Vec3 along =
+            point(origin(r_.tris, h)) - p + (point(target(r_.tris, h)) - p);  // one of them is p
+        const Vec3 q = p + std::min(1.0, norm(end - p) / norm(along)) * along;
+        if (dot(along, end - p) > 0 && norm(lerp(a, b, nearest_fraction(q, a, b)) - q) <= width_) return true;
+      }
+      return false;
+    };
+    return runs_to(a) && runs_to(b) ? at : 0;
+  }
+
+  const Repair& r_;
+  const double width_;
+  Mesh edges_;                              ///< all points, and the open edges as triangles without area
+  std::vector<int> open_;                   ///< the half-edge of each
+  std::vector<int> vertices_, first_, at_;  ///< the ends of open edges, and the lists of those at each
+};
+
+/// Divides a triangle until no edge has a vertex on it.
+void divide(Divided triangle, std::vector<Tri>& tris) {
+  std::vector<Divided> todo{std::move(triangle)};
+  while (!todo.empty()) {
+    Divided d = take_last(todo);
+    int i = 0;
+    while (i < 3 && d.on[i].empty()) ++i;
+    if (i == 3) {
+      tris.push_back(d.corner);
+      continue;
+    }
+    const int b = (i + 1) % 3, c = (i + 2) % 3;
+    std::vector<int>& on = d.on[i];
+    const auto middle = on.begin() + (std::ptrdiff_t)(on.size() / 2);
+    todo.push_back(
+        {{*middle, d.corner[b], d.corner[c]}, {std::vector<int>(middle + 1, on.end()), d.on[b], {}}});
+    todo.push_back(
+        {{d.corner[i], *middle, d.corner[c]}, {std::vector<int>(on.begin(), middle), {}, d.on[c]}});
+  }
+}
+
+}  // namespace
+
+int close_slits(Repair& r, const std::vector<Vec3>& points, double width) {
+  const std::vector<OnEdge> found = Slits(r, points, width).find();
+  int count = 0;
+  for (std::size_t i = 0; i < found.size();) {
+    const int t = found[i].h / 3;
+    Divided triangle{r.tris[t], {}};
+    for (; i < found.size() && found[i].h / 3 == t; ++i, ++count)
+      triangle.on[found[i].h % 3].push_back(found[i].vertex);
+    std::vector<Tri> pieces;
+    divide(std::move(triangle), pieces);
+    r.tris[t] = pieces[0];
+    for (std::size_t k = 1; k < pieces.size(); ++k) {
+      r.tris.push_back(pieces[k]);
+      r.face.push_back(r.face[t]);
+      r.flipped.push_back(0);
+    }
+  }
+  return count;
+}
+
+}  // namespace meshpipe
