@@ -75,7 +75,8 @@ void say(Io& io, const std::string& kind, const std::vector<Topology>& pieces, s
                     {"verdict", verdict(t)}});
   }
   if (pieces.size() > most_rows)
-    io.say("and " + std::to_string(pieces.size() - most_rows) + " more, which -v, --tsv and --json show");
+    io.say("rows " + std::to_string(most_rows) + " to " + std::to_string(pieces.size() - 1) +
+           " are in --tsv and --json, and here with -v");
   io.report[kind + 's'] = std::move(rows);
   io.say(plural(pieces.size(), kind) + ", " +
          (bad ? std::to_string(bad) + " to be cut" : "all may be mapped to a disk"));

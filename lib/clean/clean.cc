@@ -169,19 +169,25 @@ bool has_border(const Repair& r) {
   return std::find(r.opposite.begin(), r.opposite.end(), -1) != r.opposite.end();
 }
 
-/// Closes the slits of a repaired surface: the repair begins again where there are any, since they have torn
-/// fans apart, and goes on where it has opened some. `same`, `welded`: as repairs begin.
+/// Closes the slits of a repaired surface: the repair begins again if there are any, since they have torn
+/// fans apart, and goes on where it has opened some. `same`, `welded`: what repairs begin with.
 void close_all_slits(const Surface& surface, const std::vector<int>& same, const CleanReport& welded,
                      const CleanOptions& options, Repair& r, CleanReport& report) {
   constexpr int most_passes = 5;  // two suffice in practice
+  if (!has_border(r)) return;
+  CleanReport restarted = welded;
+  Repair divided = start(surface, same, restarted);
+  if (const int vertices = close_slits(divided, surface.points, report.holes.slit)) {
+    report = std::move(restarted);
+    report.holes.slit_vertices = vertices;
+    r = std::move(divided);
+    repair(r, surface.points, options, report);
+  }
   for (int pass = 0; pass < most_passes && has_border(r); ++pass) {
-    CleanReport restarted = welded;
-    Repair divided = pass == 0 ? start(surface, same, restarted) : r;
-    if (pass > 0) unite(divided);
+    divided = r;
+    unite(divided);
     const int vertices = close_slits(divided, surface.points, report.holes.slit);
-    if (pass == 0 && vertices > 0) report = restarted;
-    if (pass > 0 && vertices == 0) return;
-    if (vertices == 0) continue;
+    if (vertices == 0) return;
     report.holes.slit_vertices += vertices;
     r = std::move(divided);
     repair(r, surface.points, options, report);

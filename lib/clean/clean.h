@@ -92,14 +92,13 @@ struct CleanReport {
   bool nothing = false;  ///< nothing was to be repaired, the surface is bit for bit what it was
 };
 
-/// Repairs a surface in this order: welds vertices; divides edges that the other side of a slit divides,
-/// narrower than 1e-5 of the diagonal; drops degenerate and duplicate triangles; orients each
-/// component, or cuts it open where that is impossible; splits non-manifold edges and vertices; removes
-/// triangles of zero area; drops small components; fills holes. With `resolve`, resolves self-intersections
-/// after that (`outer`: first tried right after welding), then repairs again. A sound surface stays bit for
-/// bit the same; a repaired one loses face column `model`; kept sheets share vertices, with a patch each.
-/// Throws: NotAdmissible, with the surface unchanged, if its coordinates are too large or small, if no
-/// triangle is left (the report has the offending faces), or as resolve does.
+/// Repairs a surface in this order: welds vertices; closes narrow slits (HoleCounts::slit); drops degenerate
+/// and duplicate triangles; orients components, or cuts them open where that is impossible; splits
+/// non-manifold edges and vertices; removes triangles of zero area; drops small components; fills holes. With
+/// `resolve`, resolves self-intersections after that (`outer`: first tried right after welding), then repairs
+/// again. A sound surface stays bit for bit the same; a repaired one loses face column `model`; kept sheets
+/// share vertices, with a patch each. Throws: NotAdmissible, with the surface unchanged, if its coordinates
+/// are too large or small, if no triangle is left (the report has the offending faces), or as resolve does.
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report);
 CleanReport clean(Surface& surface, const CleanOptions& options = {});
 

@@ -9,6 +9,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
+#include "lib/core/segments.h"
 
 namespace meshpipe {
 namespace {
@@ -33,22 +34,18 @@ struct Divided {
 class Slits {
  public:
   Slits(const Repair& r, const std::vector<Vec3>& points, double width) : r_(r), width_(width) {
+    const int n = (int)r.vertex.size();
     for (int v : r.vertex) edges_.points.push_back(points[v]);
-    std::vector<std::pair<int, int>> ends;  // vertex, open half-edge there
-    for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
+    for_each_edge(r.tris, n, [&](std::span<const EdgeUse> uses) {
       const int h = half_edge(uses[0]);
       if (uses.size() > 1 || !(height(h) >= least_height * width)) return;
       open_.push_back(h);
       edges_.tris.push_back({origin(r.tris, h), target(r.tris, h), target(r.tris, h)});
-      for (int v : edges_.tris.back()) ends.push_back({v, h});
     });
-    sort_unique(ends);
-    for (const auto& [v, h] : ends) {
-      if (vertices_.empty() || vertices_.back() != v)
-        vertices_.push_back(v), first_.push_back((int)at_.size());
-      at_.push_back(h);
-    }
-    first_.push_back((int)at_.size());
+    ends_ = lists_of(n, [&](auto use) {
+      for (int h : open_)
+        use(origin(r.tris, h), target(r.tris, h)), use(target(r.tris, h), origin(r.tris, h));
+    });
   }
 
   /// All vertices of one side that lie within edges of the other, sorted.
@@ -57,11 +54,10 @@ class Slits {
     if (open_.empty()) return found;
     const Bvh tree(edges_);
     const Vec3 reach{width_, width_, width_};
-    for (int i = 0; i < (int)vertices_.size(); ++i) {
-      const Vec3 p = edges_.points[vertices_[i]];
-      tree.overlapping({p - reach, p + reach}, [&](int e) {
-        const double at = place_on(e, i);
-        if (at > 0) found.push_back({open_[e], at, vertices_[i]});
+    for (int v = 0; v < (int)edges_.points.size(); ++v) {
+      if (ends_[v].empty()) continue;
+      tree.overlapping({point(v) - reach, point(v) + reach}, [&](int e) {
+        if (const double at = place_on(e, v); at > 0) found.push_back({open_[e], at, v});
       });
     }
     std::sort(found.begin(), found.end());
@@ -77,33 +73,28 @@ class Slits {
     return norm(cross(b - a, c - a)) / norm(b - a);
   }
 
-  /// Where vertex i lies within open edge e, as a share of its length, if its own border runs along the edge
+  /// Where vertex v lies within open edge e, as a share of its length, if its own border runs along the edge
   /// in both directions; else 0.
-  double place_on(int e, int i) const {
+  double place_on(int e, int v) const {
     const Tri& t = r_.tris[open_[e] / 3];
-    const int v = vertices_[i];
+    if (std::find(t.begin(), t.end(), v) != t.end()) return 0;
     const Vec3 p = point(v), a = point(edges_.tris[e][0]), b = point(edges_.tris[e][1]);
-    const double at = nearest_fraction(p, a, b), length = norm(b - a);
-    if (t[0] == v || t[1] == v || t[2] == v || norm(lerp(a, b, at) - p) > width_) return 0;
-    if (std::min(at, 1 - at) * length <= width_) return 0;
+    const double at = nearest_fraction(p, a, b);
+    if (distance_to_segment(p, a, b) > width_ || std::min(at, 1 - at) * norm(b - a) <= width_) return 0;
     auto runs_to = [&](Vec3 end) {
-      for (int k = first_[i]; k < first_[i + 1]; ++k) {
-        const int h = at_[k];
-        const Vec3 along =
-            point(origin(r_.tris, h)) - p + (point(target(r_.tris, h)) - p);  // one of them is p
-        const Vec3 q = p + std::min(1.0, norm(end - p) / norm(along)) * along;
-        if (dot(along, end - p) > 0 && norm(lerp(a, b, nearest_fraction(q, a, b)) - q) <= width_) return true;
-      }
-      return false;
+      return std::any_of(ends_[v].begin(), ends_[v].end(), [&](int w) {
+        const Vec3 along = point(w) - p, q = p + std::min(1.0, norm(end - p) / norm(along)) * along;
+        return dot(along, end - p) > 0 && distance_to_segment(q, a, b) <= width_;
+      });
     };
     return runs_to(a) && runs_to(b) ? at : 0;
   }
 
   const Repair& r_;
   const double width_;
-  Mesh edges_;                              ///< all points, and the open edges as triangles without area
-  std::vector<int> open_;                   ///< the half-edge of each
-  std::vector<int> vertices_, first_, at_;  ///< the ends of open edges, and the lists of those at each
+  Mesh edges_;             ///< all points, and the open edges as triangles without area
+  std::vector<int> open_;  ///< the half-edge of each
+  Lists ends_;             ///< per vertex the other ends of its open edges
 };
 
 /// Divides a triangle until no edge has a vertex on it.

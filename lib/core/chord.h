@@ -54,15 +54,15 @@ std::vector<std::pair<int, int>> chord_pairs(const std::vector<Tri>& tris, const
   constexpr double rounding = 1e-6;  // sine
   std::vector<char> on_line(points.size(), 0);
   std::vector<std::pair<int, int>> pairs;
-  for (bool mark : {true, false})
-    for (int h = 0; h < 3 * (int)tris.size(); ++h) {
-      if (tris[h / 3][0] < 0) continue;
-      char &from = on_line[origin(tris, h)], &to = on_line[target(tris, h)];
-      if (mark && hard(h)) from = to = 1;
-      if (mark || !from || !to || hard(h)) continue;
-      const int t = triangle_along(tris, points, opposite, hard, h, points[target(tris, h)], rounding);
-      if (t >= 0) pairs.push_back({std::min(h / 3, t), std::max(h / 3, t)});
-    }
+  const int n = 3 * (int)tris.size();
+  auto dead = [&](int h) { return tris[h / 3][0] < 0; };
+  for (int h = 0; h < n; ++h)
+    if (!dead(h) && hard(h)) on_line[origin(tris, h)] = on_line[target(tris, h)] = 1;
+  for (int h = 0; h < n; ++h) {
+    if (dead(h) || hard(h) || !on_line[origin(tris, h)] || !on_line[target(tris, h)]) continue;
+    const int t = triangle_along(tris, points, opposite, hard, h, points[target(tris, h)], rounding);
+    if (t >= 0) pairs.push_back({std::min(h / 3, t), std::max(h / 3, t)});
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

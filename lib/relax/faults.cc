@@ -152,8 +152,8 @@ std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowe
   return most;
 }
 
-/// The largest distance of triangle t from the reference that is found, if any is larger than `limit`. A walk
-/// may end on the wrong sheet, so it is searched for.
+/// Returns the largest distance of triangle t from the reference that is found; it is not looked for where
+/// all are at most `limit`. A walk may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const auto [a, b, c] = s.mesh.tris[t];
   const Piece whole{{s.points[a], s.points[b], s.points[c]},

@@ -93,7 +93,8 @@ constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
 constexpr int thorough_repairs = 30,
               triangles_per_thorough = 1000;  // of pairs of edits: for the worst; the others may be forced
-constexpr int hopeless = 100;                 // triangles: of more needles those over the limit wait
+// triangles: of more needles those over the limit wait, and of more bad ones it is seen whether rounds help
+constexpr int hopeless = 100;
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
 
