@@ -1006,6 +1006,23 @@ TEST(Clean, SlitsAreClosed) {
   }
 }
 
+// the same at all three edges of the triangle, so that slits meet at its corners
+TEST(Clean, SlitsThatMeetAreClosed) {
+  Surface s = surface(tetra_points, tetra_tris);
+  const auto [a, b, c] = s.tris[0];
+  for (auto [p, q] : {std::pair{a, b}, {b, c}, {c, a}}) s.points.push_back(0.5 * (s.points[p] + s.points[q]));
+  s.tris[0] = {a, 4, 6};
+  for (const Tri& t : {Tri{4, b, 5}, Tri{5, c, 6}, Tri{4, 5, 6}}) s.tris.push_back(t);
+  s = surface(s.points, s.tris);
+  const CleanReport r = clean(s);
+  EXPECT_EQ(r.holes.slit_vertices, 3);
+  EXPECT_EQ(r.nonmanifold_vertices, 0);
+  EXPECT_EQ(s.points.size(), 7u);
+  EXPECT_EQ(topology_of(s).loops, 0);
+  EXPECT_NEAR(volume(s), 1.0 / 6, 1e-15);
+  expect_manifold(s);
+}
+
 TEST(Clean, ARibbonIsNoSlit) {
   Surface s = surface({{0, 0, 0}, {1, 0, 0}, {1, 1e-7, 0}, {0, 1e-7, 0}}, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_TRUE(clean(s).nothing);
