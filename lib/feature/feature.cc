@@ -27,8 +27,10 @@ constexpr double design_share = 0.5;         ///< of the strong edges, by length
 constexpr double plane_share = 0.8;          ///< of the area, in plane faces of several triangles
 constexpr double many_share = 0.1;           ///< the same of eight or more: parts 0.17, figures up to 0.03
 constexpr double noise = 2.5;  ///< edges between weak and strong over the strong: parts up to 2, scans 3.2
-constexpr double step_share = 0.85;  ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
-constexpr double gap = 0.05;         ///< edges between weak and strong, as a share of the strong ones' length
+constexpr double most_between = 0.7;  ///< the same: polyhedra up to 0.7, scans however rough from 0.9
+constexpr double least_edge = 0.4;    ///< target lengths: creases that are all shorter are left out
+constexpr double step_share = 0.85;   ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
+constexpr double gap = 0.05;  ///< edges between weak and strong, as a share of the strong ones' length
 constexpr double spacing = 1.5, dense = 0.85;  ///< target lengths between creases, on average; struts: 0.75
 /// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
 /// unasked. (At 0.02, two lines along a needle forced needles: a third of the rounds that CAD had to repeat.)
@@ -259,24 +261,54 @@ bool fades_out(const Network& net, const Chain& chain) {
   return whole >= least_fading * net.size && strong > 0.5 * whole && roughness(net, chain) < smooth_turn;
 }
 
-/// Drops the creases of components that do not look designed. A component looks designed if half of its
-/// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong
-/// (noise has every angle) and creases leave space for triangles (the steps of a segmented image do not); or
-/// if it is made of planes, or has large ones, less noise and more space; or if it did, as `known` says.
-void keep_designed(Network& net, double strong, double weak, const std::vector<std::uint8_t>& known) {
-  std::vector<int> component;
-  const int n = components(net.opposite, component), m = (int)net.opposite.size();
-  std::vector<double> sharp(n, 0), smooth(n, 0), between(n, 0), area(n, 0);
-  for (int t = 0; t < m / 3; ++t) area[component[t]] += triangle_area(net.s, t);
-  for (int h = 0; h < m; ++h) {
-    if (net.opposite[h] < h) continue;
-    if (net.cap[h]) continue;
-    const int c = component[h / 3];
-    if (net.angle[h] > weak && net.angle[h] <= strong) between[c] += net.length(h);
-    if (!net.strong[h] && !(net.patch[h] && net.angle[h] > strong)) continue;
-    sharp[c] += net.length(h);
-    if (net.patch[h]) smooth[c] += net.length(h);
+/// What the edges of each component show; lengths and areas.
+struct Components {
+  std::vector<int> of{};  ///< per triangle
+  int n = 0;
+  std::vector<double> sharp{}, between{};  ///< strong edges; those between weak and strong
+  std::vector<double> on_patches{};        ///< of the strong edges
+  std::vector<double> area{};
+  std::vector<double> edge{};  ///< mean length, over the target
+  std::vector<PlaneShares> planes{};
+
+  /// Whether it is a polyhedron, however rough, and the target short enough for its edges: noise has every
+  /// angle, and segmented images have steps.
+  bool angular(int c) const {
+    return between[c] < most_between * sharp[c] && planes[c].steps < step_share && edge[c] > least_edge;
   }
+};
+
+Components look_at(const Network& net, double strong, double weak) {
+  Components look;
+  const int n = look.n = components(net.opposite, look.of), m = (int)net.opposite.size();
+  for (auto* sum : {&look.sharp, &look.between, &look.on_patches, &look.area, &look.edge}) sum->assign(n, 0);
+  std::vector<int> triangles(n, 0);
+  for (int t = 0; t < m / 3; ++t) {
+    ++triangles[look.of[t]];
+    look.area[look.of[t]] += triangle_area(net.s, t);
+    for (int h = 3 * t; h < 3 * t + 3; ++h) look.edge[look.of[t]] += net.length(h) / (3 * net.size);
+  }
+  for (int c = 0; c < n; ++c) look.edge[c] /= triangles[c];
+  for (int h = 0; h < m; ++h) {
+    if (net.opposite[h] < h || net.cap[h]) continue;
+    const int c = look.of[h / 3];
+    if (net.angle[h] > weak && net.angle[h] <= strong) look.between[c] += net.length(h);
+    if (!net.strong[h] && !(net.patch[h] && net.angle[h] > strong)) continue;
+    look.sharp[c] += net.length(h);
+    if (net.patch[h]) look.on_patches[c] += net.length(h);
+  }
+  look.planes = plane_shares({net.s, net.opposite}, {net.angle, net.strong, look.of, n});
+  return look;
+}
+
+/// Drops the creases of components that do not look designed. A component looks designed if half of its
+/// strong edges, by length, are in long smooth chains; or if almost no edges are between weak and strong and
+/// creases leave space for triangles; or if it is angular or made of planes, or has large ones, less noise
+/// and more space; or if it did, as `known` says.
+void keep_designed(Network& net, const Components& look, const std::vector<std::uint8_t>& known) {
+  const int m = (int)net.opposite.size();
+  const auto& [component, n, sharp, between, on_patches, area, edge, planes] = look;
+  std::vector<double> smooth = on_patches;
   for (const Chain& chain : chains_of(net)) {
     // a rim of many edges is long, however long edges are elsewhere
     const bool rim = net.to(chain.back()) == net.from(chain[0]) && (double)chain.size() > long_chain;
@@ -286,14 +318,12 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
     for (int h : chain)
       if (net.strong[h]) smooth[c] += net.length(h);
   }
-  const std::vector<PlaneShares> planes =
-      plane_shares({net.s, net.opposite}, {net.angle, net.strong, component, n});
   std::vector<char> designed(n, 0);
   for (int c = 0; c < n; ++c)
-    designed[c] =
-        planes[c].steps < step_share &&
-        (planes[c].several >= plane_share || (planes[c].many >= many_share && between[c] < noise * sharp[c] &&
-                                              area[c] > dense * net.size * sharp[c]));
+    designed[c] = look.angular(c) || (planes[c].steps < step_share &&
+                                      (planes[c].several >= plane_share ||
+                                       (planes[c].many >= many_share && between[c] < noise * sharp[c] &&
+                                        area[c] > dense * net.size * sharp[c])));
   for (int h = 0; !known.empty() && h < m; ++h)
     if (known[h / 3] >> h % 3 & 1 && !net.patch[h] && !net.given[h]) designed[component[h / 3]] = 1;
   for (int h = 0; h < m; ++h) {
@@ -305,9 +335,9 @@ void keep_designed(Network& net, double strong, double weak, const std::vector<s
   }
 }
 
-/// Drops connected pieces of the network that are short in all and touch no border, as noise makes them. The
-/// rim of a hole is none: a smooth closed chain, which may be shorter.
-void drop_small_pieces(Network& net) {
+/// Drops connected pieces of the network that are short in all and touch no border, as noise makes them, of
+/// components that are not angular. The rim of a hole is none: a smooth closed chain, which may be shorter.
+void drop_small_pieces(Network& net, const Components& look) {
   const int n = (int)net.s.points.size();
   std::vector<char> rim(n, 0);
   for (const Chain& chain : chains_of(net)) {
@@ -322,7 +352,7 @@ void drop_small_pieces(Network& net) {
     piece.assign(1, seed);
     seen[seed] = 1;
     double twice = 0;
-    bool held = false;
+    bool held = look.angular(look.of[net.spoke[seed] / 3]);
     for (std::size_t i = 0; i < piece.size(); ++i) {
       held = held || net.anchor[piece[i]] || rim[piece[i]];
       net.around(piece[i], [&](int h) {
@@ -450,13 +480,17 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options, con
   if (options.mode != FeatureOptions::none) {
     const double strong = options.strong * degree, weak = options.weak * degree;
     choose(net, strong, weak);
+    auto is_long = [&](const Chain& chain) { return length(net, chain) >= net.shortest; };
     if (options.mode == FeatureOptions::automatic) {
-      prune(net, [&](const Chain& chain) { return fades_out(net, chain); });
-      keep_designed(net, strong, weak,
+      const Components look = look_at(net, strong, weak);
+      prune(net, [&](const Chain& chain) {
+        return look.angular(look.of[chain[0] / 3]) ? is_long(chain) : fades_out(net, chain);
+      });
+      keep_designed(net, look,
                     options.again ? surface.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>());
-      drop_small_pieces(net);
+      drop_small_pieces(net, look);
     } else {
-      prune(net, [&](const Chain& chain) { return length(net, chain) >= net.shortest; });
+      prune(net, is_long);
     }
   }
   std::vector<std::uint8_t> model(surface.tris.size(), 0);

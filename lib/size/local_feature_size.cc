@@ -18,7 +18,6 @@ namespace meshpipe {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double ring_edges = 4;  ///< around a tube or along a closed line: fewer cannot keep its topology
 constexpr double least_triangles = 12;  ///< of a closed component: those of a sphere with four edges around
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
 constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not asked for by peaks
@@ -154,6 +153,10 @@ std::vector<double> closed_line_lengths(const Connectivity& surface) {
   return around;
 }
 
+double least_at_peaks(const Mesh& mesh, const std::vector<double>& size) {
+  return least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
+}
+
 double least_tube_curvature(const std::vector<double>& size) {
   return full_bend / (ring_edges * *std::max_element(size.begin(), size.end()));
 }
@@ -164,8 +167,8 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
   const std::size_t n = mesh.points.size();
   std::vector<double> feature = closed_line_lengths(surface), bend(n, 0);
   for (double& x : feature) x /= ring_edges;
-  // a quarter of the way around at a size's distance from a peak; `least`, or each run would lower it again
-  const double least = least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
+  const double least = least_at_peaks(mesh, size);
+  // a quarter of the way around at a size's distance from a peak
   for (const Peak& p : sharp_peaks(surface, size))
     feature[p.vertex] = std::max(least, size[p.vertex] * std::max(p.angle, least_peak) / ring_edges);
   const std::vector<double> whole = closed_areas(surface);

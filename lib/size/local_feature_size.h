@@ -7,6 +7,9 @@
 
 namespace meshpipe {
 
+/// Edges around a tube or along a closed line: fewer cannot keep its topology.
+constexpr double ring_edges = 4;
+
 /// Returns per vertex the length of the loop of border or model edges through it that no other such edge
 /// meets; infinity where there is none.
 std::vector<double> closed_line_lengths(const Connectivity& surface);
@@ -18,6 +21,9 @@ std::vector<double> closed_line_lengths(const Connectivity& surface);
 /// A component without borders and model edges gets at most the size of twelve triangles.
 std::vector<double> local_feature_size(const Connectivity& surface, const std::vector<double>& curvature,
                                        const std::vector<double>& size);
+
+/// Returns the least size near peaks; without it, each run on what another has set would lower it again.
+double least_at_peaks(const Mesh& mesh, const std::vector<double>& size);
 
 /// Returns the curvature (1 / length) that a surface with a tube too narrow for `size` exceeds somewhere.
 double least_tube_curvature(const std::vector<double>& size);

@@ -8,6 +8,8 @@
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
+#include "lib/size/local_feature_size.h"
+#include "lib/size/section.h"
 
 namespace meshpipe {
 namespace {
@@ -16,9 +18,11 @@ constexpr double per_width = 7;       ///< size over the width of a strip; from 
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
 constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do
 constexpr double longest = 1.4;       ///< edge, in sizes: a longer one is split
-constexpr double least_height = 0.1;  ///< size over the heights of the triangles, where sheets almost touch
+constexpr double least_width_share =
+    0.1;  ///< size over the widths of the triangles, where sheets almost touch
 constexpr double least_share =
     1.0 / 16;                          ///< of the size asked for: less is not asked for by sheets and arches
+constexpr double fold_at_lines = 0.5;  ///< of the size permitted: sheets that meet at lines within it
 constexpr double lowered = 0.62;       ///< of the size asked for: sheets that permit more have not failed
 constexpr double needle = 0.1;         ///< height of a triangle over the width of its strip
 constexpr int most_needles = 8;        ///< side by side along a line
@@ -104,9 +108,9 @@ class Search {
 
 /// How an edge bends.
 struct Bend {
-  Vec3 up{};           ///< to the side where the surface is hollow
-  double heights = 0;  ///< of its two triangles
-  double gap = 0;      ///< sheets farther away are not near; 0: it is flat, or its triangles are
+  Vec3 up{};          ///< to the side where the surface is hollow
+  double widths = 0;  ///< of its two triangles, at a right angle from the edge
+  double gap = 0;     ///< sheets farther away are not near; 0: it is flat, or its triangles are
 };
 
 /// What is measured at one point after the other.
@@ -116,18 +120,24 @@ class Measure {
   /// Returns the size permitted at t along half-edge h, and the gap there; infinite where nothing bounds it.
   SizeBound at(int h, double t, Search& search) const {
     const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
-    return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
+    const SizeBound found = is_line(h) ? strip(h, p, search) : sheet(h, p, search);
+    const double most = asked(h, p);
+    if (!(surface_.length(h) > most) || (!is_line(h) && !(bend(h, p).gap > 0))) return found;
+    const double around = sections_.length(h, p, most, lowered * ring_edges * most, search.work);
+    return around < ring_edges * found.size ? SizeBound{h, p, around / ring_edges, around / std::numbers::pi}
+                                            : found;
   }
-  /// How half-edge h bends, which is not on a line.
-  Bend bend(int h) const;
-  /// The size asked for on an edge.
-  double asked(int h) const { return 0.5 * (asked_[surface_.from(h)] + asked_[surface_.to(h)]); }
-  /// Whether a triangle that passes the test is connected with the edge of h within a distance from p.
-  template <class Test>
-  bool joins(int h, Vec3 p, double within, Test test, Search& search) const {
+  /// How half-edge h bends at p, which is not on a line.
+  Bend bend(int h, Vec3 p) const;
+  /// The size asked for at a point of an edge.
+  double asked(int h, Vec3 p) const { return value_along(surface_.mesh, asked_, h, p); }
+  /// Whether a triangle that passes the test is connected with the edge of h within a distance from p, across
+  /// edges that pass the other one.
+  template <class Crosses, class Test>
+  bool joins(int h, Vec3 p, double within, Crosses crosses, Test test, Search& search) const {
     bool found = false;
     search.flood(
-        {h / 3, surface_.opposite[h] / 3}, p, [](int) { return true; }, [&] { return within; },
+        {h / 3, surface_.opposite[h] / 3}, p, crosses, [&] { return within; },
         [&](int t) { return !(found = test(t)); });
     return found;
   }
@@ -158,13 +168,13 @@ class Measure {
   Vec3 inward(int h, double width) const;
   bool adjacent_along(int h, Vec3 p, int other, Vec3 q, double width) const;
   SizeBound arch(int h, Vec3 p, Search& search) const;
-  bool is_ridge(int t, Vec3 p, double distance) const;
   double until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const;
 
   const Connectivity& surface_;
   const std::vector<double>& asked_;
   double least_width_, largest_;
   std::vector<Vec3> normal_;  ///< of triangles
+  Sections sections_;
   Bvh tree_;
 };
 
@@ -174,6 +184,7 @@ Measure::Measure(const Connectivity& surface, const std::vector<double>& asked)
       least_width_(least_width * diagonal(surface.mesh)),
       largest_(*std::max_element(asked.begin(), asked.end())),
       normal_(face_normals(surface.mesh)),
+      sections_(surface, asked),
       tree_(surface.mesh) {}
 
 /// Whether q on the half-edge `other` is reached from p on h along the lines around their region, on a way
@@ -240,8 +251,8 @@ void lines_near(const Measure& m, int h, Vec3 p, const double& width, int most, 
 }
 
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
-  double width = asked(h) / per_width;
-  const double least = surface_.length(h) < asked(h) ? least_width_ : 0;
+  double width = asked(h, p) / per_width;
+  const double least = surface_.length(h) < per_width * width ? least_width_ : 0;
   SizeBound found{h, p, infinity, 0};
   lines_near(*this, h, p, width, surface_.n_tris(), search, [&](int, int g, Vec3 q) {
     const double d = norm(q - p);
@@ -259,7 +270,7 @@ SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
 /// lines are apart.
 SizeBound Measure::arch(int h, Vec3 p, Search& search) const {
   SizeBound found{h, p, infinity, 0};
-  double width = longest * asked(h);
+  double width = longest * asked(h, p);
   const double least = least_share * width;
   // from one line at a right angle, over its region or at least not away from it
   auto faces = [&](int g, Vec3 d) {
@@ -281,7 +292,7 @@ SizeBound Measure::arch(int h, Vec3 p, Search& search) const {
 
 /// Returns the distance from p at which the surface, connected without model edges, rises by `most`.
 double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) const {
-  double reach = 0.5 * longest * asked(h);
+  double reach = 0.5 * longest * asked(h, p);
   search.flood(
       {h / 3, surface_.opposite[h] / 3}, p, [&](int g) { return !is_line(g); }, [&] { return reach; },
       [&](int t) {
@@ -299,27 +310,36 @@ double Measure::until_sag(int h, Vec3 p, Vec3 up, double most, Search& search) c
   return reach;
 }
 
-Bend Measure::bend(int h) const {
+Bend Measure::bend(int h, Vec3 p) const {
   const int s = h / 3, t = surface_.opposite[h] / 3;
   const Vec3 along = surface_.point(surface_.to(h)) - surface_.point(surface_.from(h));
   const double length = norm(along);
   const double angle =
       std::atan2(dot(cross(normal_[s], normal_[t]), along) / length, dot(normal_[s], normal_[t]));
   auto height = [&](int face) { return norm(surface_.area_vector(face)) / length; };
-  const double at_s = height(s), at_t = height(t);
-  if (!(std::abs(angle) > least_bend) || !(std::min(at_s, at_t) > flat_triangle * length)) return {};
+  if (!(std::abs(angle) > least_bend) || !(std::min(height(s), height(t)) > flat_triangle * length))
+    return {};
+  const double most = asked(h, p);
+  // the largest width within the size of p: the height of a long needle is far from here
+  auto width = [&](int side) {
+    const Vec3 a = surface_.point(surface_.from(side)), d = surface_.point(surface_.to(side)) - a;
+    const double foot = dot(surface_.point(surface_.to(next(side))) - a, d) / length;
+    const double here = dot(p - a, d) / length;
+    const double x = std::clamp(foot, std::max(here - most, 0.0), std::min(here + most, length));
+    return height(side / 3) * (x < foot ? x / foot : x > foot ? (length - x) / (length - foot) : 1);
+  };
+  const double at_s = width(h), at_t = width(surface_.opposite[h]);
   // a chord of the size asked sags to the side where the surface is hollow, at most by this
-  const double most = asked(h);
   const double sag = std::min(0.125 * most * most * std::abs(angle) / ((at_s + at_t) / 3), 0.5 * most);
   return {normalized((angle > 0 ? -1.0 : 1.0) * (normal_[s] + normal_[t])), at_s + at_t,
           longest * longest * lowered * lowered * sag / most_sag};
 }
 
 /// Whether t, whose edges or corners are nearest to p at a distance, has no neighbor that is nearer.
-bool Measure::is_ridge(int t, Vec3 p, double distance) const {
+bool is_ridge(const Connectivity& surface, int t, Vec3 p, double distance) {
   for (int h = 3 * t; h < 3 * t + 3; ++h)
-    if (!surface_.is_border(h) &&
-        norm(closest_point(surface_.mesh, surface_.opposite[h] / 3, p) - p) < (1 - rounding) * distance)
+    if (!surface.is_border(h) &&
+        norm(closest_point(surface.mesh, surface.opposite[h] / 3, p) - p) < (1 - rounding) * distance)
       return false;
   return true;
 }
@@ -327,7 +347,7 @@ bool Measure::is_ridge(int t, Vec3 p, double distance) const {
 SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   const SizeBound none{h, p, infinity, 0};
   const int s = h / 3, t = surface_.opposite[h] / 3;
-  auto [up, heights, gap] = bend(h);
+  auto [up, widths, gap] = bend(h, p);
   if (!(gap > 0)) return none;
   int other = -1;
   tree_.in_cone(p, up, opposed, gap, [&, &up = up, &gap = gap](int u) {
@@ -339,16 +359,20 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
     const Vec3 d = closest_point(surface_.mesh, u, p) - p;
     const double l = norm(d);
     if (l > gap || dot(d, up) < opposed * l || l == 0) return gap;
-    if (std::abs(dot(normal_[u], up)) < opposed && !is_ridge(u, p, l)) return gap;
+    if (std::abs(dot(normal_[u], up)) < opposed && !is_ridge(surface_, u, p, l)) return gap;
     if (l < gap || u < other) other = u;
     return gap = l;
   });
   if (other < 0) return none;
-  const double most = asked(h), size = std::max({2 / longest * until_sag(h, p, up, most_sag * gap, search),
-                                                 least_height * heights, least_share * most});
-  // what is connected within the size is a fold that a mesh of this size leaves out
-  if (size > lowered * most || joins(
-                                   h, p, most, [&](int u) { return u == other; }, search))
+  const double most = asked(h, p), size = std::max({2 / longest * until_sag(h, p, up, most_sag * gap, search),
+                                                    least_width_share * widths, least_share * most});
+  if (size > lowered * most) return none;
+  auto is_other = [&](int u) { return u == other; };
+  // what is connected within the size is a fold that a mesh of this size leaves out, unless lines hold it
+  if (joins(
+          h, p, most, [&](int g) { return !is_line(g); }, is_other, search) ||
+      joins(
+          h, p, fold_at_lines * size, [](int) { return true; }, is_other, search))
     return none;
   return {h, p, size, gap};
 }
@@ -369,12 +393,21 @@ void measure_along(const Measure& measure, int h, double from, double to, Search
     measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, search, found, 2);
 }
 
-/// Measures a half-edge in pieces no longer than the size.
+/// Measures a half-edge in pieces about as long as the sizes there.
 void measure_edge(const Measure& measure, int h, Search& search, std::vector<SizeBound>& found) {
-  const double ratio = std::ceil(measure.surface().length(h) / measure.asked(h));
-  const int pieces = (int)std::clamp(ratio, 1.0, (double)most_pieces);
-  for (int k = 0; k < pieces; ++k)
-    measure_along(measure, h, (double)k / pieces, (k + 1.0) / pieces, search, found);
+  const Connectivity& s = measure.surface();
+  const Vec3 a = s.point(s.from(h)), b = s.point(s.to(h));
+  const double at_a = measure.asked(h, a), at_b = measure.asked(h, b), length = s.length(h);
+  // the number of sizes along the edge: the integral of 1 / size, which is linear
+  const double growth = at_b / at_a;
+  const bool even = std::abs(growth - 1) < 1e-6;
+  const double sizes = length / at_a * (even ? 1 : std::log(growth) / (growth - 1));
+  const int pieces = (int)std::clamp(std::ceil(sizes), 1.0, (double)most_pieces);
+  auto at = [&](int k) {
+    const double x = (double)k / pieces;
+    return even || k == pieces ? x : (std::pow(growth, x) - 1) / (growth - 1);
+  };
+  for (int k = 0; k < pieces; ++k) measure_along(measure, h, at(k), at(k + 1), search, found);
 }
 
 /// Measures edges next to each other, on sheets within the gap of their middles; at once if what is near is
@@ -433,11 +466,18 @@ void drop_intersecting(const Measure& measure, const Connectivity& surface, std:
   Search search(surface);
   std::erase_if(bounds, [&](const SizeBound& x) {
     return !measure.is_line(x.half_edge) &&
-           measure.joins(x.half_edge, x.place, 0.5 * measure.asked(x.half_edge), intersects, search);
+           measure.joins(
+               x.half_edge, x.place, 0.5 * measure.asked(x.half_edge, x.place), [](int) { return true; },
+               intersects, search);
   });
 }
 
 }  // namespace
+
+double value_along(const Mesh& mesh, const std::vector<double>& value, int h, Vec3 p) {
+  const int a = origin(mesh.tris, h), b = target(mesh.tris, h);
+  return std::lerp(value[a], value[b], nearest_fraction(p, mesh.points[a], mesh.points[b]));
+}
 
 double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
   // one side of a strip of length l and width w has the area of l w / 2
@@ -472,9 +512,9 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           if (!line) {
-            const double size = measure.asked(h),
-                         gap = surface.length(h) > size ? infinity : measure.bend(h).gap;
             const Vec3 middle = lerp(surface.point(surface.from(h)), surface.point(surface.to(h)), 0.5);
+            const double size = measure.asked(h, middle),
+                         gap = surface.length(h) > size ? infinity : measure.bend(h, middle).gap;
             if (gap > 0) edges.push_back({h, middle, size, gap});
             continue;
           }

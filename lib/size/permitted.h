@@ -16,6 +16,9 @@ struct SizeBound {
   double length = 0;  ///< of the side of a strip that this bounds; 0 for sheets
 };
 
+/// Returns what is linear between the values of the vertices, at the point of half-edge h nearest to p.
+double value_along(const Mesh& mesh, const std::vector<double>& value, int h, Vec3 p);
+
 /// Returns the number of triangles that narrow strips need beyond those for their area, if the size is at
 /// most `most` and that of the bounds: a strip takes one triangle per edge on its sides, whatever its width.
 double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);

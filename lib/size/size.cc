@@ -377,8 +377,7 @@ std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& op
   const double triangles = o.triangles > 0 ? o.triangles : count_for_size(s, size);
   auto bounds = permitted_sizes({s, opposite, model_of(s)}, most, o.min, most_for(triangles));
   for (const SizeBound& x : bounds) {
-    const int a = origin(s.tris, x.half_edge), b = target(s.tris, x.half_edge);
-    const double h = 0.5 * (size[a] + size[b]);
+    const double h = value_along(s, size, x.half_edge, x.place);
     if (!(x.size < h)) continue;
     if (const int n = ++report.narrow.places; n == 1 || x.size < report.narrow.to)
       report.narrow = {n, x.place, h, x.size, x.gap};
@@ -445,8 +444,7 @@ bool bound_again(Field& f, double most_triangles) {
   const double least = *std::min_element(f.size.begin(), f.size.end());
   auto bounds = permitted_sizes({f.s, f.opposite, model_of(f.s)}, f.size, least, most_triangles);
   std::erase_if(bounds, [&](const SizeBound& x) {
-    const int a = origin(f.s.tris, x.half_edge), b = target(f.s.tris, x.half_edge);
-    return !(x.size < much_less * 0.5 * (f.size[a] + f.size[b]));
+    return !(x.size < much_less * value_along(f.s, f.size, x.half_edge, x.place));
   });
   if (bounds.empty()) return false;
   f.strips += triangles_of_strips(f.bounds, infinity);

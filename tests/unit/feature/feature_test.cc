@@ -129,12 +129,27 @@ TEST(Feature, ShortCreasesAreDesignIfTheyAreFarApartAndNothingIsBetweenSmoothAnd
   Surface s = terrain(40, 40, pits);
   EXPECT_GT(mark_features(s, automatic).crease_edges, 500);
   FeatureOptions coarse;
-  coarse.size = 3;
+  coarse.size = 4;
   EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
   //  the same with dunes between: every angle is there
   Surface dunes =
       terrain(40, 40, [&](int i, int j) { return pits(i, j) + 1.2 * std::sin(0.9 * i) * std::sin(0.7 * j); });
   EXPECT_EQ(mark_features(dunes, automatic).crease_edges, 0);
+}
+
+//  hats of all sizes: every chain is short and bends, but hardly an edge is between smooth and sharp
+TEST(Feature, APolyhedronKeepsItsCreasesHoweverRough) {
+  std::mt19937 random(7);
+  std::vector<double> z(41 * 41);
+  for (double& x : z) x = std::uniform_real_distribution(2.0, 4.0)(random);
+  auto hats = [&](int i, int j) { return i % 2 && j % 2 ? z[41 * j + i] : 0.0; };
+  Surface s = terrain(40, 40, hats);
+  EXPECT_GT(mark_features(s, automatic).crease_edges, 2000);
+  FeatureOptions coarse;
+  coarse.size = 8;
+  EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
+  Surface noise = terrain(40, 40, [&](int i, int j) { return 0.5 * z[41 * j + i]; });
+  EXPECT_EQ(mark_features(noise, automatic).crease_edges, 0);
 }
 
 //  a thin gear: all chains are short, flanks bend by every angle, and teeth are as near as triangles are
@@ -179,7 +194,7 @@ TEST(Feature, AChainGoesOnAlongWeakEdgesAndEndsFreelyOnlyIfItIsLong) {
   const int strong = mark_features(s, angles(40, 40)).crease_edges,
             weak = mark_features(s, angles(40, 20)).crease_edges;
   FeatureOptions fine, coarse;
-  fine.size = 1, coarse.size = 3;
+  fine.size = 1, coarse.size = 4;
   EXPECT_EQ(mark_features(s, fine).crease_edges, weak);
   EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
   EXPECT_GT(strong, 8);

@@ -133,6 +133,85 @@ TEST(Permitted, ChordsOfAGrooveStayOffARidgeInIt) {
   EXPECT_GT(bottom, 0);
 }
 
+/// An open cone around the z axis without vertices between its ends, its radius growing by `slope`.
+void add_cone(Mesh& mesh, double radius, double slope, double length, int sides) {
+  const int first = (int)mesh.points.size();
+  for (double z : {0.0, length})
+    for (int j = 0; j < sides; ++j) {
+      const double a = 2 * std::numbers::pi * j / sides, r = radius + slope * z;
+      mesh.points.push_back({r * std::cos(a), r * std::sin(a), z});
+    }
+  for (int j = 0; j < sides; ++j) {
+    const int a = first + j, b = first + (j + 1) % sides;
+    mesh.tris.push_back({a, b, b + sides});
+    mesh.tris.push_back({a, b + sides, a + sides});
+  }
+}
+
+TEST(Permitted, FourEdgesFitAroundATubeThatHasNoVerticesAlongIt) {
+  Mesh mesh;
+  add_cone(mesh, 0.1, 0.02, 8, 16);
+  int middle = 0;
+  for (const SizeBound& b : bounds_of(mesh, 1)) {
+    if (b.place.z < 1 || b.place.z > 7) continue;
+    EXPECT_NEAR(b.size, 0.5 * std::numbers::pi * (0.1 + 0.02 * b.place.z), 0.01) << b.place.z;
+    ++middle;
+  }
+  EXPECT_GT(middle, 100);
+  // lines along it keep its section
+  std::vector<std::uint8_t> model(mesh.tris.size(), 0);
+  for (int j : {0, 3, 6, 9, 12, 14}) model[2 * j + 1] = 4, model[(2 * j + 30) % 32] = 2;
+  const std::vector<int> opposite = opposite_halfedges(mesh);
+  for (const SizeBound& b : permitted_sizes({mesh, opposite, model}, std::vector<double>(32, 1), 0, 1e300))
+    EXPECT_GT(b.length + (b.place.z < 1) + (b.place.z > 7), 0) << b.place.z;
+}
+
+TEST(Permitted, WhatIsAskedForAndTheWidthOfNeedlesAreThoseOfThePlace) {
+  // two cones, the gap between them a fiftieth of the radius: the same picture at every scale
+  Mesh mesh;
+  add_cone(mesh, 0.1, 0.1, 100, 96);
+  const int outer = 96;
+  add_cone(mesh, 0.098, 0.098, 100, 96);
+  const std::vector<int> opposite = opposite_halfedges(mesh);
+  std::vector<double> asked;
+  for (const Vec3 p : mesh.points) asked.push_back(0.05 + 0.05 * p.z);
+  int low = 0;
+  for (const SizeBound& b : permitted_sizes({mesh, opposite}, asked, 0, 1e300)) {
+    if (b.half_edge / 3 >= 2 * outer) continue;
+    const double radius = 0.1 + 0.1 * b.place.z;
+    EXPECT_NEAR(b.gap / radius, 0.02, 1e-3) << b.place.z;
+    EXPECT_NEAR(b.size / radius, std::sqrt(8 * 0.3 * 0.02), 0.05) << b.place.z;
+    low += b.place.z < 1;
+  }
+  EXPECT_GT(low, 96);
+}
+
+//  two half pipes, one in the other, joined along their rims
+TEST(Permitted, AFoldThatLinesHoldIsNotLeftOut) {
+  Mesh mesh = groove(1, 8), inner = groove(0.95, 8);
+  const int n = (int)mesh.points.size(), half = n / 2, m = (int)mesh.tris.size();
+  mesh.points.insert(mesh.points.end(), inner.points.begin(), inner.points.end());
+  for (const auto& [a, b, c] : inner.tris) mesh.tris.push_back({n + b, n + a, n + c});
+  for (int end : {0, half - 1}) {
+    const int a = end, b = end + half;
+    for (Tri t : {Tri{a, b, n + b}, Tri{a, n + b, n + a}})
+      mesh.tris.push_back(end ? Tri{t[1], t[0], t[2]} : t);
+  }
+  const std::vector<int> opposite = opposite_halfedges(mesh);
+  std::vector<std::uint8_t> rims(mesh.tris.size(), 0);
+  for (int t = 2 * m; t < (int)mesh.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      if (const int o = opposite[3 * t + i]; o >= 0 && o < 6 * m)
+        rims[t] |= 1 << i, rims[o / 3] |= 1 << o % 3;
+  auto on_sheets = [&](const std::vector<std::uint8_t>& model) {
+    const auto all = permitted_sizes({mesh, opposite, model}, std::vector<double>(2 * n, 3), 0, 1e300);
+    return std::count_if(all.begin(), all.end(),
+                         [](const SizeBound& x) { return x.gap < 0.06 && x.size < 1; });
+  };
+  EXPECT_EQ(on_sheets(std::vector<std::uint8_t>(mesh.tris.size(), 0)), 0);
+  EXPECT_GT(on_sheets(rims), 10);
+}
+
 TEST(Permitted, FlatSheetsAreAsNearAsTheyLike) {
   Mesh mesh = rectangle(1, 1);
   for (const Vec3 p : rectangle(1, 1).points) mesh.points.push_back(p + Vec3{0, 0, 0.001});
