@@ -31,7 +31,7 @@ bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
   if (g < 0) return true;
   const int c = m.apex(h), d = m.apex(g);
   return m.valence(gone) + m.valence(kept) - 4 <= rules::largest_valence &&
-         !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]);
+         (m.valence(gone) == 3 || !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]));
 }
 
 /// Does the line through `gone` hardly change when it goes straight to p, where `kept` will be?

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/defeature/caps.h"
+
+#include <gtest/gtest.h>
+
+#include "lib/core/connectivity.h"
+#include "lib/core/topology.h"
+
+using namespace meshpipe;
+
+namespace {
+
+//       3
+//     / | \      the cap is 0 1 2: vertex 2 is hardly above the edge 0 1
+//   0 --2-- 1
+//     \   /
+//       4
+Surface with_cap(double height) {
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {0.4, height, 0}, {0.5, 1, 0}, {0.5, -1, 0}};
+  s.tris = {{0, 1, 2}, {0, 2, 3}, {2, 1, 3}, {1, 0, 4}};
+  s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>{5, 5, 5, 5});
+  s.face.set("load", std::vector<double>{1, 2, 3, 4});
+  return s;
+}
+
+const std::vector<int> no_lines(12, -1);
+
+}  // namespace
+
+TEST(Caps, AreFlippedWithTheTriangleAcrossTheirLongestEdge) {
+  Surface s = with_cap(1e-7);
+  EXPECT_EQ(flip_caps(s, no_lines), 1);
+  for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0.3) << t;
+  EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
+  EXPECT_EQ(s.face.get<double>("load"), (std::vector<double>{4, 2, 3, 4}));
+  EXPECT_EQ(flip_caps(s, no_lines), 0);
+}
+
+TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
+  Surface s = with_cap(1e-7);
+  s.points.push_back({0.7, 2e-7, 0});  // a second one between the first and the triangles above it
+  s.tris[2] = {5, 1, 3};
+  s.tris.insert(s.tris.end(), {{2, 1, 5}, {2, 5, 3}});
+  s.face = {"face", s.tris.size(), {}};
+  EXPECT_EQ(flip_caps(s, std::vector<int>(18, -1)), 2);
+  for (int t = 0; t < 6; ++t) EXPECT_GT(area_vector(s, t).z, 0.2) << t;
+}
+
+TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
+  Surface high = with_cap(1e-4), line = with_cap(1e-7), patches = with_cap(1e-7);
+  EXPECT_EQ(flip_caps(high, no_lines), 0);
+  std::vector<int> on_edge = no_lines;
+  on_edge[0] = 3;
+  EXPECT_EQ(flip_caps(line, on_edge), 0);
+  patches.face.get<int>("patch")[3] = 6;
+  EXPECT_EQ(flip_caps(patches, no_lines), 0);
+}
+
+TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
+  //  a thin double triangle: its apexes are joined on the way around
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-7, 0}, {0.5, -1, 0}};
+  s.tris = {{0, 1, 2}, {1, 0, 3}, {0, 2, 3}, {2, 1, 3}};
+  s.face.rows = s.tris.size();
+  EXPECT_EQ(flip_caps(s, no_lines), 0);
+}
