@@ -8,7 +8,6 @@
 #include "lib/cap/cap.h"
 #include "lib/core/lists.h"
 #include "lib/core/triangle_count.h"
-#include "lib/defeature/caps.h"
 #include "lib/defeature/defeature.h"
 #include "lib/feature/feature.h"
 #include "tools/common.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/defeature/caps.h"
-
 #include <algorithm>
 #include <variant>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/topology.h"
+#include "lib/defeature/defeature.h"
 
 namespace meshpipe {
 namespace {
@@ -15,7 +14,7 @@ constexpr double slender = 0.05;    ///< height over length: others are small, n
 constexpr double least_end = 1e-3;  ///< of the edge: a corner nearer to its end makes no better triangles
 constexpr int most_passes = 20;     ///< one for each row of caps that lean on each other
 
-/// The half-edges around an edge: those of its triangle, then those of the neighbor.
+/// The half-edges around an edge h, its opposite o, and their vertices.
 //         c
 //      ca/ \bc
 //     a --h-- b
@@ -23,11 +22,6 @@ constexpr int most_passes = 20;     ///< one for each row of caps that lean on e
 //         d
 struct Diamond {
   int h, bc, ca, o, ad, db, a, b, c, d;
-
-  Diamond(const Surface& s, const std::vector<int>& opposite, int edge)
-      : h(edge), bc(next(h)), ca(prev(h)), o(opposite[h]), ad(next(o)), db(prev(o)) {
-    a = origin(s.tris, h), b = target(s.tris, h), c = origin(s.tris, ca), d = origin(s.tris, db);
-  }
 };
 
 class Caps {
@@ -56,6 +50,12 @@ class Caps {
   }
 
  private:
+  Diamond around(int h) const {
+    const int o = opposite_[h], bc = next(h), ca = prev(h), ad = next(o), db = prev(o);
+    const std::vector<Tri>& t = s_.tris;
+    return {h, bc, ca, o, ad, db, origin(t, h), target(t, h), origin(t, ca), origin(t, db)};
+  }
+
   int longest(int t) const {
     int h = 3 * t;
     for (int g : {3 * t + 1, 3 * t + 2})
@@ -71,7 +71,7 @@ class Caps {
 
   bool may_flip(int h) const {
     if (opposite_[h] < 0 || fixed_[h]) return false;
-    const Diamond q(s_, opposite_, h);
+    const Diamond q = around(h);
     const Vec3 a = s_.points[q.a], b = s_.points[q.b], c = s_.points[q.c], d = s_.points[q.d];
     const double low = height(a, b, c), at = dot(c - a, b - a) / dot(b - a, b - a);
     if (!(low < least_ && low < slender * norm(b - a) && at > least_end && at < 1 - least_end)) return false;
@@ -86,7 +86,7 @@ class Caps {
   }
 
   void flip(int h) {
-    const Diamond q(s_, opposite_, h);
+    const Diamond q = around(h);
     const int t = h / 3, u = q.o / 3;
     const int from[4] = {q.ca, q.ad, q.db, q.bc}, to[4] = {3 * t, 3 * t + 1, 3 * u, 3 * u + 1};
     int beyond[4];

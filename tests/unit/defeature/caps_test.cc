@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lib/defeature/caps.h"
-
 #include <gtest/gtest.h>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/topology.h"
+#include "lib/defeature/defeature.h"
 
 using namespace meshpipe;
 
