@@ -43,10 +43,8 @@ struct Fault {
   bool none() const { return pairs.empty() && triangles.empty(); }
   int places() const { return (int)(pairs.size() + triangles.size()); }
   int count() const { return (int)pairs.size() + folds; }
-  bool less_than(const Fault& other) const {
-    return count() < other.count() ||
-           (count() == other.count() && excess < rules::less_excess * other.excess);
-  }
+  double sum() const { return rules::pair_excess * count() + excess; }
+  bool less_than(const Fault& other) const { return sum() < rules::less_excess * other.sum(); }
 };
 
 /// Drops the pairs that only touch in copies of the same vertices.

@@ -110,7 +110,8 @@ constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a
 constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
 constexpr double leaning = 0.85;      // of the isosceles triangle's kappa: what leaning ones have
 constexpr double refinement = 0.8;    // of the size, each round
-constexpr double less_excess = 0.99;  // of the sum of distances over the bearable: a gain
+constexpr double pair_excess = 2;     // for each pair of triangles that intersect, and each fold
+constexpr double less_excess = 0.99;  // of that and the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,
                  few = 300;  // of the triangles, and triangles: what the removal of faults may add
