@@ -191,11 +191,12 @@ void mark(Io& io, Options& o) {
   if (!o.edge_file.empty() && o.edge_file != "none") expect_readable(o.edge_file);
   Stream& stream = io.read();
   Surface& surface = stream.surface;
-  if (o.edge_file.empty() && !(parse_length(o.tolerance, 1) == 0.0)) {
-    const int flips = flip_caps(surface, segments_under(surface, read_model_edges(stream)));
-    if (flips > 0) io.say(std::to_string(flips) + " edges flipped at triangles of no height");
-    io.report["flipped"] = flips;
-  }
+  int flips = 0;  // parts and charts that the stream may have do not follow
+  if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("part") &&
+      !stream.find("mid_vertex"))
+    flips = flip_caps(surface, segments_under(surface, read_model_edges(stream)));
+  if (flips > 0) io.say(std::to_string(flips) + " edges flipped at triangles of no height");
+  io.report["flipped"] = flips;
   const bool asked = o.size > 0 || o.triangles > 0;
   if (o.triangles == 0)
     o.triangles = stream.input_triangles > 0 ? stream.input_triangles : (double)surface.tris.size();

@@ -42,11 +42,11 @@ struct DefeatureOptions {
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 
-/// Flips the longest edge of triangles so low that rounding of single-precision coordinates decides which way
-/// they face (3e-6 of the diagonal), where the two triangles that this makes are higher and face the way of
-/// the neighbor across that edge, whose face columns both get. No edge between patches, and none with a
-/// number in `line` (per half-edge, -1: none) is flipped. Returns the number of flips. Throws: as
-/// opposite_halfedges.
+/// Flips edges at triangles of no height: below 3e-6 of the diagonal, rounding of single-precision
+/// coordinates decides which way a triangle faces. Its longest edge is flipped if both new triangles are
+/// higher and face as the neighbor does, whose face columns they get. Edges between patches, and those with a
+/// number in `line` (per half-edge, -1: none) stay. Model bits are not kept. Returns the number of flips.
+/// Throws: as opposite_halfedges.
 int flip_caps(Surface& surface, const std::vector<int>& line);
 
 /// Returns the remark "removed FEATURES moved DISTANCE" for mcheck: how far the surface may be off.

@@ -30,10 +30,10 @@ struct FeatureReport {
 
 /// Sets face column `model`: bit i of triangle t marks the edge from corner i to i+1, on both sides. Model
 /// edges are borders between patches (column `patch`) and creases: in automatic mode those of components that
-/// look designed (keep_designed), without short chains and short or rough open ones. `before`: null, or per
-/// triangle the patch before some were merged; no crease follows a border that vanished unless it bends
-/// sharply. `given`: null, or per half-edge the number of a line that is a model edge in any mode, or -1.
-/// Throws: as opposite_halfedges.
+/// look designed (keep_designed), without short chains and, unless a polyhedron has them, rough open ones.
+/// `before`: null, or per triangle the patch before some were merged; no crease follows a border that
+/// vanished unless it bends sharply. `given`: null, or per half-edge the number of a line that is a model
+/// edge in any mode, or -1. Throws: as opposite_halfedges.
 FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<int>* given = nullptr);

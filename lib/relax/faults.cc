@@ -31,7 +31,8 @@ struct Known {
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
 
-/// What is wrong: a count of pairs and folds, and a sum of distances and 1/kappa over what is bearable.
+/// What is wrong: pairs and folds, and a sum of distances and 1/kappa over what is bearable. A mesh without
+/// pairs and folds is better than any with them; of others the sum decides.
 struct Fault {
   std::vector<std::pair<int, int>> pairs;
   int of_reference = 0;
@@ -44,7 +45,10 @@ struct Fault {
   int places() const { return (int)(pairs.size() + triangles.size()); }
   int count() const { return (int)pairs.size() + folds; }
   double sum() const { return rules::pair_excess * count() + excess; }
-  bool less_than(const Fault& other) const { return sum() < rules::less_excess * other.sum(); }
+  bool less_than(const Fault& other) const {
+    if ((count() == 0) != (other.count() == 0)) return count() == 0;
+    return sum() < rules::less_excess * other.sum();
+  }
 };
 
 /// Drops the pairs that only touch in copies of the same vertices.

@@ -107,10 +107,11 @@ constexpr double farther_by = 1.02;  // of a triangle's largest distance so far:
 constexpr int most_halvings = 400;   // of a triangle, to find its largest distance
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
-constexpr double sharp_half = 0.34;   // sine of 20 degrees: wider corners have room for good triangles
-constexpr double leaning = 0.85;      // of the isosceles triangle's kappa: what leaning ones have
-constexpr double refinement = 0.8;    // of the size, each round
-constexpr double pair_excess = 2;     // for each pair of triangles that intersect, and each fold
+constexpr double sharp_half = 0.34;  // sine of 20 degrees: wider corners have room for good triangles
+constexpr double leaning = 0.85;     // of the isosceles triangle's kappa: what leaning ones have
+constexpr double refinement = 0.8;   // of the size, each round
+constexpr double pair_excess =
+    2;  // of a pair or fold: its two triangles; by counts alone, 2 pairs and 100 needles beat 10 pairs
 constexpr double less_excess = 0.99;  // of that and the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,

@@ -36,10 +36,11 @@ constexpr double quarter = 0.785;       ///< of a circle, over its diameter: edg
 constexpr int most_of_arch = 64;        ///< triangles between its lines: more of them follow it anyway
 constexpr double rounding = 1e-9;       ///< of a distance to the same point, from two triangles
 constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
-constexpr int most_pieces = 1000;       ///< of a piece of an edge that are measured
-constexpr double least_piece = 1e-4;    ///< of an edge: bounds the measurements of one
-constexpr double most_reach = 32;       ///< sizes, within which what is near edges is looked at,
-constexpr std::size_t most_near = 16;   ///< if it is no more triangles for each of them
+constexpr long long most_section_work = 1'000'000;  ///< the same for all sections of a chunk: milliseconds
+constexpr int most_pieces = 1000;                   ///< of a piece of an edge that are measured
+constexpr double least_piece = 1e-4;                ///< of an edge: bounds the measurements of one
+constexpr double most_reach = 32;                   ///< sizes, within which what is near edges is looked at,
+constexpr std::size_t most_near = 16;               ///< if it is no more triangles for each of them
 constexpr double one_way = 0.7;  ///< least cosine between an axis and the normals of a sheet that is a graph
 constexpr double corner_turn = 0.35;  ///< radians: a line that turns by more may come near others there only
 
@@ -97,8 +98,9 @@ class Search {
     }
   }
 
-  long long work = 0;       ///< triangles that were looked at
-  std::vector<Boxed> near;  ///< lists of measure_sheets, one after the other
+  long long work = 0;          ///< triangles that were looked at
+  long long section_work = 0;  ///< the same along sections
+  std::vector<Boxed> near;     ///< lists of measure_sheets, one after the other
 
  private:
   const Connectivity& surface_;
@@ -120,12 +122,17 @@ class Measure {
   /// Returns the size permitted at t along half-edge h, and the gap there; infinite where nothing bounds it.
   SizeBound at(int h, double t, Search& search) const {
     const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
-    const SizeBound found = is_line(h) ? strip(h, p, search) : sheet(h, p, search);
+    return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
+  }
+  /// The same for the tube along a half-edge that is longer than the size; its mean width is the gap.
+  SizeBound section(int h, double t, Search& search) const {
+    const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
     const double most = asked(h, p);
-    if (!(surface_.length(h) > most) || (!is_line(h) && !(bend(h, p).gap > 0))) return found;
-    const double around = sections_.length(h, p, most, lowered * ring_edges * most, search.work);
-    return around < ring_edges * found.size ? SizeBound{h, p, around / ring_edges, around / std::numbers::pi}
-                                            : found;
+    if (search.section_work > most_section_work || !(surface_.length(h) > most) ||
+        (!is_line(h) && !(bend(h, p).gap > 0)))
+      return {h, p, infinity, 0};
+    const double around = sections_.length(h, p, most, lowered * ring_edges * most, search.section_work);
+    return {h, p, around / ring_edges, around / std::numbers::pi};
   }
   /// How half-edge h bends at p, which is not on a line.
   Bend bend(int h, Vec3 p) const;
@@ -144,11 +151,6 @@ class Measure {
   const Bvh& tree() const { return tree_; }
   const std::vector<Vec3>& normals() const { return normal_; }
   const Connectivity& surface() const { return surface_; }
-  /// Does the line of h turn at its start? For half-edges on lines.
-  bool turns(int h) const {
-    auto along = [&](int e) { return surface_.point(surface_.to(e)) - surface_.point(surface_.from(e)); };
-    return angle(along(before(h)), along(h)) > corner_turn;
-  }
   /// Neighbors of half-edges on lines, around the region.
   int before(int h) const {
     for (h = prev(h); !is_line(h);) h = prev(surface_.opposite[h]);
@@ -377,20 +379,29 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   return {h, p, size, gap};
 }
 
+/// Does the line of h turn at its start? For half-edges on lines.
+bool turns(const Measure& measure, int h) {
+  const Connectivity& s = measure.surface();
+  auto along = [&](int e) { return s.point(s.to(e)) - s.point(s.from(e)); };
+  return angle(along(measure.before(h)), along(h)) > corner_turn;
+}
+
 /// Measures a half-edge between two parameters at points about as far apart as the sizes they permit, also
-/// where a strip tapers.
-void measure_along(const Measure& measure, int h, double from, double to, Search& search,
+/// where a strip or a tube tapers. `at(t)`: the bound at t; `strips`: whether it may be that of a strip.
+template <class At>
+void measure_along(const Measure& measure, int h, double from, double to, const At& at, bool strips,
                    std::vector<SizeBound>& found, double apart = 1) {
-  SizeBound x = measure.at(h, 0.5 * (from + to), search);
+  SizeBound x = at(0.5 * (from + to));
   if (x.size == infinity) return;
   const double length = measure.surface().length(h), piece = (to - from) * length;
   if (piece < apart * x.size || piece < least_piece * length) {
-    x.length = measure.is_line(h) ? piece : 0;
+    x.length = strips ? piece : 0;
     return found.push_back(x);
   }
   const int n = (int)std::min(std::ceil(piece / x.size), (double)most_pieces);
   for (int i = 0; i < n; ++i)
-    measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, search, found, 2);
+    measure_along(measure, h, from + (to - from) * i / n, from + (to - from) * (i + 1) / n, at, strips, found,
+                  2);
 }
 
 /// Measures a half-edge in pieces about as long as the sizes there.
@@ -407,7 +418,13 @@ void measure_edge(const Measure& measure, int h, Search& search, std::vector<Siz
     const double x = (double)k / pieces;
     return even || k == pieces ? x : (std::pow(growth, x) - 1) / (growth - 1);
   };
-  for (int k = 0; k < pieces; ++k) measure_along(measure, h, at(k), at(k + 1), search, found);
+  const bool line = measure.is_line(h);
+  for (int k = 0; k < pieces; ++k)
+    measure_along(
+        measure, h, at(k), at(k + 1), [&](double t) { return measure.at(h, t, search); }, line, found);
+  for (int k = 0; k < pieces; ++k)
+    measure_along(
+        measure, h, at(k), at(k + 1), [&](double t) { return measure.section(h, t, search); }, false, found);
 }
 
 /// Measures edges next to each other, on sheets within the gap of their middles; at once if what is near is
@@ -507,7 +524,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
 #pragma omp for schedule(dynamic)
       for (int c = 0; c < (int)found.size(); ++c) {
         std::vector<SizeBound> edges;
-        search.work = 0;
+        search.work = search.section_work = 0;
         for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
@@ -519,7 +536,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
             continue;
           }
           measure_edge(measure, h, search, found[c]);
-          if (measure.turns(h))
+          if (turns(measure, h))
             for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
               if (x.size < infinity) found[c].push_back(x);
         }

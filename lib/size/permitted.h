@@ -12,11 +12,11 @@ struct SizeBound {
   int half_edge;
   Vec3 place;
   double size;
-  double gap;         ///< to the other line or sheet
-  double length = 0;  ///< of the side of a strip that this bounds; 0 for sheets
+  double gap;         ///< to the other line or sheet; of a tube its mean width
+  double length = 0;  ///< of the side of a strip that this bounds; 0 for sheets and tubes
 };
 
-/// Returns what is linear between the values of the vertices, at the point of half-edge h nearest to p.
+/// Interpolates values of the vertices along half-edge h, at its point nearest to p.
 double value_along(const Mesh& mesh, const std::vector<double>& value, int h, Vec3 p);
 
 /// Returns the number of triangles that narrow strips need beyond those for their area, if the size is at
@@ -25,10 +25,10 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);
 
 /// Measures where a surface comes so close to itself that edges of the length `asked` (per vertex) cannot be
 /// good: a strip between two lines (borders or model edges) permits a multiple of its width, a bent sheet
-/// those edges that sag towards another sheet by a share of the gap. Lines and sheets that meet nearby are
-/// adjacent, not near. Bounds are at least `least`. Returns them in the order of half-edges, one per edge
-/// that is on no line. Near-linear where few places are narrow. If strips need more triangles than
-/// `most_triangles`, returns their bounds and looks for no sheets.
+/// those edges that sag towards another sheet by a share of the gap, a tube along a longer edge a quarter of
+/// the way around it. Lines and sheets that meet nearby are adjacent, not near. Bounds are at least `least`.
+/// Returns them in the order of half-edges. Near-linear where few places are narrow. If strips need more
+/// triangles than `most_triangles`, returns their bounds and looks for no sheets.
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
                                        double least, double most_triangles);
 

@@ -8,7 +8,7 @@ namespace meshpipe {
 namespace {
 
 constexpr double least_length = 1e-5;  ///< of the diagonal: shorter sections are no features
-constexpr int most_lines = 2;  ///< along a tube: between three or more even triangles keep its section
+constexpr int most_lines = 2;  ///< along a tube; three keep its section, even with one triangle between them
 
 }  // namespace
 

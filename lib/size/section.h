@@ -10,7 +10,7 @@ namespace meshpipe {
 /// Measures tubes along edges that are longer than the size: their rings have no vertices there.
 class Sections {
  public:
-  /// Takes the size per vertex, which outlives this as the surface does.
+  /// Takes the size per vertex. Requires: the surface outlives this.
   Sections(const Connectivity& surface, const std::vector<double>& asked);
 
   /// Returns the length of the section at a right angle to half-edge h through its point p; infinity if it is

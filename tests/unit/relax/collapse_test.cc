@@ -52,6 +52,25 @@ TEST(Collapse, ABentBorderKeepsItsVertex) {
   EXPECT_FALSE(collapse_edge(m.s, m.edge('a', 'b'), 'b' - 'a', {20, 3}));
 }
 
+TEST(Collapse, AVertexOfThreeEdgesGoesAlsoBetweenLines) {
+  Drawn m(drawn_surface({"    c    ",  //
+                         "         ",  //
+                         "    d    ",  //
+                         "a       b"},
+                        "abd bcd cad"));
+  ASSERT_TRUE(collapse_edge(m.s, m.edge('d', 'a'), 'd' - 'a', {20, 3}));
+  EXPECT_EQ(m.s.mesh.live, 1);
+  EXPECT_DOUBLE_EQ(m.area(), 24);
+  // of four edges it holds the sheet between them
+  Drawn four(drawn_surface({"d       c",  //
+                            "         ",  //
+                            "    e    ",  //
+                            "         ",  //
+                            "a       b"},
+                           "abe bce cde dae"));
+  EXPECT_FALSE(collapse_edge(four.s, four.edge('e', 'a'), 'e' - 'a', {20, 3}));
+}
+
 TEST(Collapse, FromALineNothingGoesInside) {
   Drawn m(drawn_surface(straight, four));
   EXPECT_FALSE(collapse_edge(m.s, m.edge('b', 'e'), 'b' - 'a', {20, 3}));
