@@ -22,6 +22,7 @@ constexpr double least_width_share =
     0.1;  ///< size over the widths of the triangles, where sheets almost touch
 constexpr double least_share =
     1.0 / 16;                          ///< of the size asked for: less is not asked for by sheets and arches
+constexpr double at_line = 1.05;       ///< gaps: the nearest place of a sheet is where both meet
 constexpr double fold_at_lines = 0.5;  ///< of the size permitted: sheets that meet at lines within it
 constexpr double lowered = 0.62;       ///< of the size asked for: sheets that permit more have not failed
 constexpr double needle = 0.1;         ///< height of a triangle over the width of its strip
@@ -370,11 +371,13 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
                                                     least_width_share * widths, least_share * most});
   if (size > lowered * most) return none;
   auto is_other = [&](int u) { return u == other; };
+  const bool across = std::abs(dot(normal_[other], up)) >= opposed;  // else a line is near, as at a corner
   // what is connected within the size is a fold that a mesh of this size leaves out, unless lines hold it
   if (joins(
           h, p, most, [&](int g) { return !is_line(g); }, is_other, search) ||
       joins(
-          h, p, fold_at_lines * size, [](int) { return true; }, is_other, search))
+          h, p, across ? std::max(fold_at_lines * size, at_line * gap) : most, [](int) { return true; },
+          is_other, search))
     return none;
   return {h, p, size, gap};
 }
