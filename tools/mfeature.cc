@@ -192,8 +192,8 @@ void mark(Io& io, Options& o) {
   Stream& stream = io.read();
   Surface& surface = stream.surface;
   int flips = 0;  // parts and charts that the stream may have do not follow
-  if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("part") &&
-      !stream.find("mid_vertex"))
+  if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("origin") &&
+      !stream.find("chart_vertex") && !stream.find("mid_vertex"))
     flips = flip_caps(surface, segments_under(surface, read_model_edges(stream)));
   if (flips > 0) io.say(std::to_string(flips) + " edges flipped at triangles of no height");
   io.report["flipped"] = flips;

@@ -31,10 +31,14 @@ class Caps {
         opposite_(opposite_halfedges(surface)),
         fixed_(opposite_.size(), 0),
         least_(rounding * diagonal(surface)) {
-    const std::vector<int>* patch = s_.face.has("patch") ? &s_.face.get<int>("patch") : nullptr;
     for (int h = 0; h < (int)fixed_.size(); ++h)
-      if (const int o = opposite_[h]; o >= 0)
-        fixed_[h] = line[h] >= 0 || line[o] >= 0 || (patch && (*patch)[h / 3] != (*patch)[o / 3]);
+      if (const int o = opposite_[h]; o >= 0) fixed_[h] = line[h] >= 0 || line[o] >= 0;
+    for (const char* name : {"patch", "part"}) {
+      if (!s_.face.has(name)) continue;
+      const auto& label = s_.face.get<int>(name);
+      for (int h = 0; h < (int)fixed_.size(); ++h)
+        if (const int o = opposite_[h]; o >= 0 && label[h / 3] != label[o / 3]) fixed_[h] = 1;
+    }
   }
 
   int flip_all() {
