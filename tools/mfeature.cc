@@ -191,7 +191,7 @@ void mark(Io& io, Options& o) {
   if (!o.edge_file.empty() && o.edge_file != "none") expect_readable(o.edge_file);
   Stream& stream = io.read();
   Surface& surface = stream.surface;
-  int flips = 0;  // parts and charts that the stream may have do not follow
+  int flips = 0;  // charts, and vertices in the middle of edges, do not follow
   if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("origin") &&
       !stream.find("chart_vertex") && !stream.find("mid_vertex"))
     flips = flip_caps(surface, segments_under(surface, read_model_edges(stream)));

@@ -40,8 +40,8 @@ TEST(Caps, AreFlippedWithTheTriangleAcrossTheirLongestEdge) {
 TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
   Surface s = with_cap(1e-7);
   s.points.push_back({0.7, 2e-7, 0});  // a second one between the first and the triangles above it
-  s.tris[2] = {5, 1, 3};
-  s.tris.insert(s.tris.end(), {{2, 1, 5}, {2, 5, 3}});
+  // the upper one comes first, which has nothing below it to be flipped with until the lower one is gone
+  s.tris = {{2, 1, 5}, {0, 1, 2}, {0, 2, 3}, {5, 1, 3}, {1, 0, 4}, {2, 5, 3}};
   s.face = {"face", s.tris.size(), {}};
   EXPECT_EQ(flip_caps(s, std::vector<int>(18, -1)), 2);
   for (int t = 0; t < 6; ++t) EXPECT_GT(area_vector(s, t).z, 0.2) << t;
@@ -55,6 +55,12 @@ TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
   EXPECT_EQ(flip_caps(line, on_edge), 0);
   patches.face.get<int>("patch")[3] = 6;
   EXPECT_EQ(flip_caps(patches, no_lines), 0);
+}
+
+TEST(Caps, StayWhereTheirCornerIsNextToAnEndOfTheEdge) {
+  Surface s = with_cap(1e-8);
+  s.points[2].x = 1e-4;  // the other diagonal would make a needle of 0, 4 and 2
+  EXPECT_EQ(flip_caps(s, no_lines), 0);
 }
 
 TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {

@@ -145,6 +145,7 @@ TEST(Feature, APolyhedronKeepsItsCreasesHoweverRough) {
   auto hats = [&](int i, int j) { return i % 2 && j % 2 ? z[41 * j + i] : 0.0; };
   Surface s = terrain(40, 40, hats);
   EXPECT_GT(mark_features(s, automatic).crease_edges, 2000);
+  EXPECT_EQ(mark_features(s, automatic).crease_edges, mark_features(s, angles(40, 20)).crease_edges);
   FeatureOptions coarse;
   coarse.size = 8;
   EXPECT_EQ(mark_features(s, coarse).crease_edges, 0);
