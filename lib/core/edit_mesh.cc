@@ -103,7 +103,8 @@ bool EditMesh::can_collapse(int h, int gone, bool merge) const {
   hard_edges += border;
   if (!merge && hard_edges != 0 && (hard_edges != 2 || !hard[h])) return false;
   if (border && g >= 0) return false;
-  if (valence(gone) < 3 || valence(gone) > max_collapse_valence) return false;
+  const int fewest = merge && border ? 2 : 3;  // a border may bend around a single triangle
+  if (valence(gone) < fewest || valence(gone) > max_collapse_valence) return false;
   auto enough = [&](int v, int lost) { return v < 0 || valence(v) - lost >= (on_border(v) ? 2 : 3); };
   if (!enough(kept, g < 0 ? 1 : 4 - valence(gone)) || !enough(c, 1) || !enough(d, 1)) return false;
   // the only neighbors of both ends are the apexes

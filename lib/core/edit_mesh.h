@@ -60,8 +60,8 @@ struct EditMesh {
   /// go. Requires: can_collapse(h, gone).
   void collapse(int h, int gone);
   /// Returns whether `gone` may be merged into the other vertex of h: it has no hard edge, or two and h is
-  /// one of them (with `merge`, any number); if on the border, h is, too; it has 3 to 64 edges; and the
-  /// result is a manifold of the same topology (link condition).
+  /// one of them (with `merge`, any number); if on the border, h is, too; it has 3 (with `merge`, on the
+  /// border 2) to 64 edges; and the result is a manifold of the same topology (link condition).
   bool can_collapse(int h, int gone, bool merge = false) const;
 
  private:

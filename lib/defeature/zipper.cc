@@ -214,7 +214,8 @@ bool Zipper::merge(int h) {
   if (weak > strong) std::swap(gone, kept), std::swap(weak, strong);
   if (!may_merge(h, gone)) {
     std::swap(gone, kept);
-    if (weak[0] < strong[0] || !may_merge(h, gone)) return false;
+    const bool along_border = mesh.opp[h] < 0;  // both are on it, however weak their other lines are
+    if ((weak[0] < strong[0] && !along_border) || !may_merge(h, gone)) return false;
   }
   const double width = norm(points[gone] - points[kept]);
   merges.push_back({gone, kept, width, points[gone]});

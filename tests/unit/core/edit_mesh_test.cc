@@ -153,6 +153,20 @@ TEST(EditMesh, CollapseAlongTheBorderEitherWay) {
   }
 }
 
+// Vertex 0 has one triangle. Merged along the border it takes that with it.
+TEST(EditMesh, TheEarOfABorderMergesOnly) {
+  EditMesh m = grid();
+  const int h = half_edge(m, 0, 1);
+  EXPECT_FALSE(m.can_collapse(h, 0));
+  ASSERT_TRUE(m.can_collapse(h, 0, true));
+  m.collapse(h, 0);
+  expect_sound(m);
+  EXPECT_EQ(m.live, 7);
+  EXPECT_LT(m.opp[half_edge(m, 1, 3) < 0 ? half_edge(m, 3, 1) : half_edge(m, 1, 3)], 0);
+  EditMesh alone({{0, 1, 2}}, 3, {});
+  EXPECT_FALSE(alone.can_collapse(0, 0, true));
+}
+
 TEST(EditMesh, CollapseAlongAModelEdge) {
   // the line 1-4-7 through the middle
   EditMesh m(grid().tris, 9, {0, 0b001, 0, 0, 0, 0b001, 0, 0});

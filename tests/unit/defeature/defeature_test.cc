@@ -278,6 +278,21 @@ TEST(Defeature, ASliverBetweenWallsCloses) {
   EXPECT_EQ(s.points.size(), 6u);
 }
 
+//  p'---a'---q'   two walls meet in a crease that ends at a on the border; a cut of the model has left the
+//  |  / |  / |    ear a-e-q, at right angles to its wall, with the short border edge a-e
+//  p----a====q
+TEST(Defeature, AnEarAtTheEndOfACreaseIsCutOff) {
+  Surface s;
+  s.points = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 0, 3}, {0, 0, 3}, {0, 1, 3}, {width, 0, 0}};
+  enum { p, a, q, p1, a1, q1, e };
+  s.tris = {{p, a, p1}, {p1, a, a1}, {a, q, q1}, {a, q1, a1}, {q, a, e}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  EXPECT_TRUE(removed(s, too_narrow).removed.empty());
+  EXPECT_EQ(removed(s, wide_enough).removed.size(), 1u);
+  EXPECT_EQ(s.tris.size(), 4u);
+}
+
 TEST(Defeature, GivenLinesAreKeptOrFollow) {
   Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
   std::vector<int> given(3 * s.tris.size(), -1);  // line 7 along the lower edge of the step
