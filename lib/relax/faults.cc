@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <memory>
+
 #include "lib/core/bvh.h"
 #include "lib/core/chord.h"
 #include "lib/core/fold.h"
@@ -434,47 +436,96 @@ void repair_at(State& s, const Fault& fault, Known& known) {
   change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
 }
 
+/// A mesh and its faults.
+struct Seen {
+  State mesh;
+  Fault fault;
+};
+
+/// The meshes seen while faults are removed. Refinement and repair go on from the one with the lowest sum: a
+/// few pairs are often repaired. `best` is the result.
+struct Search {
+  Known known;
+  std::shared_ptr<const Seen> best{}, lowest{};
+  Fault now{};
+  int rounds = 0;
+  bool better = false, lower = false;  ///< is the mesh looked at last?
+
+  void look(const State& s) {
+    now = find_faults(s, known);
+    better = !best || now.less_than(best->fault);
+    lower = !lowest || now.sum() < rules::less_excess * lowest->fault.sum();
+    if (!better && !lower) return;
+    const auto seen = std::make_shared<const Seen>(s, now);
+    if (better) best = seen;
+    if (lower) lowest = seen;
+  }
+  void go_to(State& s, const std::shared_ptr<const Seen>& seen) {
+    s = seen->mesh, now = seen->fault;
+    known.forget();
+  }
+  /// Is the best within the limit itself, not only within what refinement aims at?
+  bool within_limit() {
+    if (best->fault.count() > 0 ||
+        best->fault.excess >= rules::within_limit / rules::too_far * best->fault.places())
+      return false;
+    known.forget();
+    const bool none = find_faults(best->mesh, known, rules::within_limit).none();
+    known.forget();
+    return none;
+  }
+};
+
+/// Refines as long as it helps. Returns whether no fault is left that matters.
+bool refine(State& s, Search& search, double most) {
+  Repairs memory;
+  for (int useless = 0;
+       useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
+    const int n = (int)search.now.triangles.size();
+    refine_at(s, search.now);
+    if (n > 0) reach_features(s, search.known.samples, rules::too_far, n), repair_worst(s, memory);
+    search.look(s), ++search.rounds;
+    if (search.now.none()) return true;
+    useless = search.better || search.lower ? 0 : useless + 1;
+    if (useless == 1 && search.within_limit()) return true;
+    if (search.now.sum() > rules::much_worse * search.lowest->fault.sum()) return false;
+  }
+  return false;
+}
+
+/// Repairs as long as it helps, from the mesh with the lowest sum, then from the best. Returns whether one of
+/// them was repaired.
+bool repair(State& s, Search& search) {
+  bool any = false;
+  std::shared_ptr<const Seen> tried;
+  for (const bool from_best : {false, true}) {
+    const auto start = from_best ? search.best : search.lowest;
+    if (start == tried || start->fault.places() > rules::few_faults || search.best->fault.none()) continue;
+    search.go_to(s, start);
+    tried = start, any = true;
+    for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
+      repair_at(s, search.now, search.known);
+      search.look(s);
+      if (search.now.none() || !(from_best ? search.better : search.lower)) break;
+      tried = from_best ? search.best : search.lowest;
+    }
+  }
+  return any;
+}
+
 }  // namespace
 
 Intersections remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
-  std::optional<std::pair<State, Fault>> best;
-  Known known{s.reference->surface, samples};
-  Repairs memory;
-  bool again = false;
-  for (int round = 0, since_best = 0, repairs = 0;; ++round) {
-    Fault found = find_faults(s, known);
-    const bool better = !best || found.less_than(best->second);
-    since_best = better ? 0 : since_best + 1;
-    if (better) best = {s, found};
-    if (found.none()) break;
-    if (since_best == 1 && best->second.count() == 0 &&
-        best->second.excess < rules::within_limit / rules::too_far * best->second.places()) {
-      known.forget();
-      if (find_faults(best->first, known, rules::within_limit).none()) break;
-      known.forget();
-    }
-    if ((repairs > 0 && !better) || repairs == rules::fault_repairs) {
-      if (std::exchange(again, true) || round >= rules::fault_rounds) break;
-      // what repair has left is refined again, without what it has cured
-      s = best->first, found = best->second;
-      known.forget(), memory = {};
-      since_best = repairs = 0;
-    }
-    if (repairs == 0 && since_best < rules::useless_rounds && round < rules::fault_rounds &&
-        s.mesh.live <= most) {
-      refine_at(s, found);
-      const int most_reached = (int)found.triangles.size();
-      if (most_reached > 0) reach_features(s, samples, rules::too_far, most_reached), repair_worst(s, memory);
-      continue;
-    }
-    if (best->second.places() > rules::few_faults) break;
-    if (!better) s = best->first, known.forget();
-    repair_at(s, best->second, known);
-    ++repairs;
+  Search search{{s.reference->surface, samples}};
+  search.look(s);
+  // what repair has left is refined again, without what it has cured
+  for (int pass = 0; pass < 2 && !search.best->fault.none(); ++pass) {
+    if (pass > 0) search.go_to(s, search.best);
+    if (refine(s, search, most) || !repair(s, search)) break;
   }
-  s = std::move(best->first);
-  return {best->second.pairs, best->second.of_reference};
+  s = search.best->mesh;
+  return {search.best->fault.pairs, search.best->fault.of_reference};
 }
 
 }  // namespace meshpipe

@@ -115,9 +115,10 @@ constexpr double pair_excess =
 constexpr double less_excess = 0.99;  // of that and the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6,
-                 few = 300;  // of the triangles, and triangles: what the removal of faults may add
+                 few = 300;       // of the triangles, and triangles: what the removal of faults may add
+constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int fault_repairs = 10, few_faults = 100;  // rounds, and places: of more the sizes are at fault
+constexpr int fault_repairs = 10, few_faults = 300;  // rounds, and places: of more the sizes are at fault
 constexpr double far_weight = 10, pair_weight = 5;   // of the objective
 
 // missed features (missed_features.cc)
