@@ -40,6 +40,11 @@ bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double le
 }  // namespace
 
 int flip_caps(Surface& surface, const std::vector<int>& line) {
+  const double least = rounding * diagonal(surface);
+  auto is_low = [&](const Tri& v) {
+    return height(surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]) < least;
+  };
+  if (std::none_of(surface.tris.begin(), surface.tris.end(), is_low)) return 0;
   const std::vector<int> opposite = opposite_halfedges(surface);
   EditMesh m(Connectivity{surface, opposite});
   for (const char* name : {"patch", "part"}) {
@@ -50,7 +55,6 @@ int flip_caps(Surface& surface, const std::vector<int>& line) {
   }
   for (int h = 0; h < (int)m.opp.size(); ++h)
     if (const int o = m.opp[h]; o >= 0 && (line[h] >= 0 || line[o] >= 0)) m.hard[h] = 1;
-  const double least = rounding * diagonal(surface);
   int all = 0;
   for (int pass = 0, before = -1; pass < most_passes && all != before; ++pass) {
     before = all;

@@ -169,13 +169,18 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
                                       const std::vector<int>* given) {
   DefeatureReport report;
   if (!(options.tolerance > 0)) return report;
+  const std::vector<int> opposite = opposite_halfedges(surface);
+  const std::vector<std::uint8_t> model = surface.face.get<std::uint8_t>("model");
+  const Connectivity c{surface, opposite, model};
+  if (const int v = find_pinched_vertex(c); v >= 0)
+    throw NotAdmissible("vertex " + std::to_string(v) +
+                        " joins triangles that share no edge; run mclean first");
+  if (std::none_of(opposite.begin(), opposite.end(), [](int o) { return o < 0; }) &&
+      std::none_of(model.begin(), model.end(), [](int bits) { return bits != 0; }))
+    return report;  // without lines nothing is narrow
   std::vector<char> banned(surface.points.size(), 0);
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    Zipper z(surface, options, given, banned);
-    const int v = attempt == 0 ? find_pinched_vertex(surface.tris, z.mesh.opp, (int)banned.size()) : -1;
-    if (v >= 0)
-      throw NotAdmissible("vertex " + std::to_string(v) +
-                          " joins triangles that share no edge; run mclean first");
+    Zipper z(surface, EditMesh(c), options, given, banned);
     std::vector<double> sharpest;
     for (int v = 0; v < (int)banned.size(); ++v)
       sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));

@@ -34,10 +34,9 @@ bool MergedSurface::is_sharp(int h) const {
   return mesh.opp[h] >= 0 && turn(normal(h / 3), normal(mesh.opp[h] / 3)) > sharp;
 }
 
-Zipper::Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<int>* given,
-               const std::vector<char>& banned)
-    : MergedSurface{.mesh = {surface.tris, (int)surface.points.size(),
-                             surface.face.get<std::uint8_t>("model")},
+Zipper::Zipper(const Surface& surface, EditMesh edited, const DefeatureOptions& options,
+               const std::vector<int>* given, const std::vector<char>& banned)
+    : MergedSurface{.mesh = std::move(edited),
                     .points = surface.points,
                     .drift = std::vector<double>(surface.points.size(), 0),
                     .origin = identity(surface.tris.size()),

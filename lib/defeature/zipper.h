@@ -61,9 +61,10 @@ struct MergedSurface {
 /// Merges vertices of a surface.
 class Zipper : public MergedSurface {
  public:
-  /// Copies a surface. `given`: as in remove_small_features; `banned`: flags of vertices that take no part.
-  Zipper(const Surface& surface, const DefeatureOptions& options, const std::vector<int>* given,
-         const std::vector<char>& banned);
+  /// Takes a surface and its mesh. `given`: as in remove_small_features; `banned`: flags of vertices that
+  /// take no part.
+  Zipper(const Surface& surface, EditMesh edited, const DefeatureOptions& options,
+         const std::vector<int>* given, const std::vector<char>& banned);
 
   /// Merges across strips and along short lines, the narrowest first. Returns the number of merges.
   int close_strips();
