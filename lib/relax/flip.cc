@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lib/core/fold.h"
 #include "lib/relax/junctions.h"
 #include "lib/relax/operations.h"
 
@@ -108,7 +109,11 @@ bool may_flip(const State& s, int h) {
   const Vec3 n0 = s.face_normal(h / 3), n1 = s.face_normal(g / 3),
              m0 = normalized(area_vector(s.points[a], s.points[d], s.points[c])),
              m1 = normalized(area_vector(s.points[b], s.points[c], s.points[d]));
-  if (dot(m0, n0 + n1) <= 0 || dot(m1, n0 + n1) <= 0 ||
+  constexpr double flat_fold = -0.99;  // then the larger triangle faces the right way
+  const Vec3 up = dot(n0, n1) < flat_fold ? area_vector(s.points[a], s.points[b], s.points[c]) +
+                                                area_vector(s.points[b], s.points[a], s.points[d])
+                                          : n0 + n1;
+  if (dot(m0, up) <= 0 || dot(m1, up) <= 0 ||
       dot(m0, m1) < std::min(dot(n0, n1), rules::bend) - rules::same_cosine)
     return false;
   return !folds(std::min(s.cosine(a, b, c), s.cosine(b, a, d)),

@@ -45,6 +45,16 @@ TEST(Flip, NothingIsFoldedOver) {
   EXPECT_FALSE(may_flip(m.s, m.edge('a', 'b')));
 }
 
+// the larger triangle faces up: the fold is undone
+TEST(Flip, AFlatFoldFlipsBack) {
+  Drawn m(drawn_surface({"e       c   f",  //
+                         "  a  b       ",  //
+                         "g       d   h"},
+                        six));
+  m.s.mesh.flip(m.edge('a', 'b'));
+  EXPECT_TRUE(may_flip(m.s, m.edge('c', 'd')));
+}
+
 TEST(Flip, WhatDidNotChangeIsNotLookedAtAgain) {
   Drawn m(drawn_surface(two_flat, six));
   flip_to_shape(m.s);
