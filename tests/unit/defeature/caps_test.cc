@@ -30,11 +30,11 @@ const std::vector<int> no_lines(12, -1);
 
 TEST(Caps, AreFlippedWithTheTriangleAcrossTheirLongestEdge) {
   Surface s = with_cap(1e-7);
-  EXPECT_EQ(flip_caps(s, no_lines), 1);
+  EXPECT_EQ(flip_caps(s, no_lines, 0), 1);
   for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0.3) << t;
   EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
   EXPECT_EQ(s.face.get<double>("load"), (std::vector<double>{4, 2, 3, 4}));
-  EXPECT_EQ(flip_caps(s, no_lines), 0);
+  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
 }
 
 TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
@@ -43,24 +43,24 @@ TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
   // the upper one comes first, which has nothing below it to be flipped with until the lower one is gone
   s.tris = {{2, 1, 5}, {0, 1, 2}, {0, 2, 3}, {5, 1, 3}, {1, 0, 4}, {2, 5, 3}};
   s.face = {"face", s.tris.size(), {}};
-  EXPECT_EQ(flip_caps(s, std::vector<int>(18, -1)), 2);
+  EXPECT_EQ(flip_caps(s, std::vector<int>(18, -1), 0), 2);
   for (int t = 0; t < 6; ++t) EXPECT_GT(area_vector(s, t).z, 0.2) << t;
 }
 
 TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
   Surface high = with_cap(1e-4), line = with_cap(1e-7), patches = with_cap(1e-7);
-  EXPECT_EQ(flip_caps(high, no_lines), 0);
+  EXPECT_EQ(flip_caps(high, no_lines, 0), 0);
   std::vector<int> on_edge = no_lines;
   on_edge[0] = 3;
-  EXPECT_EQ(flip_caps(line, on_edge), 0);
+  EXPECT_EQ(flip_caps(line, on_edge, 0), 0);
   patches.face.get<int>("patch")[3] = 6;
-  EXPECT_EQ(flip_caps(patches, no_lines), 0);
+  EXPECT_EQ(flip_caps(patches, no_lines, 0), 0);
 }
 
 TEST(Caps, StayWhereTheirCornerIsNextToAnEndOfTheEdge) {
   Surface s = with_cap(1e-8);
   s.points[2].x = 1e-4;  // the other diagonal would make a needle of 0, 4 and 2
-  EXPECT_EQ(flip_caps(s, no_lines), 0);
+  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
 }
 
 TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
@@ -69,5 +69,33 @@ TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
   s.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-7, 0}, {0.5, -1, 0}};
   s.tris = {{0, 1, 2}, {1, 0, 3}, {0, 2, 3}, {2, 1, 3}};
   s.face.rows = s.tris.size();
-  EXPECT_EQ(flip_caps(s, no_lines), 0);
+  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
+}
+
+//   3---------2     vertex 4 should be left of the diagonal 0 2 and is a little right of it, so that the
+//   |      /  |     triangle 0 2 4 lies on its back
+//   |   / 4   |
+//   0---------1
+TEST(Caps, WhatLiesFlatOnItselfIsUnfolded) {
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.51, 0.49, 0}};
+  s.tris = {{0, 1, 2}, {0, 2, 4}, {4, 2, 3}, {0, 4, 3}};
+  s.face.rows = s.tris.size();
+  EXPECT_EQ(flip_caps(s, no_lines, 1e-9), 1);
+  for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0) << t;
+  EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
+}
+
+//   1
+//   | ==--_2__3     two triangles back to back, joined along 0 1: a fin, of which a flip would leave two
+//   spikes | ==--
+//   0
+TEST(Caps, AFinIsNotCutOff) {
+  Surface s;
+  s.points = {{0, 0, 0}, {0, 1, 0}, {1, 0.5, 0}, {1.2, 0.5, 0}};
+  s.tris = {{0, 1, 2}, {1, 0, 3}};
+  s.face.rows = s.tris.size();
+  const std::vector<int> none(6, -1);
+  EXPECT_EQ(flip_caps(s, none, 0.4), 0);
+  EXPECT_EQ(flip_caps(s, none, 0.5), 1);
 }
