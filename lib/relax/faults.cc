@@ -456,7 +456,7 @@ struct Search {
     better = !best || now.less_than(best->fault);
     lower = !lowest || now.sum() < rules::less_excess * lowest->fault.sum();
     if (!better && !lower) return;
-    const auto seen = std::make_shared<const Seen>(s, now);
+    const auto seen = std::make_shared<const Seen>(Seen{s, now});
     if (better) best = seen;
     if (lower) lowest = seen;
   }
