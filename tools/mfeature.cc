@@ -196,15 +196,15 @@ void mark(Io& io, Options& o) {
     o.triangles = stream.input_triangles > 0 ? stream.input_triangles : (double)surface.tris.size();
   const double length = o.size > 0 ? o.size : size_for_count(total_area(surface), o.triangles);
   if (asked) o.size = length;
-  int flips = 0;  // charts, and vertices in the middle of edges, do not follow
+  Flips flips;  // charts, and vertices in the middle of edges, do not follow
   if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("origin") &&
       !stream.find("chart_vertex") && !stream.find("mid_vertex"))
-    flips = flip_caps(surface, segments_under(surface, read_model_edges(stream)),
-                      tolerance_of(o, length, diagonal(surface)));
-  if (flips > 0)
-    io.say(std::to_string(flips) +
-           " edges flipped at triangles of no height, or where the surface lay flat on itself");
-  io.report["flipped"] = flips;
+    flips = flip_caps_and_folds(surface, segments_under(surface, read_model_edges(stream)),
+                                tolerance_of(o, length, diagonal(surface)));
+  report_flips(io, flips);
+  DefeatureReport unfolded;
+  unfolded.moved = flips.moved;
+  if (flips.moved > 0) stream.remarks.push_back(remark_of(unfolded));
   std::vector<int> before = surface.face.has("patch") ? surface.face.get<int>("patch") : std::vector<int>();
   CapPatches caps;
   for (const std::string& remark : stream.remarks)

@@ -9,6 +9,9 @@ namespace meshpipe {
 /// Returns whether unit normals m and n of two neighboring triangles differ by more than 150 degrees.
 inline bool turn_back(Vec3 m, Vec3 n) { return dot(m, n) < -0.8660254037844386; }
 
+/// Returns whether they say that these lie flat on each other; their sum then says nothing.
+inline bool lie_flat(Vec3 m, Vec3 n) { return dot(m, n) < -0.99; }
+
 /// Returns whether the reference, within an edge length of the middle of edge ab, lacks a triangle with
 /// normal about m or one with normal about n (unit vectors). If so, triangles that turn back at the edge are
 /// a fold; those of thin plates and sharp ridges are not.

@@ -4,6 +4,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/edit_mesh.h"
+#include "lib/core/fold.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"
 #include "lib/defeature/defeature.h"
@@ -11,10 +12,9 @@
 namespace meshpipe {
 namespace {
 
-constexpr double rounding = 3e-6;    ///< of the diagonal: single-precision coordinates, with a margin
-constexpr double least_end = 1e-3;   ///< of the edge: a corner nearer to its end makes a needle there
-constexpr double flat_fold = -0.99;  ///< cosine between the normals of a pair that lies flat on itself
-constexpr int most_passes = 20;      ///< one for each row of caps that lean on each other
+constexpr double rounding = 3e-6;   ///< of the diagonal: single-precision coordinates, with a margin
+constexpr double least_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
+constexpr int most_passes = 20;     ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
 double height(Vec3 a, Vec3 b, Vec3 c) {
@@ -40,36 +40,61 @@ bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double le
          !m.joined(m.apex(h), m.apex(m.opp[h]));
 }
 
-/// Whether the triangles of h lie flat on each other, and would no more if it were flipped: the edge, which
-/// goes, is within the tolerance of what is there then.
-bool is_fold(const EditMesh& m, const std::vector<Vec3>& points, int h, double tolerance) {
-  const int o = m.opp[h];
-  if (m.hard[h]) return false;
-  auto normal = [&](int t) {
-    return area_vector(points[m.tris[t][0]], points[m.tris[t][1]], points[m.tris[t][2]]);
+double distance(const std::vector<Vec3>& points, const Tri& t, int v) {
+  const auto w = closest_on_triangle(points[v], points[t[0]], points[t[1]], points[t[2]]);
+  return norm(w[0] * points[t[0]] + w[1] * points[t[1]] + w[2] * points[t[2]] - points[v]);
+}
+
+/// How far a flip moves the surface at most, and the triangle that is then where the smaller one was.
+struct Unfolding {
+  double moved = infinity;
+  int instead = -1;
+};
+
+/// Flips the edge of h in thought, at which the surface lies flat on itself; infinite if it does not, or
+/// still would. The apex of the smaller triangle divides the larger one, from which it is not far. What is
+/// left over is the smaller triangle: it is no farther from its own other edges than it is high, and no
+/// farther from one triangle around than its corners are, as distance from a triangle is convex. Requires: h
+/// is of the smaller triangle.
+Unfolding unfold(const EditMesh& m, const Mesh& s, int h) {
+  const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
+  const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
+  const auto& p = s.points;
+  if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) ||
+      !(dot(area_vector(p[a], p[d], p[c]), up) > 0) || !(dot(area_vector(p[b], p[c], p[d]), up) > 0))
+    return {};
+  Unfolding found{norm(n) / edge_length(s, h), h / 3};
+  auto try_instead = [&](int face, const Tri& t) {
+    const double most = std::max({distance(p, t, a), distance(p, t, b), distance(p, t, c)});
+    if (most < found.moved) found = {most, face};
   };
-  const Vec3 n = normal(h / 3), k = normal(o / 3);
-  if (!(dot(n, k) < flat_fold * norm(n) * norm(k))) return false;
-  const Vec3 a = points[m.from(h)], b = points[m.to(h)], c = points[m.apex(h)], d = points[m.apex(o)];
-  if (!(dot(area_vector(a, d, c), n + k) > 0) || !(dot(area_vector(b, c, d), n + k) > 0)) return false;
-  std::vector<std::array<Vec3, 3>> around{{a, d, c}, {b, c, d}};
+  try_instead(h / 3, {a, d, c});
+  try_instead(o / 3, {b, c, d});
   for (int e : {next(h), prev(h), next(o), prev(o)})
-    if (const int g = m.opp[e]; g >= 0)
-      around.push_back({points[m.from(g)], points[m.to(g)], points[m.apex(g)]});
-  for (double x : {0.25, 0.5, 0.75}) {
-    const Vec3 p = lerp(a, b, x);
-    auto near = [&](const std::array<Vec3, 3>& t) {
-      const auto w = closest_on_triangle(p, t[0], t[1], t[2]);
-      return norm(w[0] * t[0] + w[1] * t[1] + w[2] * t[2] - p) <= tolerance;
-    };
-    if (std::none_of(around.begin(), around.end(), near)) return false;
-  }
-  return !m.joined(m.apex(h), m.apex(o));
+    if (const int g = m.opp[e]; g >= 0) try_instead(g / 3, s.tris[g / 3]);
+  found.moved += distance(p, s.tris[o / 3], c);
+  return found;
+}
+
+/// Per triangle, how far it is from the surface as it was, and what it stands for is from it, at most.
+using Drift = std::vector<double>;
+
+/// Returns whether a flip of the edge of h unfolds the surface and keeps it within the tolerance; then the
+/// drift is what it is after the flip.
+bool may_unfold(const EditMesh& m, const Mesh& s, int h, double tolerance, Drift& drift) {
+  const int o = m.opp[h];
+  if (m.hard[h] || triangle_area(s, h / 3) > triangle_area(s, o / 3)) return false;
+  const Unfolding u = unfold(m, s, h);
+  const double after = std::max(drift[h / 3], drift[o / 3]) + u.moved;
+  if (!(after <= tolerance)) return false;
+  drift[h / 3] = drift[o / 3] = after;
+  drift[u.instead] = std::max(drift[u.instead], after);
+  return true;
 }
 
 }  // namespace
 
-int flip_caps(Surface& surface, const std::vector<int>& line, double tolerance) {
+Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double tolerance) {
   const std::vector<int> opposite = opposite_halfedges(surface);
   const double least = rounding * diagonal(surface);
   const std::vector<Vec3> normal = face_normals(surface);
@@ -80,8 +105,8 @@ int flip_caps(Surface& surface, const std::vector<int>& line, double tolerance) 
   bool any = false;
   for (int h = 0; h < (int)opposite.size() && !any; ++h)
     any = (h % 3 == 0 && is_low(h / 3)) ||
-          (opposite[h] > h && dot(normal[h / 3], normal[opposite[h] / 3]) < flat_fold);
-  if (!any) return 0;
+          (opposite[h] > h && lie_flat(normal[h / 3], normal[opposite[h] / 3]));
+  if (!any) return {};
   EditMesh m(Connectivity{surface, opposite});
   for (const char* name : {"patch", "part"}) {
     if (!surface.face.has(name)) continue;
@@ -91,25 +116,26 @@ int flip_caps(Surface& surface, const std::vector<int>& line, double tolerance) 
   }
   for (int h = 0; h < (int)m.opp.size(); ++h)
     if (const int o = m.opp[h]; o >= 0 && (line[h] >= 0 || line[o] >= 0)) m.hard[h] = 1;
-  int all = 0;
-  for (int pass = 0, before = -1; pass < most_passes && all != before; ++pass) {
-    before = all;
+  Flips flips;
+  Drift drift(surface.tris.size(), 0);
+  for (int pass = 0, before = -1; pass < most_passes && flips.count != before; ++pass) {
+    before = flips.count;
     for (int t = 0; t < (int)m.tris.size(); ++t) {
       int h = longest_edge(surface, t);
       if (!is_cap(m, surface.points, h, least)) {
-        for (h = 3 * t; h < 3 * t + 3 && !is_fold(m, surface.points, h, tolerance);) ++h;
+        for (h = 3 * t; h < 3 * t + 3 && !may_unfold(m, surface, h, tolerance, drift);) ++h;
         if (h == 3 * t + 3) continue;
       }
-      int large = m.opp[h] / 3, small = t;
-      if (triangle_area(surface, small) > triangle_area(surface, large)) std::swap(small, large);
+      const int u = m.opp[h] / 3;
       m.flip(h);
-      surface.tris[small] = m.tris[small], surface.tris[large] = m.tris[large];
+      surface.tris[t] = m.tris[t], surface.tris[u] = m.tris[u];
       for (Column& column : surface.face.columns)
-        std::visit([&](auto& values) { values[small] = values[large]; }, column.data);
-      ++all;
+        std::visit([&](auto& values) { values[t] = values[u]; }, column.data);
+      ++flips.count;
     }
   }
-  return all;
+  flips.moved = *std::max_element(drift.begin(), drift.end());
+  return flips;
 }
 
 }  // namespace meshpipe

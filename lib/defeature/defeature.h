@@ -42,13 +42,18 @@ struct DefeatureOptions {
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 
+struct Flips {
+  int count = 0;
+  double moved = 0;  ///< by those at folds: no point of either surface is farther than this from the other
+};
+
 /// Flips edges at triangles of no height: below 3e-6 of the diagonal, rounding of single-precision
 /// coordinates decides which way a triangle faces. Its longest edge is flipped if both new triangles are
-/// higher and face as the neighbor does. Both get the face columns of the larger one. Also flips edges at
-/// which the surface lies flat on itself, if it does not any more and no edge is farther than `tolerance`
-/// from it then. Edges between patches or parts, and those with a number in `line` (per half-edge, -1: none)
-/// stay. Model bits are not kept. Returns the number of flips. Throws: as opposite_halfedges.
-int flip_caps(Surface& surface, const std::vector<int>& line, double tolerance);
+/// higher and face as the neighbor does. Also flips edges at which the surface lies flat on itself, if that
+/// unfolds it and no point moves farther than `tolerance`. Both triangles get the face columns of the larger
+/// one. Edges between patches or parts, and those with a number in `line` (per half-edge, -1: none) stay.
+/// Model bits are not kept. Throws: as opposite_halfedges.
+Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double tolerance);
 
 /// Returns the remark "removed FEATURES moved DISTANCE" for mcheck: how far the surface may be off.
 std::string remark_of(const DefeatureReport& report);

@@ -26,7 +26,8 @@ bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
   if (s.hold[kept] == frozen) return false;  // may be joined outside the patch
   if (merge ? s.hold[gone] != fixed : s.hold[gone] >= fixed || (s.hold[gone] == slides && !m.hard[h]))
     return false;
-  if (m.valence(gone) < 3 || !m.can_collapse(h, gone, merge) || makes_chord(s, h, gone, kept)) return false;
+  const bool is_ear = m.valence(gone) < 3;  // a corner of the border
+  if (is_ear || !m.can_collapse(h, gone, merge) || makes_chord(s, h, gone, kept)) return false;
   const int g = m.opp[h];
   if (g < 0) return true;
   const int c = m.apex(h), d = m.apex(g);

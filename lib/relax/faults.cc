@@ -442,8 +442,8 @@ struct Seen {
   Fault fault;
 };
 
-/// The meshes seen while faults are removed. Refinement and repair go on from the one with the lowest sum: a
-/// few pairs are often repaired. `best` is the result.
+/// The meshes seen while faults are removed. Repair begins with the one with the lowest sum, since a few
+/// pairs can often be repaired; `best` is the result.
 struct Search {
   Known known;
   std::shared_ptr<const Seen> best{}, lowest{};

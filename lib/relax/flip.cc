@@ -109,10 +109,10 @@ bool may_flip(const State& s, int h) {
   const Vec3 n0 = s.face_normal(h / 3), n1 = s.face_normal(g / 3),
              m0 = normalized(area_vector(s.points[a], s.points[d], s.points[c])),
              m1 = normalized(area_vector(s.points[b], s.points[c], s.points[d]));
-  constexpr double flat_fold = -0.99;  // then the larger triangle faces the right way
-  const Vec3 up = dot(n0, n1) < flat_fold ? area_vector(s.points[a], s.points[b], s.points[c]) +
-                                                area_vector(s.points[b], s.points[a], s.points[d])
-                                          : n0 + n1;
+  // of two that lie flat on each other the larger faces the right way
+  const Vec3 up = lie_flat(n0, n1) ? area_vector(s.points[a], s.points[b], s.points[c]) +
+                                         area_vector(s.points[b], s.points[a], s.points[d])
+                                   : n0 + n1;
   if (dot(m0, up) <= 0 || dot(m1, up) <= 0 ||
       dot(m0, m1) < std::min(dot(n0, n1), rules::bend) - rules::same_cosine)
     return false;

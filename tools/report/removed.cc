@@ -20,6 +20,14 @@ std::string text(std::size_t n, const char* what) {
 
 }  // namespace
 
+void report_flips(Io& io, const Flips& flips) {
+  io.report["flipped"] = flips.count;
+  if (flips.count == 0) return;
+  const std::string moved = flips.moved > 0 ? "; no point has moved by more than " + text(flips.moved) : "";
+  io.say(text(flips.count, "edge") +
+         " flipped at triangles of no height, or where the surface lay flat on itself" + moved);
+}
+
 void report_removed(Io& io, const DefeatureReport& r, double tolerance, const Stream& stream) {
   io.report["tolerance"] = tolerance;
   io.report["moved"] = r.moved;

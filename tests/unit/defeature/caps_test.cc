@@ -30,11 +30,11 @@ const std::vector<int> no_lines(12, -1);
 
 TEST(Caps, AreFlippedWithTheTriangleAcrossTheirLongestEdge) {
   Surface s = with_cap(1e-7);
-  EXPECT_EQ(flip_caps(s, no_lines, 0), 1);
+  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 1);
   for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0.3) << t;
   EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
   EXPECT_EQ(s.face.get<double>("load"), (std::vector<double>{4, 2, 3, 4}));
-  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
 }
 
 TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
@@ -43,24 +43,24 @@ TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
   // the upper one comes first, which has nothing below it to be flipped with until the lower one is gone
   s.tris = {{2, 1, 5}, {0, 1, 2}, {0, 2, 3}, {5, 1, 3}, {1, 0, 4}, {2, 5, 3}};
   s.face = {"face", s.tris.size(), {}};
-  EXPECT_EQ(flip_caps(s, std::vector<int>(18, -1), 0), 2);
+  EXPECT_EQ(flip_caps_and_folds(s, std::vector<int>(18, -1), 0).count, 2);
   for (int t = 0; t < 6; ++t) EXPECT_GT(area_vector(s, t).z, 0.2) << t;
 }
 
 TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
   Surface high = with_cap(1e-4), line = with_cap(1e-7), patches = with_cap(1e-7);
-  EXPECT_EQ(flip_caps(high, no_lines, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(high, no_lines, 0).count, 0);
   std::vector<int> on_edge = no_lines;
   on_edge[0] = 3;
-  EXPECT_EQ(flip_caps(line, on_edge, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(line, on_edge, 0).count, 0);
   patches.face.get<int>("patch")[3] = 6;
-  EXPECT_EQ(flip_caps(patches, no_lines, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(patches, no_lines, 0).count, 0);
 }
 
 TEST(Caps, StayWhereTheirCornerIsNextToAnEndOfTheEdge) {
   Surface s = with_cap(1e-8);
   s.points[2].x = 1e-4;  // the other diagonal would make a needle of 0, 4 and 2
-  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
 }
 
 TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
@@ -69,7 +69,7 @@ TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
   s.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-7, 0}, {0.5, -1, 0}};
   s.tris = {{0, 1, 2}, {1, 0, 3}, {0, 2, 3}, {2, 1, 3}};
   s.face.rows = s.tris.size();
-  EXPECT_EQ(flip_caps(s, no_lines, 0), 0);
+  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
 }
 
 //   3---------2     vertex 4 should be left of the diagonal 0 2 and is a little right of it, so that the
@@ -78,10 +78,14 @@ TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
 //   0---------1
 TEST(Caps, WhatLiesFlatOnItselfIsUnfolded) {
   Surface s;
-  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.51, 0.49, 0}};
+  s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.52, 0.48, 0}};
   s.tris = {{0, 1, 2}, {0, 2, 4}, {4, 2, 3}, {0, 4, 3}};
   s.face.rows = s.tris.size();
-  EXPECT_EQ(flip_caps(s, no_lines, 1e-9), 1);
+  const double off = 0.02 * std::sqrt(2);  // the diagonal that goes, from vertex 4
+  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0.9 * off).count, 0);
+  const Flips flips = flip_caps_and_folds(s, no_lines, 1.1 * off);
+  EXPECT_EQ(flips.count, 1);
+  EXPECT_NEAR(flips.moved, off, 1e-12);
   for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0) << t;
   EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
 }
@@ -96,6 +100,6 @@ TEST(Caps, AFinIsNotCutOff) {
   s.tris = {{0, 1, 2}, {1, 0, 3}};
   s.face.rows = s.tris.size();
   const std::vector<int> none(6, -1);
-  EXPECT_EQ(flip_caps(s, none, 0.4), 0);
-  EXPECT_EQ(flip_caps(s, none, 0.5), 1);
+  EXPECT_EQ(flip_caps_and_folds(s, none, 0.5).count, 0);
+  EXPECT_EQ(flip_caps_and_folds(s, none, 1.1).count, 1);
 }
