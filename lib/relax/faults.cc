@@ -86,10 +86,10 @@ void find_intersections(const State& s, Known& known, Fault& found) {
     known.contacts = contacts(joined, self_intersections(joined));
     if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
   }
-  const int all = (int)found.pairs.size();
+  found.of_reference = (int)found.pairs.size();
   if (known.contact_tree)
     found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.contact_tree);
-  found.of_reference = all - (int)found.pairs.size();
+  found.of_reference -= (int)found.pairs.size();
 }
 
 /// The edges, each by one half-edge, at which the mesh folds and the reference does not.
@@ -160,9 +160,8 @@ std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowe
 /// all are at most `limit`. A walk may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const auto [a, b, c] = s.mesh.tris[t];
-  const Piece whole{{s.points[a], s.points[b], s.points[c]},
-                    {s.place[a].face, s.place[b].face, s.place[c].face},
-                    {0, 0, 0}};
+  const std::array face{s.place[a].face, s.place[b].face, s.place[c].face};
+  const Piece whole{{s.points[a], s.points[b], s.points[c]}, face, {0, 0, 0}};
   auto allowed = [&](int) { return limit; };
   return farthest(whole, s.reference->surface, allowed, [&](Vec3 p) { return tree.nearest(p); })
       .second.distance;
@@ -500,7 +499,8 @@ bool repair(State& s, Search& search) {
   std::shared_ptr<const Seen> tried;
   for (const bool from_best : {false, true}) {
     const auto start = from_best ? search.best : search.lowest;
-    if (start == tried || start->fault.places() > rules::few_faults || search.best->fault.none()) continue;
+    const int most = std::min(rules::few_faults, start->mesh.mesh.live / 2);
+    if (start == tried || start->fault.places() > most || search.best->fault.none()) continue;
     search.go_to(s, start);
     tried = start, any = true;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {

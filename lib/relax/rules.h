@@ -118,8 +118,9 @@ constexpr double growth = 1.6,
                  few = 300;       // of the triangles, and triangles: what the removal of faults may add
 constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int fault_repairs = 10, few_faults = 300;  // rounds, and places: of more the sizes are at fault
-constexpr double far_weight = 10, pair_weight = 5;   // of the objective
+constexpr int fault_repairs = 10,
+              few_faults = 300;  // rounds, places: of more, or of half the mesh, sizes are bad
+constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples
