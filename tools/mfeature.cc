@@ -146,6 +146,26 @@ bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<in
   return true;
 }
 
+/// Flags the triangles that are not removed with fragments: those between two regions, and of patches with
+/// names if there are several.
+std::vector<char> kept_triangles(const Stream& stream, bool keep_boundary) {
+  const Surface& surface = stream.surface;
+  std::vector<char> flags(surface.tris.size(), keep_boundary);
+  if (!surface.face.has("patch")) return flags;
+  const std::vector<int>& patch = surface.face.get<int>("patch");
+  const std::vector<SheetPatch> sheets = has_sheets(stream) ? read_sheets(stream) : std::vector<SheetPatch>();
+  std::vector<int> named;
+  for (const Name& n : stream.names)
+    if (n.dim == 2) named.push_back(n.tag);
+  sort_unique(named);
+  for (std::size_t t = 0; t < flags.size(); ++t) {
+    const SheetPatch* sheet = find_sheet(sheets, patch[t]);
+    flags[t] |= (sheet && sheet->front != sheet->back) ||
+                (named.size() > 1 && std::binary_search(named.begin(), named.end(), patch[t]));
+  }
+  return flags;
+}
+
 double tolerance_of(const Options& o, double length, double diagonal) {
   if (o.tolerance != "auto") return *parse_length(o.tolerance, diagonal);
   const double share = std::min(default_tolerance * length, most_of_diagonal * diagonal);
@@ -219,6 +239,7 @@ void mark(Io& io, Options& o) {
   // a border that moved would part from those of the other sheets that meet there
   DefeatureOptions narrow{tolerance_of(o, length, diagonal(surface)), o.keep_boundary || has_sheets(stream)};
   if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
+  narrow.kept = kept_triangles(stream, o.keep_boundary);
   if (defeature(io, stream, narrow, before, given)) {
     o.again = true;
     marked = features();

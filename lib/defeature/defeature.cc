@@ -135,12 +135,13 @@ std::vector<int> new_needles(const MergedSurface& z, const std::vector<int>& ima
   return found;
 }
 
-std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vector<int>& image) {
+/// Adds the features that were closed to those that were removed whole.
+std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vector<int>& image,
+                                        std::vector<RemovedFeature> all) {
   std::vector<char> merged;
   UnionFind sets = feature_sets(z, image, merged);
   std::vector<int> number(z.points.size(), -1);
-  std::vector<RemovedFeature> all;
-  std::vector<Box> box;
+  std::vector<Box> box(all.size());
   for (const Merge& m : z.merges) {
     int& i = number[sets.find(image[m.gone])];
     if (i < 0) {
@@ -152,7 +153,8 @@ std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vecto
     box[i] = join(box[i], {m.at, m.at});
     ++all[i].merged;
   }
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].length = norm(box[i].hi - box[i].lo);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].merged > 0) all[i].length = norm(box[i].hi - box[i].lo);
   std::stable_sort(all.begin(), all.end(), [](auto& a, auto& b) { return a.width > b.width; });
   return all;
 }
@@ -179,14 +181,18 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
       std::none_of(model.begin(), model.end(), [](int bits) { return bits != 0; }))
     return report;  // without lines nothing is narrow
   std::vector<char> banned(surface.points.size(), 0);
+  EditMesh edited(c);
+  std::vector<double> drift(surface.points.size(), 0);
+  const std::vector<RemovedFeature> fragments = remove_fragments(surface, options, edited, drift);
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    Zipper z(surface, EditMesh(c), options, given, banned);
+    Zipper z(surface, edited, options, given, banned);
+    z.drift = drift;
     std::vector<double> sharpest;
     for (int v = 0; v < (int)banned.size(); ++v)
       sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));
     for (int pass = 0; pass < most_passes; ++pass)
       if (z.contract_clusters() + z.close_strips() + z.contract_regions() == 0) break;
-    if (z.merges.empty()) return report;
+    if (z.merges.empty() && fragments.empty()) return report;
     std::vector<int> face, vertex, lines;
     const std::vector<int> image = images(z);
     Surface result = result_of(z, surface, face, vertex, lines);
@@ -197,7 +203,7 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
     const std::vector<int> crossing = crossing_triangles(result, changed, surface);
     const std::vector<int> needles = new_needles(z, image, sharpest);
     if (crossing.empty() && needles.empty()) {
-      report.removed = features_of(z, image);
+      report.removed = features_of(z, image, fragments);
       report.merged = (int)z.merges.size();
       report.moved = *std::max_element(z.drift.begin(), z.drift.end());
       const std::vector<int> before = labels(surface), after = labels(result);

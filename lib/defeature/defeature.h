@@ -12,9 +12,9 @@ namespace meshpipe {
 /// A connected place where features were removed.
 struct RemovedFeature {
   Vec3 at;            ///< where it was widest
-  double width = 0;   ///< the longest distance over which two vertices were merged
+  double width = 0;   ///< the longest distance over which two vertices were merged, or a fragment was off
   double length = 0;  ///< diagonal of the box around the place
-  int merged = 0;     ///< vertices
+  int merged = 0;     ///< vertices; 0: a fragment
 };
 
 struct DefeatureReport {
@@ -31,14 +31,15 @@ struct DefeatureOptions {
   double tolerance = 0;       ///< 0: nothing is removed
   bool keep_borders = false;  ///< no vertex of a border moves
   std::vector<char> plane{};  ///< flags of triangles whose vertices stay in their plane; empty: none
+  std::vector<char> kept{};   ///< flags of triangles that stay if they are a fragment; empty: none
 };
 
-/// Closes strips between two lines (model edges, borders) at most `tolerance` wide, and contracts short lines
-/// and small regions between corners: vertices across are merged, the weaker line into the stronger one. No
-/// point moves farther than `tolerance`; the topology stays, and so do strips from which the surface folds
-/// back (the rim of a thin plate, the bottom of a slot). Updates face column `model`, which it needs; other
-/// columns follow. `given`: per half-edge the number of a line stronger than creases, or -1; or null. Throws:
-/// NotAdmissible at a vertex of several fans, and as opposite_halfedges.
+/// Closes strips between two lines (model edges, borders) at most `tolerance` wide, contracts short lines and
+/// small regions between corners, and removes loose fragments: small components with a border, near the rest.
+/// No point moves farther than `tolerance`; other topology stays, and so do strips from which the surface
+/// folds back (the rim of a thin plate, the bottom of a slot). Needs face column `model`; all columns follow.
+/// `given`: per half-edge the number of a line stronger than creases, or -1; or null. Throws: NotAdmissible
+/// at a vertex of several fans, and as opposite_halfedges.
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 

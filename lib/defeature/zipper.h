@@ -58,6 +58,11 @@ struct MergedSurface {
   double sharpest(int v) const;
 };
 
+/// Removes small components with a border from the mesh of the surface, if the tolerance holds between them
+/// and the rest, which starts there with that `drift` (per vertex).
+std::vector<RemovedFeature> remove_fragments(const Surface& surface, const DefeatureOptions& options,
+                                             EditMesh& mesh, std::vector<double>& drift);
+
 /// Merges vertices of a surface.
 class Zipper : public MergedSurface {
  public:

@@ -3,6 +3,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/chord.h"
+#include "lib/core/farthest.h"
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
@@ -109,53 +110,6 @@ std::vector<int> folded_edges(const State& s, Known& known) {
   return folded;
 }
 
-/// A part of a triangle, with the triangles of another surface that are nearest to its corners.
-struct Piece {
-  std::array<Vec3, 3> corner;
-  std::array<int, 3> face;
-  std::array<double, 3> distance;
-
-  double side(int i) const { return norm(corner[next(i)] - corner[i]); }
-  int longest() const {
-    return std::max({0, 1, 2}, [&](int i, int k) { return side(i) < side(k); });
-  }
-  /// Is no point farther than `limit`? None is farther from a corner than the longest side over sqrt(3), and
-  /// distance from one triangle of the other surface is convex.
-  bool within(double limit, const Mesh& other) const {
-    const double most = *std::max_element(distance.begin(), distance.end());
-    if (most + side(longest()) / std::numbers::sqrt3 <= limit) return true;
-    return std::any_of(face.begin(), face.end(), [&](int f) {
-      return std::all_of(corner.begin(), corner.end(),
-                         [&](Vec3 p) { return norm(closest_point(other, f, p) - p) <= limit; });
-    });
-  }
-};
-
-/// Returns the point of the piece that is farthest from the other surface over allowed(f), where triangle f
-/// of that is nearest, as far as halving finds it; and its hit, which `nearest` returns.
-template <class Allowed, class Nearest>
-std::pair<Vec3, Bvh::Hit> farthest(const Piece& whole, const Mesh& other, Allowed allowed, Nearest nearest) {
-  std::vector<Piece> pieces{whole};
-  std::pair<Vec3, Bvh::Hit> most;
-  double most_over = 0;  // its distance over what is allowed
-  for (int halvings = 0; !pieces.empty() && halvings < rules::most_halvings; ++halvings) {
-    const Piece piece = pieces.back();
-    pieces.pop_back();
-    const double least = std::min({allowed(piece.face[0]), allowed(piece.face[1]), allowed(piece.face[2])});
-    if (piece.within(std::max(1.0, rules::farther_by * most_over) * least, other)) continue;
-    const int k = piece.longest();
-    const Vec3 middle = lerp(piece.corner[k], piece.corner[next(k)], 0.5);
-    const Bvh::Hit hit = nearest(middle);
-    if (const double over = hit.distance / allowed(hit.place.face); over > most_over)
-      most = {middle, hit}, most_over = over;
-    for (int end : {k, next(k)}) {
-      Piece& half = pieces.emplace_back(piece);
-      half.corner[end] = middle, half.distance[end] = hit.distance, half.face[end] = hit.place.face;
-    }
-  }
-  return most;
-}
-
 /// Returns the largest distance of triangle t from the reference that is found; it is not looked for where
 /// all are at most `limit`. A walk may end on the wrong sheet, so it is searched for.
 double distance_of(const State& s, int t, const Bvh& tree, double limit) {
@@ -163,8 +117,7 @@ double distance_of(const State& s, int t, const Bvh& tree, double limit) {
   const std::array face{s.place[a].face, s.place[b].face, s.place[c].face};
   const Piece whole{{s.points[a], s.points[b], s.points[c]}, face, {0, 0, 0}};
   auto allowed = [&](int) { return limit; };
-  return farthest(whole, s.reference->surface, allowed, [&](Vec3 p) { return tree.nearest(p); })
-      .second.distance;
+  return farthest(whole, s.reference->surface, allowed, [&](Vec3 p) { return tree.nearest(p); }).hit.distance;
 }
 
 /// How far triangle t and what is nearest to it may be apart, by this share of the size; `mean`: its mean.
@@ -221,7 +174,7 @@ void add_missed_places(const State& s, Samples& samples, int time, double share)
                     [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
-    const auto [p, hit] =
+    const auto [p, hit, complete] =
         farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
     if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
 #pragma omp critical
@@ -501,8 +454,7 @@ bool repair(State& s, Search& search) {
     const auto start = from_best ? search.best : search.lowest;
     const int most = std::min(rules::few_faults, start->mesh.mesh.live / 2);
     if (start == tried || start->fault.places() > most || search.best->fault.none()) continue;
-    search.go_to(s, start);
-    tried = start, any = true;
+    search.go_to(s, start), tried = start, any = true;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
       repair_at(s, search.now, search.known);
       search.look(s);

@@ -102,9 +102,7 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
-constexpr double doubtful = 0.4;     // of the bearable, walked to: from there all of a triangle is searched
-constexpr double farther_by = 1.02;  // of a triangle's largest distance so far: halving looks for more
-constexpr int most_halvings = 400;   // of a triangle, to find its largest distance
+constexpr double doubtful = 0.4;  // of the bearable, walked to: from there all of a triangle is searched
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;  // sine of 20 degrees: wider corners have room for good triangles

@@ -332,3 +332,45 @@ TEST(Defeature, TheEndOfARodStays) {
   mark_features(s, {FeatureOptions::angles, 40, 20, 1e-3});
   EXPECT_TRUE(removed(s, 2 * width).removed.empty());
 }
+
+/// A square of side 2 and above it, at z = height, a triangle that ends at x = end.
+Surface with_flap(double height, double end) {
+  Surface s = extruded({{0, 0}, {1, 0}, {2, 0}}, 2);
+  s.points.insert(s.points.end(), {{0.5, 0.5, height}, {end, 0.5, height}, {0.5, 1.5, height}});
+  s.tris.push_back({9, 10, 11});
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>(s.tris.size(), 0));
+  s.face.get<int>("patch").back() = 1;
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  return s;
+}
+
+TEST(Defeature, AFragmentWithinTheToleranceOfTheRestIsRemoved) {
+  Surface s = with_flap(too_narrow, 1.5);
+  const Surface before = s;
+  const DefeatureReport r = remove_small_features(s, {width});
+  ASSERT_EQ(r.removed.size(), 1u);
+  EXPECT_NEAR(r.removed[0].width, too_narrow, 0.03 * width);
+  EXPECT_NEAR(r.removed[0].length, std::numbers::sqrt2, 1e-9);
+  EXPECT_EQ(r.vanished, std::vector<int>{1});
+  EXPECT_EQ(s.tris.size(), before.tris.size() - 1);
+  EXPECT_EQ(s.points.size(), before.points.size() - 3);
+  EXPECT_LE(farthest(before, s), r.moved);
+  EXPECT_LE(r.moved, width);
+}
+
+TEST(Defeature, AFragmentFartherThanTheToleranceStays) {
+  for (Surface s : {with_flap(wide_enough, 1.5), with_flap(too_narrow, 2.1)}) {
+    const std::size_t n = s.tris.size();
+    EXPECT_TRUE(remove_small_features(s, {width}).removed.empty());
+    EXPECT_EQ(s.tris.size(), n);
+  }
+}
+
+TEST(Defeature, AFragmentThatIsKeptStays) {
+  Surface s = with_flap(too_narrow, 1.5);
+  DefeatureOptions options{width};
+  options.kept.assign(s.tris.size(), 0);
+  options.kept.back() = 1;
+  EXPECT_TRUE(remove_small_features(s, options).removed.empty());
+}
