@@ -276,10 +276,19 @@ bool slide_vertex(State& s, int v) {
   const Place place = place_at(step);
   const Vec3 p = walk.point(place);
   if (star.energy_on_line(p, size) > now * (1 - rules::least_gain)) return false;
+  auto sag = [&](const Place& from, Vec3 q, Vec3 end) {  // of the segment from q, which is at `from`
+    const Vec3 middle = lerp(end, q, 0.5);
+    return norm(walk.point(walk.slide(from, middle)) - middle);
+  };
   for (const Vec3& end : {ahead, behind}) {
-    if (norm(end - p) <= std::max(rules::longest_segment * size, norm(end - x))) continue;
-    const Vec3 middle = lerp(end, p, 0.5);
-    if (norm(walk.point(walk.slide(place, middle)) - middle) > rules::straight * size) return false;
+    if (norm(end - p) <= norm(end - x)) continue;
+    const double sags = sag(place, p, end);
+    if (norm(end - p) > rules::longest_segment * size) {
+      if (sags > rules::straight * size) return false;
+    } else if (sags > rules::line_deviation * size &&
+               sags > std::max(sag(s.place[v], x, ahead), sag(s.place[v], x, behind))) {
+      return false;
+    }
   }
   const std::vector<CopyPlace> places = places_at(s, v, place, p);
   for (const CopyPlace& c : places) put(s, c.at, c.place, p, c.normal);

@@ -42,11 +42,11 @@ constexpr double split_above = 1.4,
 constexpr double stretch_above = 1.05, squeeze_below = 0.95;  // length: edges that may go to meet a count
 constexpr double count_tolerance = 0.005;                     // of the triangles: what sweeps keep
 constexpr double off_edge = 0.5,
-                 off_line = 0.3;          // of the edge: a new vertex farther away is on another sheet
-constexpr double same_side = 0.3;         // cosine: sides of a model edge that differ by less are one
-constexpr double short_segment = 0.6;     // length: segments that an interface left next to a corner
-constexpr double merged_corners = 0.05;   // length: no good triangle between corners this close
-constexpr double line_deviation = 0.1;    // length: what a line may change when it loses a vertex
+                 off_line = 0.3;         // of the edge: a new vertex farther away is on another sheet
+constexpr double same_side = 0.3;        // cosine: sides of a model edge that differ by less are one
+constexpr double short_segment = 0.6;    // length: segments that an interface left next to a corner
+constexpr double merged_corners = 0.05;  // length: no good triangle between corners this close
+constexpr double line_deviation = 0.1;   // length: what a line may change by a collapse, or sag after a slide
 constexpr double junction_segment = 1.3;  // length: below it one segment is nearer to the size than two
 constexpr int largest_valence = 9;        // of a vertex that a collapse leaves
 constexpr Collapse short_edge{4, 1.4}, short_line{4, 1.6}, irregular{4, 1.6};

@@ -61,4 +61,19 @@ TEST(Move, OnABorderItSlides) {
   EXPECT_GT(m.s.points[1].x, rules::longest_segment * m.s.target(1));
 }
 
+// from the bend to the middle, but only as far as the segment from a does not cut the bend
+TEST(Move, ASlideCutsNoBend) {
+  Drawn m(drawn_surface({"f    e    d",  //
+                         "           ",  //
+                         "a          ",  //
+                         "  b       c"},
+                        "abe aef bcd bde"));
+  ASSERT_EQ(m.s.hold[1], slides);
+  for (int i = 0; i < 20; ++i) slide_vertex(m.s, 1);
+  const Vec3 b = m.s.points[1], bend{2, 0, 0}, chord = b - m.s.points[0];
+  EXPECT_GT(b.x, 2);
+  EXPECT_LT(norm(cross(chord, bend - m.s.points[0])),
+            1.5 * rules::line_deviation * m.s.target(1) * norm(chord));
+}
+
 }  // namespace
