@@ -23,6 +23,11 @@ double turn(Vec3 a, Vec3 b) { return norm(a) > 0 && norm(b) > 0 ? angle(a, b) : 
 
 double longest_edge(Vec3 a, Vec3 b, Vec3 c) { return std::max({norm(b - a), norm(c - b), norm(a - c)}); }
 
+bool is_flat(Vec3 a, Vec3 b, Vec3 c) {
+  const double l = longest_edge(a, b, c);
+  return !(norm(area_vector(a, b, c)) > flattest * l * l);
+}
+
 }  // namespace
 
 Vec3 MergedSurface::normal(int t) const {
@@ -168,20 +173,27 @@ bool Zipper::may_merge(int h, int gone) const {
     const int rung = o / 3 == h / 3 ? h : g;
     return mesh.opp[next(rung) == o ? prev(rung) : next(rung)];
   };
+  auto is_ear = [&](int t) {  // afterwards, without height: it goes, too
+    int borders = 0;
+    for (int k = 3 * t; k < 3 * t + 3; ++k) borders += beyond(k) < 0;
+    const auto [a, b, c] = mesh.tris[t];
+    auto at = [&](int v) { return v == gone ? to : points[v]; };
+    return borders == 2 && is_flat(at(a), at(b), at(c));
+  };
   mesh.star(gone, [&](int e) {
     const int t = e / 3;
     const Vec3 old_normal = normal(t), new_normal = moved(t);
     if (!options_.plane.empty() && options_.plane[origin[t]])
       ok = ok &&
            std::abs(dot(to - points[gone], old_normal)) <= off_plane * options_.tolerance * norm(old_normal);
-    if (vanishes(t)) return;
-    const double l = longest_edge(to, points[mesh.to(e)], points[mesh.apex(e)]);
-    ok = ok && norm(new_normal) > flattest * l * l;
+    if (vanishes(t) || is_ear(t)) return;
+    ok = ok && !is_flat(to, points[mesh.to(e)], points[mesh.apex(e)]);
     ok = ok && (height(t) <= options_.tolerance || turn(old_normal, new_normal) < most_turn);
     double before = 0, after = 0;  // the sharpest fold at t
     for (int k : {e, next(e), prev(e)}) {
       if (const int o = mesh.opp[k]; o >= 0) before = std::max(before, turn(old_normal, normal(o / 3)));
-      if (const int o = beyond(k); o >= 0) after = std::max(after, turn(new_normal, moved(o / 3)));
+      if (const int o = beyond(k); o >= 0 && !is_ear(o / 3))
+        after = std::max(after, turn(new_normal, moved(o / 3)));
     }
     ok = ok && after <= std::max(fold_angle, before + degree);
   });
@@ -220,7 +232,29 @@ bool Zipper::merge(int h) {
   merges.push_back({gone, kept, width, points[gone]});
   drift[kept] = std::max(drift[kept], drift[gone] + width);
   collapse(h, gone);
+  cut_flat_ears(kept);
   return true;
+}
+
+/// Removes triangles at v without height and with two border edges: the border goes straight there.
+void Zipper::cut_flat_ears(int v) {
+  int ear = -1;  // from its outer corner
+  auto find = [&] {
+    ear = -1;
+    mesh.star(v, [&](int e) {
+      const auto [a, b, c] = mesh.tris[e / 3];
+      for (int k : {e, next(e), prev(e)})
+        if (mesh.opp[k] < 0 && mesh.opp[prev(k)] < 0 && is_flat(points[a], points[b], points[c])) ear = k;
+    });
+    return ear >= 0 && mesh.from(ear) != v && mesh.can_collapse(ear, mesh.from(ear), true);
+  };
+  while (find()) {
+    const int outer = mesh.from(ear), kept = mesh.to(ear);
+    const double width = height(ear / 3);
+    merges.push_back({outer, kept, width, points[outer]});
+    for (int end : {kept, mesh.apex(ear)}) drift[end] = std::max(drift[end], drift[outer] + width);
+    collapse(ear, outer);
+  }
 }
 
 int Zipper::split(int h, double t) {
@@ -295,7 +329,7 @@ int Zipper::run(std::vector<Candidate> heap) {
     }
     if (merges.size() == before) continue;
     ++count;
-    mesh.star(merges.back().kept, [&](int h) { consider(heap, h / 3); });
+    mesh.star(merges[before].kept, [&](int h) { consider(heap, h / 3); });
   }
   return count;
 }

@@ -106,6 +106,7 @@ class Zipper : public MergedSurface {
   bool may_merge(int h, int gone) const;
   bool merge(int h);
   void collapse(int h, int gone);
+  void cut_flat_ears(int v);
   int split(int h, double t);
   bool close_cap(int h);
   void consider(std::vector<Candidate>& heap, int t) const;

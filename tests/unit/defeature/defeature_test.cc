@@ -374,3 +374,18 @@ TEST(Defeature, AFragmentThatIsKeptStays) {
   options.kept.back() = 1;
   EXPECT_TRUE(remove_small_features(s, options).removed.empty());
 }
+
+// a wall with its foot on the border A T B E, and a roof from the crease W G E; G is just above B
+TEST(Defeature, AnEarThatAMergeLeavesWithoutHeightIsCutOff) {
+  Surface s;
+  enum { A, T, B, E, G, W, X, Y };
+  s.points = {{0, 0, 0},          {1, 0, 0}, {2, 0, 0}, {3, 0, 0},  //
+              {2, 0, too_narrow}, {0, 0, 1}, {0, 1, 1}, {3, 1, 0}};
+  s.tris = {{A, T, G}, {T, B, G}, {B, E, G}, {A, G, W}, {W, G, X}, {G, E, Y}, {G, Y, X}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  const DefeatureReport r = removed(s, width);
+  EXPECT_EQ(r.removed.size(), 1u);
+  EXPECT_EQ(s.tris.size(), 4u);
+  EXPECT_EQ(s.points.size(), 6u);
+}
