@@ -322,7 +322,7 @@ TEST(Relax, OpenSeamsKeepTheirPoints) {
 TEST(Relax, TriesToMeetACountHaveABound) {
   Body body = cube(200);
   for (Vec3& p : body.points) p.z *= 1e-4;
-  for (int target = 20; target <= 60; target += 5) {
+  for (int target = 20; target <= 60; target += 10) {
     Surface s = sized(body, target);
     s.face.set("patch", body.patch);
     mark_features(s, {});
