@@ -32,7 +32,7 @@ struct Example {
 
   Example() {
     options.tile = 400;
-    pass = relax.pass(whole, true);
+    pass = relax.pass(whole, false);
   }
   std::vector<Stream> tiles(bool relaxed) const {
     std::vector<Stream> streams;
