@@ -472,7 +472,9 @@ Intersections remove_faults(State& s, Samples& samples) {
   Search search{{s.reference->surface, samples}};
   search.look(s);
   // what repair has left is refined again, without what it has cured
+  const std::shared_ptr<const Seen> first = search.best;
   for (int pass = 0; pass < 2 && !search.best->fault.none(); ++pass) {
+    if (pass > 0 && search.best == first) break;  // the same would be seen again
     if (pass > 0) search.go_to(s, search.best);
     if (refine(s, search, most) || !repair(s, search)) break;
   }
