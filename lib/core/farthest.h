@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <vector>
 
 #include "lib/core/bvh.h"
 
@@ -37,17 +38,18 @@ struct Farthest {
   Vec3 point;
   Bvh::Hit hit;          ///< what is nearest to it
   bool complete = true;  ///< false: halving has ended before all was searched
+  int halvings = 0;
 };
 
 /// Returns the point of the piece that is farthest from the other surface over allowed(f), where triangle f
 /// of that is nearest, and more than that; corners are not looked at. `nearest` returns the hit of a point.
 template <class Allowed, class Nearest>
-Farthest farthest(const Piece& whole, const Mesh& other, Allowed allowed, Nearest nearest) {
-  constexpr int most_halvings = 400;
+Farthest farthest(const Piece& whole, const Mesh& other, Allowed allowed, Nearest nearest,
+                  int most_halvings = 400) {
   std::vector<Piece> pieces{whole};
   Farthest most;
   double most_over = 0;  // its distance over what is allowed
-  for (int halvings = 0; !pieces.empty() && halvings < most_halvings; ++halvings) {
+  for (; !pieces.empty() && most.halvings < most_halvings; ++most.halvings) {
     const Piece piece = pieces.back();
     pieces.pop_back();
     const double least = std::min({allowed(piece.face[0]), allowed(piece.face[1]), allowed(piece.face[2])});

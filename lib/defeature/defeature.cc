@@ -114,8 +114,8 @@ void ban_last(const MergedSurface& z, const std::vector<int>& image, const std::
   std::vector<char> wanted(z.points.size(), 0);
   for (int v : at) wanted[v] = 1;
   for (std::size_t i = z.merges.size(); i-- > 0;)
-    if (const int gone = z.merges[i].gone; std::exchange(wanted[image[gone]], 0) && gone < (int)banned.size())
-      banned[gone] = 1;
+    if (const int gone = z.merges[i].gone; !z.merges[i].ear && std::exchange(wanted[image[gone]], 0))
+      if (gone < (int)banned.size()) banned[gone] = 1;
 }
 
 /// Vertices of features that were removed only in part, so that two lines meet there in a sharper needle than
@@ -184,13 +184,14 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
   EditMesh edited(c);
   std::vector<double> drift(surface.points.size(), 0);
   const std::vector<RemovedFeature> fragments = remove_fragments(surface, options, edited, drift);
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  for (int attempt = 0; attempt <= most_attempts; ++attempt) {
+    report.stopped = attempt == most_attempts;  // then only fragments go
     Zipper z(surface, edited, options, given, banned);
     z.drift = drift;
     std::vector<double> sharpest;
     for (int v = 0; v < (int)banned.size(); ++v)
       sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));
-    for (int pass = 0; pass < most_passes; ++pass)
+    for (int pass = 0; pass < most_passes && !report.stopped; ++pass)
       if (z.contract_clusters() + z.close_strips() + z.contract_regions() == 0) break;
     if (z.merges.empty() && fragments.empty()) return report;
     std::vector<int> face, vertex, lines;
@@ -223,7 +224,6 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
     else
       ban(z, image, needles, true, banned);
   }
-  report.stopped = true;
   return report;
 }
 

@@ -24,7 +24,7 @@ struct DefeatureReport {
   std::vector<int> vanished;            ///< patches that have no face any more
   std::vector<int> face;   ///< per triangle of the result, the one of the input that it is part of
   std::vector<int> given;  ///< per half-edge of the result, the number of the given line on it, or -1
-  bool stopped = false;    ///< nothing was removed, since the surface would intersect itself
+  bool stopped = false;    ///< only fragments were, since the surface would intersect itself
 };
 
 struct DefeatureOptions {

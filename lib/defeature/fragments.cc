@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loose fragments of a torn surface, which show nothing that the rest does not.
+#include "lib/core/boxes.h"
 #include "lib/core/farthest.h"
 #include "lib/core/topology.h"
 #include "lib/defeature/zipper.h"
@@ -9,22 +10,57 @@ namespace {
 
 constexpr int most_triangles = 256;  ///< of a fragment
 constexpr double least_share = 0.1;  ///< of the tolerance: smaller distances count as this
+constexpr double around = 1.1;       ///< of the distance of corners: what is tried before the tolerance
+/// Halvings that the search for the farthest point may take, in one triangle and in all.
+constexpr int most_halvings = 2000, halvings_per_triangle = 20, halvings_at_least = 100000;
 
-/// How far a triangle is from those that are not left out, at most; infinite if that is not known.
-double most_distance(const Surface& s, int t, const Bvh& tree, const std::vector<char>& left_out,
-                     double least) {
-  auto nearest = [&](Vec3 p) { return tree.nearest_but(left_out, p, infinity, 0); };
-  Piece whole;
-  double most = least;
-  for (int i = 0; i < 3; ++i) {
-    whole.corner[i] = s.points[s.tris[t][i]];
-    const Bvh::Hit hit = nearest(whole.corner[i]);
-    whole.face[i] = hit.place.face, whole.distance[i] = hit.distance;
-    most = std::max(most, hit.distance);
+/// What stays of a surface for certain, with the rows of its vertices in that.
+struct Rest {
+  Rest(const Surface& s, const std::vector<int>& triangles)
+      : mesh(part_of(s, triangles, &vertices)),
+        tree(mesh),
+        halvings(halvings_at_least + (long)halvings_per_triangle * (long)s.tris.size()) {}
+
+  std::vector<int> vertices;
+  Mesh mesh;
+  Bvh tree;
+  long halvings;  ///< left
+};
+
+/// Is the fragment within `limit` of the rest, as far as the halvings last? `width` grows to the distance
+/// seen.
+bool is_within(const std::vector<Piece>& fragment, double limit, Rest& rest, double& width) {
+  auto nearest = [&](Vec3 p) { return rest.tree.nearest(p); };
+  for (const Piece& piece : fragment) {
+    const Farthest found = farthest(
+        piece, rest.mesh, [&](int) { return limit; }, nearest,
+        (int)std::min<long>(most_halvings, rest.halvings));
+    rest.halvings -= found.halvings;
+    if (found.halvings > 0) width = std::max(width, found.hit.distance);
+    if (!found.complete || width > limit) return false;
   }
-  const Farthest found = farthest(
-      whole, s, [&](int) { return most; }, nearest);
-  return found.complete ? std::max(most, farther_by * found.hit.distance) : infinity;
+  return true;
+}
+
+/// Returns what no point of these triangles is farther from the rest than, and the distance seen; infinity if
+/// they are not known to be within the tolerance.
+double most_distance(const Surface& s, const std::vector<int>& triangles, double tolerance, Rest& rest,
+                     double& width) {
+  std::vector<Piece> fragment;
+  width = 0;
+  for (int t : triangles) {
+    Piece& piece = fragment.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      piece.corner[i] = s.points[s.tris[t][i]];
+      const Bvh::Hit hit = rest.tree.nearest_but({}, piece.corner[i], tolerance, 0);
+      if (hit.place.face < 0) return infinity;
+      piece.face[i] = hit.place.face, piece.distance[i] = hit.distance;
+      width = std::max(width, hit.distance);
+    }
+  }
+  for (const double limit : {std::max(least_share * tolerance, around * width), tolerance})
+    if (limit <= tolerance && is_within(fragment, limit, rest, width)) return limit;
+  return infinity;
 }
 
 }  // namespace
@@ -51,22 +87,25 @@ std::vector<RemovedFeature> remove_fragments(const Surface& s, const DefeatureOp
   }
   std::vector<RemovedFeature> removed;
   if (!any) return removed;
-  const Bvh tree(s);
+  std::vector<int> rows;
+  for (int t = 0; t < (int)loose.size(); ++t)
+    if (!loose[t]) rows.push_back(t);
+  Rest rest(s, rows);
   for (const std::vector<int>& fragment : triangles) {
     if (fragment.empty()) continue;
-    double most = 0;
+    double width = 0;
+    const double most = most_distance(s, fragment, options.tolerance, rest, width);
+    if (most > options.tolerance) continue;
     Box box = box_of(s, fragment[0]);
     for (int t : fragment) {
-      most = std::max(most, most_distance(s, t, tree, loose, least_share * options.tolerance));
-      if (most > options.tolerance) break;
-      box = join(box, box_of(s, t));
+      const Box at = box_of(s, t);
+      box = join(box, at);
+      const Vec3 reach{most, most, most};
+      rest.tree.overlapping({at.lo - reach, at.hi + reach}, [&](int u) {
+        for (int v : rest.mesh.tris[u]) drift[rest.vertices[v]] = std::max(drift[rest.vertices[v]], most);
+      });
     }
-    if (most > options.tolerance) continue;
-    removed.push_back({s.points[s.tris[fragment[0]][0]], most, norm(box.hi - box.lo)});
-    const Vec3 reach{most, most, most};
-    tree.overlapping({box.lo - reach, box.hi + reach}, [&](int t) {
-      for (int v : s.tris[t]) drift[v] = std::max(drift[v], most);
-    });
+    removed.push_back({s.points[s.tris[fragment[0]][0]], width, norm(box.hi - box.lo)});
     for (int t : fragment) {
       for (int h = 3 * t; h < 3 * t + 3; ++h) m.hard[h] = 0, m.out[m.from(h)] = -1;
       m.tris[t] = {-1, -1, -1}, --m.live;

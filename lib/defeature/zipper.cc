@@ -173,12 +173,12 @@ bool Zipper::may_merge(int h, int gone) const {
     const int rung = o / 3 == h / 3 ? h : g;
     return mesh.opp[next(rung) == o ? prev(rung) : next(rung)];
   };
+  auto at = [&](int v) { return v == gone ? to : points[v]; };
   auto is_ear = [&](int t) {  // afterwards, without height: it goes, too
-    int borders = 0;
-    for (int k = 3 * t; k < 3 * t + 3; ++k) borders += beyond(k) < 0;
-    const auto [a, b, c] = mesh.tris[t];
-    auto at = [&](int v) { return v == gone ? to : points[v]; };
-    return borders == 2 && is_flat(at(a), at(b), at(c));
+    for (int k = 3 * t; k < 3 * t + 3; ++k)
+      if (beyond(k) < 0 && beyond(prev(k)) < 0 && mesh.from(k) != gone)
+        return is_flat_ear(mesh.from(k), at(mesh.from(k)), at(mesh.to(k)), at(mesh.apex(k)));
+    return false;
   };
   mesh.star(gone, [&](int e) {
     const int t = e / 3;
@@ -236,22 +236,30 @@ bool Zipper::merge(int h) {
   return true;
 }
 
-/// Removes triangles at v without height and with two border edges: the border goes straight there.
+/// Has the triangle of an ear no height, its outer corner v, at p, between its other corners?
+bool Zipper::is_flat_ear(int v, Vec3 p, Vec3 a, Vec3 b) const {
+  if (options_.keep_borders || banned_[v] || !is_flat(p, a, b)) return false;
+  const double t = nearest_fraction(p, a, b);
+  return t > 0 && t < 1;
+}
+
+/// Removes flat ears at v, triangles with two border edges: the border goes straight there.
 void Zipper::cut_flat_ears(int v) {
   int ear = -1;  // from its outer corner
   auto find = [&] {
     ear = -1;
     mesh.star(v, [&](int e) {
-      const auto [a, b, c] = mesh.tris[e / 3];
       for (int k : {e, next(e), prev(e)})
-        if (mesh.opp[k] < 0 && mesh.opp[prev(k)] < 0 && is_flat(points[a], points[b], points[c])) ear = k;
+        if (const int u = mesh.from(k); mesh.opp[k] < 0 && mesh.opp[prev(k)] < 0 && u != v &&
+                                        is_flat_ear(u, points[u], points[mesh.to(k)], points[mesh.apex(k)]))
+          ear = k;
     });
-    return ear >= 0 && mesh.from(ear) != v && mesh.can_collapse(ear, mesh.from(ear), true);
+    return ear >= 0 && mesh.can_collapse(ear, mesh.from(ear), true);
   };
   while (find()) {
     const int outer = mesh.from(ear), kept = mesh.to(ear);
     const double width = height(ear / 3);
-    merges.push_back({outer, kept, width, points[outer]});
+    merges.push_back({outer, kept, width, points[outer], true});
     for (int end : {kept, mesh.apex(ear)}) drift[end] = std::max(drift[end], drift[outer] + width);
     collapse(ear, outer);
   }

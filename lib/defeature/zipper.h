@@ -34,6 +34,7 @@ struct Merge {
   int gone, kept;
   double width;
   Vec3 at;
+  bool ear = false;  ///< `gone` was the outer corner of a flat ear that another merge had left
 };
 
 /// A surface whose vertices are merged. The edits make a simplicial map of a subdivision of the input onto
@@ -106,6 +107,7 @@ class Zipper : public MergedSurface {
   bool may_merge(int h, int gone) const;
   bool merge(int h);
   void collapse(int h, int gone);
+  bool is_flat_ear(int v, Vec3 p, Vec3 a, Vec3 b) const;
   void cut_flat_ears(int v);
   int split(int h, double t);
   bool close_cap(int h);

@@ -47,6 +47,12 @@ struct Fault {
   bool none() const { return pairs.empty() && triangles.empty(); }
   int places() const { return (int)(pairs.size() + triangles.size()); }
   int count() const { return (int)pairs.size() + folds; }
+  int involved() const {  // triangles
+    std::vector<int> all = triangles;
+    for (const auto& [a, b] : pairs) all.insert(all.end(), {a, b});
+    sort_unique(all);
+    return (int)all.size();
+  }
   double sum() const { return rules::pair_excess * count() + excess; }
   bool less_than(const Fault& other) const {
     if ((count() == 0) != (other.count() == 0)) return count() == 0;
@@ -174,7 +180,7 @@ void add_missed_places(const State& s, Samples& samples, int time, double share)
                     [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
-    const auto [p, hit, complete] =
+    const auto [p, hit, complete, halvings] =
         farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
     if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
 #pragma omp critical
@@ -452,8 +458,9 @@ bool repair(State& s, Search& search) {
   std::shared_ptr<const Seen> tried;
   for (const bool from_best : {false, true}) {
     const auto start = from_best ? search.best : search.lowest;
-    const int most = std::min(rules::few_faults, start->mesh.mesh.live / 2);
-    if (start == tried || start->fault.places() > most || search.best->fault.none()) continue;
+    if (start == tried || search.best->fault.none()) continue;
+    if (start->fault.places() > rules::few_faults || start->fault.involved() > start->mesh.mesh.live / 2)
+      continue;
     search.go_to(s, start), tried = start, any = true;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
       repair_at(s, search.now, search.known);

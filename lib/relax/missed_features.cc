@@ -118,7 +118,7 @@ std::optional<State> reached_at(const State& s, const Place& place, double least
   for (int i = 0; i < 6; ++i) {
     const int h = i % 3, from = s.mesh.tris[t][h], to = s.mesh.tris[t][(h + 1) % 3];
     const bool insert = i >= 3, hard = before.mesh.hard[h],
-               seam = s.hold[from] == paired && s.hold[to] == paired;
+               seam = s.hold[from] >= frozen && s.hold[to] >= frozen;  // or the rim of a tile
     const bool stays = !insert ? s.hold[from] != loose && s.hold[from] != slides
                                : hard && (seam || (before.mesh.opp[h] >= 0 && end_on_line(s, from, to) < 0));
     const bool on_line = insert ? hard : s.hold[from] == slides;

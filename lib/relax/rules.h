@@ -117,7 +117,7 @@ constexpr double growth = 1.6,
 constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10,
-              few_faults = 300;  // rounds, places: of more, or of half the mesh, sizes are bad
+              few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)

@@ -367,6 +367,43 @@ TEST(Defeature, AFragmentFartherThanTheToleranceStays) {
   }
 }
 
+// the rest has many triangles below the fragment
+TEST(Defeature, AFragmentMayBeLargerThanTheTrianglesBelow) {
+  Surface s;
+  const int n = 20;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) s.points.push_back({0.1 * i, 0.1 * j, 0});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i;
+      s.tris.insert(s.tris.end(), {{a, a + 1, a + n + 2}, {a, a + n + 2, a + n + 1}});
+    }
+  const int first = (int)s.points.size();
+  s.points.insert(s.points.end(),
+                  {{0.53, 0.54, 0.5 * width}, {1.25, 0.57, 0.5 * width}, {0.58, 1.23, 0.5 * width}});
+  s.tris.push_back({first, first + 1, first + 2});
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  const DefeatureReport r = remove_small_features(s, {width});
+  ASSERT_EQ(r.removed.size(), 1u);
+  EXPECT_NEAR(r.removed[0].width, 0.5 * width, 1e-12);
+}
+
+// one far from the rest costs no more than one near to it
+TEST(Defeature, ManyFragmentsFarFromTheRestStay) {
+  Surface s = extruded({{0, 0}, {100, 0}}, 1);
+  for (int i = 0; i < 50000; ++i) {
+    const double x = i % 250, y = i / 250;
+    const int v = (int)s.points.size();
+    s.points.insert(s.points.end(), {{x, y, 9000}, {x + 0.5, y, 9000}, {x, y + 0.5, 9000}});
+    s.tris.push_back({v, v + 1, v + 2});
+  }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>(s.tris.size(), 0));
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  EXPECT_TRUE(remove_small_features(s, {width}).removed.empty());
+}
+
 TEST(Defeature, AFragmentThatIsKeptStays) {
   Surface s = with_flap(too_narrow, 1.5);
   DefeatureOptions options{width};
@@ -376,7 +413,7 @@ TEST(Defeature, AFragmentThatIsKeptStays) {
 }
 
 // a wall with its foot on the border A T B E, and a roof from the crease W G E; G is just above B
-TEST(Defeature, AnEarThatAMergeLeavesWithoutHeightIsCutOff) {
+Surface with_ear() {
   Surface s;
   enum { A, T, B, E, G, W, X, Y };
   s.points = {{0, 0, 0},          {1, 0, 0}, {2, 0, 0}, {3, 0, 0},  //
@@ -384,8 +421,39 @@ TEST(Defeature, AnEarThatAMergeLeavesWithoutHeightIsCutOff) {
   s.tris = {{A, T, G}, {T, B, G}, {B, E, G}, {A, G, W}, {W, G, X}, {G, E, Y}, {G, Y, X}};
   s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
   mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  return s;
+}
+
+TEST(Defeature, AnEarThatAMergeLeavesWithoutHeightIsCutOff) {
+  Surface s = with_ear();
   const DefeatureReport r = removed(s, width);
   EXPECT_EQ(r.removed.size(), 1u);
   EXPECT_EQ(s.tris.size(), 4u);
   EXPECT_EQ(s.points.size(), 6u);
+}
+
+// the same with the vertices of the border kept
+TEST(Defeature, NoEarIsCutOffABorderThatIsKept) {
+  Surface s = with_ear();
+  const std::size_t n = s.points.size();
+  const DefeatureReport r = remove_small_features(s, {width, true});
+  EXPECT_TRUE(r.removed.empty());
+  EXPECT_EQ(s.points.size(), n);
+}
+
+//  X--------------------O    G is just off the border at X; once they were merged, X O G would be a spike,
+//   `-G---------...           without height, but its corner O is far from the rest
+//   K  `
+TEST(Defeature, ASpikeThatAMergeWouldLeaveStays) {
+  Surface s;
+  enum { X, O, G, K, P, Q };
+  s.points = {{0, 0, 0}, {5, 0, 0}, {0.005, 0.002, 0}, {-0.01, 0, 0}, {0, -10, 0}, {-2, -10, 0}};
+  s.tris = {{X, O, G}, {X, G, K}, {X, K, P}, {K, Q, P}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("patch", std::vector<int>{1, 2, 3, 3});
+  mark_features(s, {FeatureOptions::angles, 40, 20, 0});
+  const Surface before = s;
+  const DefeatureReport r = removed(s, 3 * width);
+  EXPECT_LE(farthest(before, s), 3 * width);
+  EXPECT_LE(farthest(before, s), r.moved + 1e-12);
 }
