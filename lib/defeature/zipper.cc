@@ -17,6 +17,9 @@ constexpr double fold_angle = 160 * degree;
 constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
 constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
 constexpr double off_plane = 1e-7;         ///< of the tolerance: rounding of vertices that stay in a plane
+/// Least distance of a new vertex on a line from the ends of the edge, of the tolerance: what is merged there
+/// may have moved as far as it may, and could not be merged with them.
+constexpr double least_end = 0.25;
 constexpr double flattest = 1e-6;  ///< least height of a triangle over its length, above rounding errors
 
 double turn(Vec3 a, Vec3 b) { return norm(a) > 0 && norm(b) > 0 ? angle(a, b) : 0; }
@@ -292,7 +295,12 @@ bool Zipper::close_cap(int h) {
   const int a = mesh.from(h), b = mesh.to(h), apex = mesh.apex(h);
   const Vec3 edge = points[b] - points[a];
   const double t = dot(points[apex] - points[a], edge) / dot(edge, edge);
+  const double end = least_end * options_.tolerance / norm(edge);
   if (!(t > 0 && t < 1) || banned_[a] || banned_[b]) return false;
+  if (t < end || t > 1 - end) {
+    const int rung = t < end ? prev(h) : next(h);
+    return is_strip(rung) && merge(rung);
+  }
   const int m = split(h, t), rung = next(h);  // from m to the apex
   if (is_strip(rung) && merge(rung)) return true;
   collapse(h, m);
@@ -300,22 +308,23 @@ bool Zipper::close_cap(int h) {
 }
 
 void Zipper::consider(std::vector<Candidate>& heap, int t) const {
+  auto length = [&](int h) { return norm(points[mesh.to(h)] - points[mesh.from(h)]); };
+  auto is_short = [&](int h) {  // and vanishes as such, with what it bounds
+    const int a = mesh.from(h), b = mesh.to(h), l = lines.of[h];
+    if (length(h) > options_.tolerance) return false;
+    if (region_[a] >= 0 && region_[a] == region_[b]) return true;
+    return mesh.hard[h] ? lines.open[l] && lines.length[l] <= options_.tolerance : on_line(a) && on_line(b);
+  };
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
-    const int a = mesh.from(h), b = mesh.to(h), c = mesh.apex(h), l = lines.of[h];
-    const double length = norm(points[b] - points[a]);
-    if (length <= options_.tolerance) {
-      const bool in_region = region_[a] >= 0 && region_[a] == region_[b];
-      const bool wanted =
-          mesh.hard[h] ? lines.open[l] && lines.length[l] <= options_.tolerance : on_line(a) && on_line(b);
-      if (!in_region && !wanted) continue;
-      heap.push_back({length, h, a, b, -1});
-    } else {
-      const double width = norm(normal(t)) / length;
-      const double shortest = std::min(norm(points[c] - points[a]), norm(points[c] - points[b]));
-      if (!mesh.hard[h] || width > options_.tolerance || shortest <= options_.tolerance || !on_line(c))
-        continue;
-      heap.push_back({width, h, a, b, c});
+    Candidate c{length(h), h, mesh.from(h), mesh.to(h), -1};
+    if (length(h) > options_.tolerance) {
+      c.width = norm(normal(t)) / length(h), c.apex = mesh.apex(h);
+      if (!mesh.hard[h] || c.width > options_.tolerance || !on_line(c.apex)) continue;
+      if (is_short(next(h)) || is_short(prev(h))) continue;
+    } else if (!is_short(h)) {
+      continue;
     }
+    heap.push_back(c);
     std::push_heap(heap.begin(), heap.end());
   }
 }

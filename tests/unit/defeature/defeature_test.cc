@@ -278,6 +278,42 @@ TEST(Defeature, ASliverBetweenWallsCloses) {
   EXPECT_EQ(s.points.size(), 6u);
 }
 
+/// A wall below the crease a-b and a deck behind a second crease a-c-b, with the sliver a-b-c between them:
+///
+///          c___             the edge a-c is too short for the tolerance, but part of a long line
+///       /       -------___
+///     a --------------------- b
+Surface with_sliver(double x, double y) {  // c
+  Surface s;
+  s.points = {{0, 0, 0}, {4, 0, 0}, {x, y, 0}, {0, 0, -2}, {4, 0, -2}, {-3, 3, 0}, {4, 3, 0}};
+  enum { a, b, c, a1, b1, a2, b2 };
+  s.tris = {{a, b, c}, {b, a, a1}, {b, a1, b1}, {c, b, b2}, {c, b2, a2}, {a, c, a2}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("model", std::vector<std::uint8_t>{7, 1, 0, 1, 0, 1});
+  return s;
+}
+
+TEST(Defeature, ASliverBetweenCreasesThatMeetClosesAtTheNearestPoint) {
+  Surface s = with_sliver(0.8 * width, 0.3 * width);
+  EXPECT_TRUE(removed(s, 0.29 * width).removed.empty());
+  const DefeatureReport r = removed(s, width);
+  ASSERT_EQ(r.removed.size(), 1u);
+  EXPECT_NEAR(r.removed[0].width, 0.3 * width, 1e-9);
+  EXPECT_EQ(s.points.size(), 7u);  // c is on a-b
+  EXPECT_EQ(s.tris.size(), 6u);
+}
+
+TEST(Defeature, ASliverClosesAtTheEndOfALineIfThatIsNear) {
+  Surface s = with_sliver(0.2 * width, 0.3 * width);
+  EXPECT_EQ(removed(s, width).removed.size(), 1u);
+  EXPECT_EQ(s.points.size(), 6u);  // c is a
+}
+
+TEST(Defeature, NoVertexIsLeftNextToTheEndOfALine) {
+  Surface s = with_sliver(0.2 * width, 0.99 * width);  // a-c is longer than the tolerance
+  EXPECT_TRUE(removed(s, width).removed.empty());
+}
+
 //  p'---a'---q'   two walls meet in a crease that ends at a on the border; a cut of the model has left the
 //  |  / |  / |    ear a-e-q, at right angles to its wall, with the short border edge a-e
 //  p----a====q
