@@ -80,7 +80,8 @@ std::string header(const Stream& stream, bool ascii) {
     // some viewers read lines of at most 500 bytes
     std::string line =
         "comment pg " + p.program + ' ' + p.version + (p.arguments.empty() ? "" : " ") + p.arguments;
-    out += (line.size() > 400 ? line.substr(0, 397) + "..." : line) + '\n';
+    if (line.size() > 400) line.replace(397, std::string::npos, "...");
+    out += line + '\n';
   }
   if (stream.input_triangles > 0)
     out += "comment input_triangles " + std::to_string(stream.input_triangles) + '\n';

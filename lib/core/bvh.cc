@@ -352,7 +352,7 @@ Bvh::RayHit Bvh::first_hit(Vec3 p, Vec3 direction, int side) const {
       last = high < last ? high : last;
     }
     const Four missed = Four{} + 2 * far;
-    return (first <= last) & (b.lo[0] <= b.hi[0]) ? first : missed;
+    return ((first <= last) & (b.lo[0] <= b.hi[0])) ? first : missed;
   };
   nearest_first(nodes_, most, distances, [&](int face) {
     const auto& [i, j, k] = mesh_.tris[face];

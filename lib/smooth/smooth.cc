@@ -329,9 +329,10 @@ std::vector<std::string> describe(const SmoothReport& r) {
   if (r.farthest == 0)
     return {"nothing moved: smoothing would not lower the angles between triangles, " +
             shown(r.angle_before) + " degrees"};
-  std::vector<std::string> lines{"angle between adjacent triangles " + shown(r.angle_before) + " -> " +
-                                 shown(r.angle_after) + " degrees; moved by at most " + shown(r.farthest) +
-                                 ", at " + shown(r.farthest_at)};
+  std::vector<std::string> lines;
+  lines.push_back("angle between adjacent triangles " + shown(r.angle_before) + " -> " +
+                  shown(r.angle_after) + " degrees; moved by at most " + shown(r.farthest) + ", at " +
+                  shown(r.farthest_at));
   lines.push_back("volume " + shown(r.volume) + ", changed by " +
                   shown(r.volume != 0 ? 100 * r.volume_change / r.volume : 0) + " %");
   if (r.region_change > 0)
