@@ -17,8 +17,8 @@ constexpr double fold_angle = 160 * degree;
 constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
 constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
 constexpr double off_plane = 1e-7;         ///< of the tolerance: rounding of vertices that stay in a plane
-/// Least distance of a new vertex on a line from the ends of the edge, of the tolerance: what is merged there
-/// may have moved as far as it may, and could not be merged with them.
+/// Least distance of a new vertex on an edge from the ends of that, of the tolerance: what is merged there
+/// has often moved as far as it may, and so could never be merged with them, but sizes fall to that distance.
 constexpr double least_end = 0.25;
 constexpr double flattest = 1e-6;  ///< least height of a triangle over its length, above rounding errors
 
@@ -290,17 +290,13 @@ int Zipper::split(int h, double t) {
   return m;
 }
 
-/// Merges the apex of the triangle of h with the nearest point of h.
+/// Merges the apex of the triangle of h with the nearest point of h, if that is not next to an end of h.
 bool Zipper::close_cap(int h) {
   const int a = mesh.from(h), b = mesh.to(h), apex = mesh.apex(h);
   const Vec3 edge = points[b] - points[a];
   const double t = dot(points[apex] - points[a], edge) / dot(edge, edge);
   const double end = least_end * options_.tolerance / norm(edge);
-  if (!(t > 0 && t < 1) || banned_[a] || banned_[b]) return false;
-  if (t < end || t > 1 - end) {
-    const int rung = t < end ? prev(h) : next(h);
-    return is_strip(rung) && merge(rung);
-  }
+  if (!(t > end && t < 1 - end) || banned_[a] || banned_[b]) return false;
   const int m = split(h, t), rung = next(h);  // from m to the apex
   if (is_strip(rung) && merge(rung)) return true;
   collapse(h, m);
@@ -309,7 +305,7 @@ bool Zipper::close_cap(int h) {
 
 void Zipper::consider(std::vector<Candidate>& heap, int t) const {
   auto length = [&](int h) { return norm(points[mesh.to(h)] - points[mesh.from(h)]); };
-  auto is_short = [&](int h) {  // and vanishes as such, with what it bounds
+  auto is_short = [&](int h) {  // a candidate itself, so that no cap next to it needs to be one
     const int a = mesh.from(h), b = mesh.to(h), l = lines.of[h];
     if (length(h) > options_.tolerance) return false;
     if (region_[a] >= 0 && region_[a] == region_[b]) return true;

@@ -49,7 +49,7 @@ struct MergedSurface {
   FeatureLines lines;
 
   /// Returns the normal of triangle t with twice its area as length.
-  Vec3 normal(int t) const;  ///< times twice the area
+  Vec3 normal(int t) const;
   double height(int t) const;
   bool is_model(int h) const { return mesh.opp[h] >= 0 && mesh.hard[h] && lines.rank[lines.of[h]] > 0; }
   bool is_sharp(int h) const;
@@ -72,7 +72,7 @@ class Zipper : public MergedSurface {
   Zipper(const Surface& surface, EditMesh edited, const DefeatureOptions& options,
          const std::vector<int>* given, const std::vector<char>& banned);
 
-  /// Merges across strips and along short lines, the narrowest first. Returns the number of merges.
+  /// Merges across strips and contracts short lines, the narrowest first. Returns the number of merges.
   int close_strips();
   /// Contracts regions between lines that are smaller than the tolerance. Returns the number of merges.
   int contract_regions();

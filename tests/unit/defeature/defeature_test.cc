@@ -303,15 +303,27 @@ TEST(Defeature, ASliverBetweenCreasesThatMeetClosesAtTheNearestPoint) {
   EXPECT_EQ(s.tris.size(), 6u);
 }
 
-TEST(Defeature, ASliverClosesAtTheEndOfALineIfThatIsNear) {
-  Surface s = with_sliver(0.2 * width, 0.3 * width);
-  EXPECT_EQ(removed(s, width).removed.size(), 1u);
-  EXPECT_EQ(s.points.size(), 6u);  // c is a
-}
-
-TEST(Defeature, NoVertexIsLeftNextToTheEndOfALine) {
+TEST(Defeature, NoVertexIsMadeNextToTheEndOfAnEdge) {
   Surface s = with_sliver(0.2 * width, 0.99 * width);  // a-c is longer than the tolerance
   EXPECT_TRUE(removed(s, width).removed.empty());
+}
+
+/// Three faces of a sheared box at its corner o, with a vertex v on one of the edges:
+///
+///     z
+///     |           v is nearer to o than the tolerance, and leans over o-x. Nothing is narrow here.
+///     v
+///   / o------ x
+///  y
+TEST(Defeature, ACornerNextToAVertexOfAnEdgeStays) {
+  Surface s;
+  s.points = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.4, 0, 2}, {0.16 * width, 0, 0.8 * width}};
+  enum { o, x, y, z, v };
+  s.tris = {{o, x, v}, {v, x, z}, {v, z, y}, {v, y, o}, {y, x, o}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("model", std::vector<std::uint8_t>{5, 4, 1, 6, 6});
+  EXPECT_TRUE(removed(s, width).removed.empty());
+  EXPECT_EQ(s.points.size(), 5u);
 }
 
 //  p'---a'---q'   two walls meet in a crease that ends at a on the border; a cut of the model has left the
