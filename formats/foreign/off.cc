@@ -103,16 +103,28 @@ class OffReader {
       text_.fail(quoted(text_.word()) + " follows the last of " + std::to_string(n_faces) + " faces");
   }
 
-  /// Reads what follows the line with the keyword: ints and floats of 32 bits, big endian.
+  /// Reads what follows the line with the keyword: ints and floats of 32 bits, big endian. PMP and OpenMesh
+  /// write them little endian, and no colors of faces: this is read if the counts make no sense otherwise.
   void binary() {
     at_ = bytes_.size() - text_.after().size();
-    const int n_vertices = get<int>(), n_faces = get<int>();
-    get<int>();  // edges
     const int extra = (keyword_.normals ? 3 : 0) + (keyword_.colors ? 4 : 0) + (keyword_.texture ? 2 : 0);
-    const std::size_t row = 4 * (3 + static_cast<std::size_t>(extra));
-    if (n_vertices < 0 || n_faces < 0 || n_vertices * row + 8 * static_cast<std::size_t>(n_faces) > left())
-      fail_at(std::to_string(n_vertices) + " vertices and " + std::to_string(n_faces) + " faces, but only " +
-              std::to_string(left()) + " bytes follow");
+    const std::size_t start = at_, row = 4 * (3 + static_cast<std::size_t>(extra));
+    int n_vertices = 0, n_faces = 0;
+    auto counts = [&] {
+      at_ = start;
+      n_vertices = get<int>(), n_faces = get<int>();
+      get<int>();  // edges
+      return n_vertices >= 0 && n_faces >= 0 &&
+             n_vertices * row + 8 * static_cast<std::size_t>(n_faces) <= left();
+    };
+    if (!counts()) {
+      little_ = true;
+      if (!counts()) {
+        little_ = false, counts();
+        fail_at(std::to_string(n_vertices) + " vertices and " + std::to_string(n_faces) +
+                " faces, but only " + std::to_string(left()) + " bytes follow");
+      }
+    }
     stream_.surface.points.resize(n_vertices);
     std::vector<double> more;
     for (Vec3& p : stream_.surface.points) {
@@ -127,7 +139,7 @@ class OffReader {
       const int n = checked_corners(get<int>(), f, fail);
       for (int i = 0; i < n; ++i) polygons_.corners.push_back(vertex(get<int>(), f, fail));
       polygons_.ends.push_back(polygons_.corners.size());
-      const int of_color = get<int>();
+      const int of_color = little_ ? 0 : get<int>();
       if (of_color < 0 || of_color > 4) fail_at("a color of " + std::to_string(of_color) + " numbers");
       reals(of_color, more);
       face_colors_.add(more.data(), more.size(), false);
@@ -160,7 +172,7 @@ class OffReader {
       fail_at("the file ends early: expected " + std::to_string(sizeof(T)) + " bytes, but only " +
               std::to_string(left()) + " are left");
     at_ += sizeof(T);
-    return load<T>(bytes_.data() + at_ - sizeof(T), true);
+    return load<T>(bytes_.data() + at_ - sizeof(T), !little_);
   }
   void reals(int n, std::vector<double>& out) {
     out.clear();
@@ -172,6 +184,7 @@ class OffReader {
   Text text_;
   Keyword keyword_;
   std::size_t at_ = 0;  ///< in a binary file
+  bool little_ = false;
   Stream stream_;
   Polygons polygons_;
   Colors vertex_colors_, face_colors_;

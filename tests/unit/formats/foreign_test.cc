@@ -195,6 +195,18 @@ TEST(Off, Binary) {
   }
 }
 
+TEST(Off, BinaryAsPmpWritesIt) {  // little endian, without numbers of colors
+  std::string bytes = "OFF BINARY\n";
+  auto append = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (int n : {3, 1, 0}) append(n);
+  for (float x : {0.f, 0.f, 0.f, 2.5f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(x);
+  for (int n : {3, 0, 1, 2}) append(n);
+  const Stream s = read_any(bytes, "in");
+  EXPECT_EQ(s.surface.points[1], (Vec3{2.5, 0, 0}));
+  EXPECT_EQ(s.surface.tris, (std::vector<Tri>{{0, 1, 2}}));
+  EXPECT_NE(failure(bytes.substr(0, bytes.size() - 1)), "");
+}
+
 TEST(Stl, SizesThatDisagreeWithTheCount) {
   const std::string good = write_as(squares(), "a.stl", false);
   auto declare = [&](std::string bytes, std::uint32_t n) {
