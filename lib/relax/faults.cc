@@ -34,11 +34,8 @@ struct Known {
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
 };
 
-/// What is wrong: pairs and folds, and a sum of distances and 1/kappa over what is bearable. A mesh without
-/// pairs and folds is better than any with them; of others the sum decides.
-struct Fault {
-  std::vector<std::pair<int, int>> pairs;
-  int of_reference = 0;
+/// What is wrong: pairs and folds, and a sum of distances and 1/kappa over what is bearable.
+struct Fault : Intersections {
   int folds = 0;
   std::vector<int> triangles;  ///< those at folds, those that are too far from the reference, and needles
   std::vector<std::pair<int, Vec3>> missed;  ///< places of the reference, by the triangle nearest to them
@@ -55,8 +52,7 @@ struct Fault {
   }
   double sum() const { return rules::pair_excess * count() + excess; }
   bool less_than(const Fault& other) const {
-    if ((count() == 0) != (other.count() == 0)) return count() == 0;
-    return sum() < rules::less_excess * other.sum();
+    return Faults{{}, count(), sum()}.less_than({{}, other.count(), other.sum()});
   }
 };
 
@@ -191,6 +187,19 @@ void add_missed_places(const State& s, Samples& samples, int time, double share)
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
 }
 
+/// The triangle by whose size the distance of a sample at p is judged: of those that are as near to it, as
+/// they are if a corner is the nearest place, the one with the smallest. mcheck may come upon any of them.
+int judged_at(const State& s, Vec3 p, const Sample& x, double mean) {
+  int judged = x.near;
+  double least = bearable_distance(s, x.near, mean);
+  for (int t : triangles_around(s, x.near, 1)) {
+    const double bearable = bearable_distance(s, t, mean);
+    if (bearable < least && norm(nearest_point(s, t, p) - p) <= (1 + rules::as_near) * x.distance)
+      judged = t, least = bearable;
+  }
+  return judged;
+}
+
 /// Triangles that are too far from the reference, and those nearest to samples of it that are.
 void find_far(const State& s, Known& known, double share, Fault& found) {
   const double mean = mean_size(s), least = share * mean;
@@ -202,9 +211,11 @@ void find_far(const State& s, Known& known, double share, Fault& found) {
   };
   sample_distances(s, known.samples, least);
   add_missed_places(s, known.samples, known.time, share);
-  for (const Sample& x : known.samples.list)
-    if (x.distance > least && look(x.near, x.distance))
-      found.missed.push_back({x.near, s.reference->walk.point(x.place)});
+  for (const Sample& x : known.samples.list) {
+    if (!(x.distance > least)) continue;
+    const Vec3 p = s.reference->walk.point(x.place);
+    if (const int t = judged_at(s, p, x, mean); look(t, x.distance)) found.missed.push_back({t, p});
+  }
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
     if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
@@ -331,8 +342,10 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
           triangles_intersect(mesh, u, t))
         pairs.push_back({u, t});
     for (std::size_t i = 0; i < missed.size(); ++i)
-      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d < distance[i])
-        distance[i] = d, bearable[i] = most;
+      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d <= distance[i]) {
+        bearable[i] = d < distance[i] ? most : std::min(most, bearable[i]);
+        distance[i] = d;
+      }
   }
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
@@ -472,9 +485,44 @@ bool repair(State& s, Search& search) {
   return any;
 }
 
+/// Places where triangles are too large, if one of the faults is more than mcheck accepts, other than needles
+/// that the model forces.
+std::vector<Dip> dips_at(const State& s, const Fault& fault, Known& known) {
+  std::vector<Dip> dips;
+  if (fault.places() > rules::few_faults) return dips;
+  const double mean = mean_size(s);
+  bool refused = fault.count() > 0;
+  auto add = [&](int t, double factor) {
+    const auto [a, b, c] = s.mesh.tris[t];
+    dips.push_back({(1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]), factor});
+  };
+  for (const auto& [t, u] : fault.pairs) add(t, rules::dip_at_pair), add(u, rules::dip_at_pair);
+  for (int t : fault.triangles) {
+    const auto [a, b, c] = s.mesh.tris[t];
+    const double k = kappa(s.points[a], s.points[b], s.points[c]);
+    const double size = bearable_distance(s, t, mean, 1);
+    double far = distance_of(s, t, known.tree(), rules::within_limit * size);
+    for (const auto& [near, p] : fault.missed)
+      if (near == t) far = std::max(far, norm(nearest_point(s, t, p) - p));
+    far /= size;
+    const bool needle = k <= rules::bearable_kappa && !is_forced(s, t, k);
+    const bool forced = k * rules::worst_needle < rules::bearable_kappa;  // at smaller sizes, too
+    refused = refused || far > rules::within_limit || (needle && k <= rules::failing_kappa && !forced);
+    add(t, needle ? rules::dip_at_needle
+                  : std::clamp(rules::dip_at_distance / far, rules::least_dip, rules::most_dip));
+  }
+  if (!refused) dips.clear();
+  return dips;
+}
+
 }  // namespace
 
-Intersections remove_faults(State& s, Samples& samples) {
+bool Faults::less_than(const Faults& other) const {
+  if ((count == 0) != (other.count == 0)) return count == 0;
+  return sum < rules::less_excess * other.sum;
+}
+
+Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
   search.look(s);
@@ -485,8 +533,11 @@ Intersections remove_faults(State& s, Samples& samples) {
     if (pass > 0) search.go_to(s, search.best);
     if (refine(s, search, most) || !repair(s, search)) break;
   }
-  s = search.best->mesh;
-  return {search.best->fault.pairs, search.best->fault.of_reference};
+  const Seen &best = *search.best, &lowest = *search.lowest;
+  s = best.mesh;
+  Faults left{best.fault, best.fault.count(), best.fault.sum(), lowest.fault.sum()};
+  if (!best.fault.none()) left.dips = dips_at(lowest.mesh, lowest.fault, search.known);
+  return left;
 }
 
 }  // namespace meshpipe

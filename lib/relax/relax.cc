@@ -7,6 +7,7 @@
 #include "lib/core/intersect.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
+#include "lib/core/shortest_paths.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
@@ -132,6 +133,53 @@ int optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   return tries;
 }
 
+/// Lowers the sizes of vertices nearer to a dip than that, and around them by gradation. Returns the number
+/// of triangles that this asks for in addition.
+double lower_sizes(State& s, const std::vector<Dip>& dips) {
+  const int n = (int)s.points.size();
+  std::vector<double> before(n), size(n);
+  std::vector<int> lowered;
+  for (int v = 0; v < n; ++v) {
+    size[v] = before[v] = s.target(v);
+    for (const Dip& d : dips)
+      if (norm(s.points[v] - d.at) < before[v]) size[v] = std::min(size[v], d.factor * before[v]);
+    if (s.mesh.out[v] >= 0 && size[v] < before[v]) lowered.push_back(v);
+  }
+  shortest_paths(lowered, size, [&](int v, auto reach) {
+    for_copies(s, v, [&](int c) { reach(c, size[v]); });
+    s.mesh.neighbors(
+        v, [&](int u) { reach(u, size[v] + rules::dip_gradation * norm(s.points[u] - s.points[v])); });
+  });
+  for (int v = 0; v < n; ++v) s.refinement[v] *= size[v] / before[v];
+  auto sum = [](const Tri& t, const std::vector<double>& x) { return x[t[0]] + x[t[1]] + x[t[2]]; };
+  double added = 0;
+  for (const Tri& t : s.mesh.tris) {
+    const double ratio = sum(t, before) / sum(t, size);
+    added += ratio * ratio - 1;
+  }
+  return added;
+}
+
+/// Removes faults. Where some are left for which mcheck would refuse the mesh, sizes are too large: the mesh
+/// at the `start` is optimized again, with smaller ones there, as long as that helps.
+Intersections remove_all_faults(State& s, State start, int sweeps, double target, Samples& samples) {
+  Faults left = remove_faults(s, samples);
+  double added = 0;
+  for (int i = 0; i < rules::most_restarts && !left.dips.empty(); ++i) {
+    added += lower_sizes(start, left.dips);
+    if (added > rules::dips_growth * target) break;
+    State again = start;
+    coarse_rounds(again);
+    optimize(again, sweeps, target + added, &samples);
+    Faults now = remove_faults(again, samples);
+    const bool better = now.less_than(left);
+    if (!better && !(now.lowest < rules::less_excess * left.lowest)) break;
+    left.dips = now.dips, left.lowest = now.lowest;
+    if (better) s = std::move(again), left = std::move(now);
+  }
+  return left;
+}
+
 /// The surface with its columns in another order.
 Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
   Surface s;
@@ -205,6 +253,7 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
       s.points, on_border, [&](int v) { return s.target(v); }, s.hold);
   const Surface& surface = ordered.surface;
   const double natural = ordered.on->sizes ? count_for_size(surface, *ordered.on->sizes) : s.mesh.live;
+  const State start = s;
   coarse_rounds(s);
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
   Samples samples{feature_samples(*ordered.on, size_for_count(total_area(surface), target)), {}};
@@ -213,7 +262,7 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
     tries = optimize_to_count(s, options.sweeps, target, &samples);
   else
     optimize(s, options.sweeps, natural, &samples);
-  const Intersections left = remove_faults(s, samples);
+  const Intersections left = remove_all_faults(s, start, options.sweeps, target, samples);
   RelaxReport report{s.counts, left.pairs, left.of_reference};
   report.tries = tries;
   const std::vector<int> left_at = finish(s, mesh);

@@ -70,9 +70,25 @@ struct Intersections {
   int of_reference = 0;
 };
 
+/// A place where triangles are too large, and the factor on their size that may do.
+struct Dip {
+  Vec3 at;
+  double factor;
+};
+
+/// What removal of faults has left.
+struct Faults : Intersections {
+  int count = 0;            ///< of pairs and folds
+  double sum = 0;           ///< of these, of distances, and of 1/kappa of needles, over what is bearable
+  double lowest = 0;        ///< sum that was seen: of a mesh with pairs, if it is less than `sum`
+  std::vector<Dip> dips{};  ///< of that mesh if mcheck would refuse it; none if its faults are too many
+  /// Returns whether this is less: a mesh without pairs and folds is better than any with them.
+  bool less_than(const Faults& other) const;
+};
+
 /// Refines where triangles intersect or fold but the reference does not, where they are needles, and where
 /// mesh and reference are almost half the size apart; then repairs there. Goes on until rounds no longer
-/// help, and leaves the mesh with the fewest faults seen; returns what still intersects.
-Intersections remove_faults(State& s, Samples& samples);
+/// help, and leaves the mesh with the fewest faults seen; returns what is left.
+Faults remove_faults(State& s, Samples& samples);
 
 }  // namespace meshpipe

@@ -102,6 +102,7 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
+constexpr double as_near = 1e-6;        // of a distance: rounding errors
 constexpr double doubtful = 0.4;  // of the bearable, walked to: from there all of a triangle is searched
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
@@ -118,6 +119,12 @@ constexpr double much_worse = 4;  // than the best seen: what is wrong does not 
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
+constexpr double dip_at_pair = 0.35, dip_at_needle = 0.3;  // of the size, where the mesh is begun again
+constexpr double dip_at_distance = 0.3;  // over the distance in sizes: the same, well within a half,
+constexpr double least_dip = 0.25, most_dip = 0.6;  // within these bounds
+constexpr double dip_gradation = 0.5;               // growth of the size per length away from there
+constexpr double dips_growth = 0.5;                 // of the triangles: what dips may add
+constexpr int most_restarts = 3;                    // each takes as long as the first time
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
 // missed features (missed_features.cc)
