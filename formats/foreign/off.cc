@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/foreign/off.h"
 
+#include <algorithm>
+#include <climits>
 #include <cmath>
+#include <cstdint>
 
 #include "formats/foreign/bytes.h"
 #include "formats/foreign/colors.h"
@@ -103,28 +106,28 @@ class OffReader {
       text_.fail(quoted(text_.word()) + " follows the last of " + std::to_string(n_faces) + " faces");
   }
 
-  /// Reads what follows the line with the keyword: ints and floats of 32 bits, big endian. PMP and OpenMesh
-  /// write them little endian, and no colors of faces: this is read if the counts make no sense otherwise.
+  /// Reads what follows the line with the keyword: ints and floats of 32 bits, big endian, or little endian
+  /// as PMP writes them, which leaves out the numbers of face colors.
   void binary() {
-    at_ = bytes_.size() - text_.after().size();
+    const std::size_t start = bytes_.size() - text_.after().size();
     const int extra = (keyword_.normals ? 3 : 0) + (keyword_.colors ? 4 : 0) + (keyword_.texture ? 2 : 0);
-    const std::size_t start = at_, row = 4 * (3 + static_cast<std::size_t>(extra));
-    int n_vertices = 0, n_faces = 0;
-    auto counts = [&] {
-      at_ = start;
-      n_vertices = get<int>(), n_faces = get<int>();
-      get<int>();  // edges
-      return n_vertices >= 0 && n_faces >= 0 &&
-             n_vertices * row + 8 * static_cast<std::size_t>(n_faces) <= left();
+    constexpr Layout layouts[] = {{false, true}, {true, false}, {true, true}};
+    const Layout* layout = std::find_if(std::begin(layouts), std::end(layouts), [&](const Layout& l) {
+      return ends_with_file(start, 4 * (3 + static_cast<std::size_t>(extra)), l);
+    });
+    auto vertices = [&](bool little) {
+      at_ = start, little_ = little;
+      return get<std::uint32_t>();
     };
-    if (!counts()) {
-      little_ = true;
-      if (!counts()) {
-        little_ = false, counts();
-        fail_at(std::to_string(n_vertices) + " vertices and " + std::to_string(n_faces) +
-                " faces, but only " + std::to_string(left()) + " bytes follow");
-      }
-    }
+    if (layout == std::end(layouts)) layout = layouts + (vertices(true) < vertices(false) ? 1 : 0);
+    at_ = start, little_ = layout->little;
+    const int n_vertices = get<int>(), n_faces = get<int>();
+    get<int>();  // edges
+    if (n_vertices < 0 || n_faces < 0 ||
+        n_vertices * (12 + 4 * static_cast<std::size_t>(extra)) + 4 * static_cast<std::size_t>(n_faces) >
+            left())
+      fail_at(std::to_string(n_vertices) + " vertices and " + std::to_string(n_faces) + " faces, but only " +
+              std::to_string(left()) + " bytes follow");
     stream_.surface.points.resize(n_vertices);
     std::vector<double> more;
     for (Vec3& p : stream_.surface.points) {
@@ -139,11 +142,38 @@ class OffReader {
       const int n = checked_corners(get<int>(), f, fail);
       for (int i = 0; i < n; ++i) polygons_.corners.push_back(vertex(get<int>(), f, fail));
       polygons_.ends.push_back(polygons_.corners.size());
-      const int of_color = little_ ? 0 : get<int>();
+      const int of_color = layout->face_colors ? get<int>() : 0;
       if (of_color < 0 || of_color > 4) fail_at("a color of " + std::to_string(of_color) + " numbers");
       reals(of_color, more);
       face_colors_.add(more.data(), more.size(), false);
     }
+    if (left() > 0)
+      fail_at(std::to_string(left()) + " bytes follow the last of " + std::to_string(n_faces) + " faces");
+  }
+
+  /// An order of bytes, and whether each face ends with the number of its colors and these.
+  struct Layout {
+    bool little, face_colors;
+  };
+
+  /// Does the file, whose counts begin at `start`, end with the last face if it has this layout? `row`: bytes
+  /// of a vertex.
+  bool ends_with_file(std::size_t start, std::size_t row, const Layout& layout) {
+    at_ = start, little_ = layout.little;
+    auto skip = [&](std::size_t n, std::size_t size) {
+      const bool there = n <= left() / size;
+      if (there) at_ += n * size;
+      return there;
+    };
+    auto number = [&](int& n, int most) { return left() >= 4 && (n = get<int>()) >= 0 && n <= most; };
+    int n_vertices, n_faces, n;
+    if (!number(n_vertices, INT_MAX) || !number(n_faces, INT_MAX) || !skip(1, 4) || !skip(n_vertices, row))
+      return false;
+    for (int f = 0; f < n_faces; ++f) {
+      if (!number(n, max_corners) || !skip(n, 4)) return false;
+      if (layout.face_colors && (!number(n, 4) || !skip(n, 4))) return false;
+    }
+    return left() == 0;
   }
 
   template <class Fail>

@@ -195,16 +195,33 @@ TEST(Off, Binary) {
   }
 }
 
-TEST(Off, BinaryAsPmpWritesIt) {  // little endian, without numbers of colors
+/// A little-endian file of n vertices (i, 0, 0) and faces 0 1 2 and 2 1 0.
+static std::string little_endian_off(int n, bool numbers_of_colors) {
   std::string bytes = "OFF BINARY\n";
   auto append = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
-  for (int n : {3, 1, 0}) append(n);
-  for (float x : {0.f, 0.f, 0.f, 2.5f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(x);
-  for (int n : {3, 0, 1, 2}) append(n);
-  const Stream s = read_any(bytes, "in");
-  EXPECT_EQ(s.surface.points[1], (Vec3{2.5, 0, 0}));
-  EXPECT_EQ(s.surface.tris, (std::vector<Tri>{{0, 1, 2}}));
-  EXPECT_NE(failure(bytes.substr(0, bytes.size() - 1)), "");
+  for (int i : {n, 2, 0}) append(i);
+  for (int v = 0; v < n; ++v)
+    for (float x : {(float)v, 0.f, 0.f}) append(x);
+  for (int first : {0, 2}) {
+    for (int i : {3, first, 1, 2 - first}) append(i);
+    if (numbers_of_colors) append(0);
+  }
+  return bytes;
+}
+
+TEST(Off, BinaryLittleEndian) {  // without numbers of colors: as PMP writes it
+  for (const bool numbers_of_colors : {false, true})
+    for (const int n : {3, 65536}) {  // 256, read big endian
+      const Stream s = read_any(little_endian_off(n, numbers_of_colors), "in");
+      ASSERT_EQ((int)s.surface.points.size(), n);
+      EXPECT_EQ(s.surface.points[2], (Vec3{2, 0, 0}));
+      EXPECT_EQ(s.surface.tris, (std::vector<Tri>{{0, 1, 2}, {2, 1, 0}}));
+    }
+  const std::string bytes = little_endian_off(3, false);
+  EXPECT_EQ(failure(bytes.substr(0, bytes.size() - 1)),
+            "in:87: the file ends early: expected 4 bytes, but only 3 are left");
+  EXPECT_EQ(failure(bytes.substr(0, 50)), "in:23: 3 vertices and 2 faces, but only 27 bytes follow");
+  EXPECT_EQ(failure(bytes + "????"), "in:91: 4 bytes follow the last of 2 faces");
 }
 
 TEST(Stl, SizesThatDisagreeWithTheCount) {
