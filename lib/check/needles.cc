@@ -10,30 +10,13 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-/// kappa of an isosceles triangle is 0.1 at an apex of 3 degrees; a vertex without feature edges needs at
-/// least three triangles.
-constexpr double needle_angle = 3 * degree;
-constexpr double sharp_angle = 40 * degree;  ///< below it no good triangle fits between two feature edges
-constexpr float needle_kappa = 0.1F;         ///< the default limit of the contract
+/// Below it no good triangle fits between two feature edges.
+constexpr double sharp_angle = 40 * std::numbers::pi / 180;
+constexpr float needle_kappa = 0.1F;  ///< the default limit of the contract
 constexpr double touching = 0.1;  ///< of a triangle's longest edge: a vertex this close stands for the corner
 /// Of the isosceles triangle's kappa, what a needle needs. kappa falls as the sine of the base angles, so the
 /// base may lean by 60 degrees; and no triangle of a sector that two share is worse.
 constexpr double lean = 0.5;
-
-bool is_feature(const Connectivity& s, int h) { return s.is_border(h) || s.is_model(h); }
-
-/// Angle of the triangle of half-edge h at its origin.
-double corner_angle(const Connectivity& s, int h) {
-  const Vec3 p = s.point(s.from(h));
-  return angle(s.point(s.to(h)) - p, s.point(s.apex(h)) - p);
-}
-
-/// Angle at their origin between half-edge h and the third side of the triangle of half-edge g.
-double angle_between(const Connectivity& s, int h, int g) {
-  const Vec3 p = s.point(s.from(h));
-  return angle(s.point(s.to(h)) - p, s.point(s.apex(g)) - p);
-}
 
 double longest_edge(const Mesh& mesh, int t) {
   return std::max({edge_length(mesh, 3 * t), edge_length(mesh, 3 * t + 1), edge_length(mesh, 3 * t + 2)});
@@ -98,29 +81,6 @@ std::vector<double> angles_of_corners(const Connectivity& result, const std::vec
 }
 
 }  // namespace
-
-std::vector<Sector> needle_sectors(const Connectivity& surface, double scale) {
-  std::vector<Sector> sectors;
-  for (int h = 0; h < surface.n_half_edges(); ++h) {
-    const bool bounded = is_feature(surface, h);
-    const double limit = scale * (bounded ? needle_angle : 3 * needle_angle);
-    Sector s{h, 1, corner_angle(surface, h), !bounded};
-    int first = h, last = h;  // the last half-edge from the vertex
-    bool closed = false;
-    for (; s.angle < (bounded ? sharp_angle : limit) && !is_feature(surface, prev(last)) && !closed;) {
-      last = surface.opposite[prev(last)];
-      first = std::min(first, last);
-      closed = last == h;
-      if (!closed) s.angle += corner_angle(surface, last), ++s.triangles;
-    }
-    // between the edges of a folded sector: a result without the fold has this angle there
-    if (bounded && is_feature(surface, prev(last)))
-      s.angle = std::min(s.angle, angle_between(surface, h, last));
-    // a sector is found from its first edge, a whole one from its smallest half-edge
-    if (s.angle < limit && (bounded || (closed && first == h))) sectors.push_back(s);
-  }
-  return sectors;
-}
 
 std::vector<char> forced_needles(const Connectivity& result, const std::vector<float>& kappas,
                                  const Connectivity& reference) {

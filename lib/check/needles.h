@@ -4,23 +4,9 @@
 #include <vector>
 
 #include "lib/check/quality.h"
+#include "lib/core/sectors.h"
 
 namespace meshpipe {
-
-/// The triangles between successive feature edges (borders, model edges) at a vertex; all if it has none.
-struct Sector {
-  int first;      ///< half-edge from the vertex, the first counter-clockwise
-  int triangles;  ///< their number
-  double angle;   ///< radians over the surface, or between the two edges if that is less
-  bool whole;     ///< the vertex has no feature edges
-
-  /// Returns the apex angle of an isosceles triangle that fills the sector; of each of three if it is whole.
-  double apex() const { return whole ? angle / 3 : angle; }
-};
-
-/// Returns the sectors with an angle below 3 degrees times `scale`, below 9 times `scale` where they are
-/// whole: with 1, those that no triangle with kappa above 0.1 fills.
-std::vector<Sector> needle_sectors(const Connectivity& surface, double scale = 1);
 
 /// Flags the triangles (`kappas`: per triangle) with kappa up to 0.1 that a sharp corner of the reference
 /// forces: those in a needle sector of the vertex that stands for the corner, with at least half the kappa of
