@@ -7,6 +7,8 @@
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
+#include "lib/core/sectors.h"
+#include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/relax/repair.h"
 
@@ -24,6 +26,7 @@ struct Known {
   std::optional<Mesh> contacts{};     ///< where the reference intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
+  std::vector<char> corners{};
 
   /// Forgets the mesh: call it before it becomes another.
   void forget() {
@@ -32,6 +35,17 @@ struct Known {
     walked.clear(), searched.clear();
   }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
+  /// Per vertex of the reference, whether feature edges meet there at so sharp an angle that no triangle
+  /// between them has kappa 0.1.
+  const std::vector<char>& needle_corners() {
+    if (corners.empty()) {
+      const std::vector<int> opposite = opposite_halfedges(reference);
+      const Connectivity surface{reference, opposite, model_of(reference)};
+      corners.resize(reference.points.size());
+      for (const Sector& sector : needle_sectors(surface)) corners[surface.from(sector.first)] = 1;
+    }
+    return corners;
+  }
 };
 
 /// What is wrong: pairs and folds, and a sum of distances and 1/kappa over what is bearable.
@@ -151,8 +165,10 @@ void look_at_changed(const State& s, Known& known) {
 }
 
 /// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
-/// those on vertices and edges do not show these. Looks where one at a corner was measured after `time`.
-void add_missed_places(const State& s, Samples& samples, int time, double share) {
+/// those on vertices and edges do not show these. Looks where one at a corner was measured after `time` and a
+/// triangle of the mesh near a corner has another normal; with `all`, at all triangles longer than the size,
+/// of which corners do not tell enough: there may be a whole fold between them.
+void add_missed_places(const State& s, Samples& samples, int time, double share, bool all) {
   const Surface& reference = s.reference->surface;
   const double mean = mean_size(s);
   const Mesh mesh{s.points, s.mesh.tris};
@@ -166,14 +182,15 @@ void add_missed_places(const State& s, Samples& samples, int time, double share)
     const auto [a, b, c] = reference.tris[f];
     if (std::min({sample[a], sample[b], sample[c]}) < 0) continue;
     const Sample &x = samples.list[sample[a]], &y = samples.list[sample[b]], &z = samples.list[sample[c]];
-    if (std::max({x.time, y.time, z.time}) <= time) continue;
+    if (!all && std::max({x.time, y.time, z.time}) <= time) continue;
     const Piece whole{{reference.points[a], reference.points[b], reference.points[c]},
                       {x.near, y.near, z.near},
                       {x.distance, y.distance, z.distance}};
     if (whole.within(share * mean, mesh)) continue;
+    if (all && whole.side(whole.longest()) <= mean) continue;
     const Vec3 normal = normalized(area_vector(reference, f));
-    if (std::all_of(whole.face.begin(), whole.face.end(),
-                    [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
+    if (!all && std::all_of(whole.face.begin(), whole.face.end(),
+                            [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
       continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
     const auto [p, hit, complete, halvings] =
@@ -200,28 +217,52 @@ int judged_at(const State& s, Vec3 p, const Sample& x, double mean) {
   return judged;
 }
 
+/// The triangle with which the mesh may come nearer to sample x, at p: t, the nearest, or if that is of a
+/// sheet that faces another way, the nearest of those that face as the reference does.
+int triangle_to_refine(const State& s, const MeshTree& search, const Sample& x, Vec3 p, int t) {
+  const Vec3 normal = s.reference->normal(x.place);
+  if (dot(normal, s.face_normal(t)) >= 0) return t;
+  double least = rules::own_sheet * x.distance;
+  const Vec3 reach{least, least, least};
+  search.overlapping({p - reach, p + reach}, [&](int u) {
+    if (s.mesh.dead(u) || dot(normal, s.face_normal(u)) < 0) return;
+    if (const double d = norm(nearest_point(s, u, p) - p); d < least) least = d, t = u;
+  });
+  return t;
+}
+
 /// Triangles that are too far from the reference, and those nearest to samples of it that are.
 void find_far(const State& s, Known& known, double share, Fault& found) {
   const double mean = mean_size(s), least = share * mean;
   std::vector<std::pair<int, double>> far;
-  auto look = [&](int t, double distance) {
-    const double bearable = bearable_distance(s, t, mean, share);
-    if (distance > bearable) far.push_back({t, -distance / bearable});
-    return distance > bearable;
+  auto look_at_samples = [&](std::size_t first) {
+    for (std::size_t i = first; i < known.samples.list.size(); ++i) {
+      const Sample& x = known.samples.list[i];
+      if (!(x.distance > least)) continue;
+      const Vec3 p = s.reference->walk.point(x.place);
+      const int judged = judged_at(s, p, x, mean);
+      const double bearable = bearable_distance(s, judged, mean, share);
+      if (x.distance <= bearable) continue;
+      const int t = triangle_to_refine(s, known.samples.search, x, p, judged);
+      far.push_back({t, -x.distance / bearable}), found.missed.push_back({t, p});
+    }
   };
   sample_distances(s, known.samples, least);
-  add_missed_places(s, known.samples, known.time, share);
-  for (const Sample& x : known.samples.list) {
-    if (!(x.distance > least)) continue;
-    const Vec3 p = s.reference->walk.point(x.place);
-    if (const int t = judged_at(s, p, x, mean); look(t, x.distance)) found.missed.push_back({t, p});
-  }
+  add_missed_places(s, known.samples, known.time, share, false);
+  look_at_samples(0);
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
     if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
     if (known.searched[t] < 0)
       known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, share));
-    look(t, known.searched[t]);
+    const double bearable = bearable_distance(s, t, mean, share);
+    if (known.searched[t] > bearable) far.push_back({t, -known.searched[t] / bearable});
+  }
+  // takes long: only when little else is wrong
+  if (const std::size_t n = known.samples.list.size();
+      (int)far.size() + found.places() <= rules::few_to_look_on) {
+    add_missed_places(s, known.samples, known.time, share, true);
+    look_at_samples(n);
   }
   std::sort(far.begin(), far.end());
   for (int last = -1; auto [t, ratio] : far) {
@@ -231,8 +272,9 @@ void find_far(const State& s, Known& known, double share, Fault& found) {
 }
 
 /// Is the needle t, of kappa k, no worse than the angle between two model edges at a corner forces it to be?
-/// kappa of an isosceles triangle is 4 s (1 - s), s the sine of half the angle at its apex.
-bool is_forced(const State& s, int t, double k) {
+/// kappa of an isosceles triangle is 4 s (1 - s), s the sine of half the angle at its apex. Where the edges
+/// bend, the angle between long ones may be less than that of the model, which is excuse only if it is sharp.
+bool is_forced(const State& s, int t, double k, Known& known) {
   const EditMesh& m = s.mesh;
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
     const Vec3 p = s.points[m.from(h)];
@@ -241,20 +283,24 @@ bool is_forced(const State& s, int t, double k) {
     const double isosceles = 4 * half * (1 - half);
     const double least = isosceles > rules::failing_kappa ? rules::failing_kappa : rules::needed_kappa;
     if (half >= rules::sharp_half || k < rules::leaning * isosceles) continue;
-    if (k > least || isosceles <= rules::needed_kappa) return true;
+    if (k > least) return true;
+    const Place& place = s.place[m.from(h)];
+    if (isosceles <= rules::needed_kappa &&
+        known.needle_corners()[known.reference.tris[place.face][nearest_corner(place)]])
+      return true;
   }
   return false;
 }
 
 /// Triangles that are needles and that no corner forces; of too many only the worst.
-void find_needles(const State& s, Fault& found) {
+void find_needles(const State& s, Known& known, Fault& found) {
   const EditMesh& m = s.mesh;
   std::vector<std::pair<double, int>> needles;
   for (int t = 0; t < (int)m.tris.size(); ++t) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
-    if (k <= rules::bearable_kappa && !is_forced(s, t, k)) needles.push_back({k, t});
+    if (k <= rules::bearable_kappa && !is_forced(s, t, k, known)) needles.push_back({k, t});
   }
   if ((int)needles.size() > rules::hopeless)
     std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });
@@ -334,7 +380,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
     const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
     sum += rules::far_weight * std::max(0.0, there / most - 1);
     if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
-        k <= rules::bearable_kappa && !is_forced(s, t, k))
+        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
       sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
     for (int u = 0; u < t; ++u)
@@ -342,9 +388,11 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
           triangles_intersect(mesh, u, t))
         pairs.push_back({u, t});
     for (std::size_t i = 0; i < missed.size(); ++i)
-      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]); d <= distance[i]) {
-        bearable[i] = d < distance[i] ? most : std::min(most, bearable[i]);
-        distance[i] = d;
+      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
+          d <= (1 + rules::as_near) * distance[i]) {
+        const bool nearer = d < (1 - rules::as_near) * distance[i];
+        bearable[i] = nearer ? most : std::min(most, bearable[i]);
+        distance[i] = std::min(d, distance[i]);
       }
   }
   for (std::size_t i = 0; i < missed.size(); ++i)
@@ -368,7 +416,7 @@ Fault find_faults(const State& s, Known& known, double share = rules::too_far) {
     found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
   }
   find_far(s, known, share, found);
-  find_needles(s, found);
+  find_needles(s, known, found);
   sort_unique(found.triangles);
   return found;
 }
@@ -386,7 +434,7 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     for (const auto& [t, p] : fault.missed)
       if (t == i.t || t == i.other) i.missed.push_back(p);
   const double mean = mean_size(s);
-  known.tree();  // before threads ask for it
+  known.tree(), known.needle_corners();  // before threads ask for them
   auto around = [&](const Item& item, std::vector<int> before) {
     if (!before.empty() || s.mesh.dead(item.t)) return before;
     std::vector<int> found = triangles_around(s, item.t, rules::thorough_rings);
@@ -437,13 +485,16 @@ struct Search {
   }
   /// Is the best within the limit itself, not only within what refinement aims at?
   bool within_limit() {
-    if (best->fault.count() > 0 ||
-        best->fault.excess >= rules::within_limit / rules::too_far * best->fault.places())
-      return false;
+    return best->fault.count() == 0 &&
+           best->fault.excess < rules::within_limit / rules::too_far * best->fault.places() &&
+           beyond_limit().none();
+  }
+  /// What of the best mcheck refuses, and needles.
+  Fault beyond_limit() {
     known.forget();
-    const bool none = find_faults(best->mesh, known, rules::within_limit).none();
+    const Fault found = find_faults(best->mesh, known, rules::within_limit);
     known.forget();
-    return none;
+    return found;
   }
 };
 
@@ -485,18 +536,19 @@ bool repair(State& s, Search& search) {
   return any;
 }
 
-/// Places where triangles are too large, if one of the faults is more than mcheck accepts, other than needles
-/// that the model forces.
-std::vector<Dip> dips_at(const State& s, const Fault& fault, Known& known) {
-  std::vector<Dip> dips;
-  if (fault.places() > rules::few_faults) return dips;
+/// Where faults are more than mcheck accepts: none if there are too many. Of needles those are left out that
+/// the model forces, also at smaller sizes.
+std::vector<SizeReduction> reductions_at(const State& s, const Fault& fault, Known& known) {
+  std::vector<SizeReduction> reductions;
+  if (fault.places() > rules::few_faults) return reductions;
   const double mean = mean_size(s);
-  bool refused = fault.count() > 0;
   auto add = [&](int t, double factor) {
     const auto [a, b, c] = s.mesh.tris[t];
-    dips.push_back({(1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]), factor});
+    reductions.push_back({(1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]), factor});
   };
-  for (const auto& [t, u] : fault.pairs) add(t, rules::dip_at_pair), add(u, rules::dip_at_pair);
+  for (const auto& [t, u] : fault.pairs) add(t, rules::reduced_at_pair), add(u, rules::reduced_at_pair);
+  for (int h : folded_edges(s, known))
+    add(h / 3, rules::reduced_at_pair), add(s.mesh.opp[h] / 3, rules::reduced_at_pair);
   for (int t : fault.triangles) {
     const auto [a, b, c] = s.mesh.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
@@ -505,14 +557,13 @@ std::vector<Dip> dips_at(const State& s, const Fault& fault, Known& known) {
     for (const auto& [near, p] : fault.missed)
       if (near == t) far = std::max(far, norm(nearest_point(s, t, p) - p));
     far /= size;
-    const bool needle = k <= rules::bearable_kappa && !is_forced(s, t, k);
-    const bool forced = k * rules::worst_needle < rules::bearable_kappa;  // at smaller sizes, too
-    refused = refused || far > rules::within_limit || (needle && k <= rules::failing_kappa && !forced);
-    add(t, needle ? rules::dip_at_needle
-                  : std::clamp(rules::dip_at_distance / far, rules::least_dip, rules::most_dip));
+    if (k <= rules::failing_kappa && k * rules::worst_needle >= rules::bearable_kappa &&
+        !is_forced(s, t, k, known))
+      add(t, rules::reduced_at_needle);
+    else if (far > rules::within_limit)
+      add(t, std::clamp(rules::reduced_at_distance / far, rules::least_reduced, rules::most_reduced));
   }
-  if (!refused) dips.clear();
-  return dips;
+  return reductions;
 }
 
 }  // namespace
@@ -536,7 +587,9 @@ Faults remove_faults(State& s, Samples& samples) {
   const Seen &best = *search.best, &lowest = *search.lowest;
   s = best.mesh;
   Faults left{best.fault, best.fault.count(), best.fault.sum(), lowest.fault.sum()};
-  if (!best.fault.none()) left.dips = dips_at(lowest.mesh, lowest.fault, search.known);
+  if (!best.fault.none()) left.reductions = reductions_at(best.mesh, search.beyond_limit(), search.known);
+  if (!left.reductions.empty() && search.lowest != search.best)
+    left.reductions = reductions_at(lowest.mesh, lowest.fault, search.known);
   return left;
 }
 

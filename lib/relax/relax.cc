@@ -104,11 +104,13 @@ void optimize(State& s, int sweeps, double target, Samples* samples) {
 
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
 /// a coarse mesh has less area than its reference: the count is known only after optimization, so repeat with
-/// a rescaled size field until it is within 1.5 %, unless the worst triangle gets worse.
-int optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
+/// a rescaled size field until it is within 1.5 %, unless the worst triangle gets worse. Returns the number
+/// of optimizations, and the goal of the one that is kept, whose sizes are sqrt(target / goal) times the
+/// wanted.
+std::pair<int, double> optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   const State start = s;
   std::optional<State> best;
-  double goal = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
+  double goal = target, kept = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
   auto off = [&](const State& state) { return std::abs(state.mesh.live - target); };
   int tries = 1;
   for (;; ++tries) {
@@ -116,8 +118,8 @@ int optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
     const double surplus = s.mesh.live - target, shape = quality(s, worst(s));
     if (tries == 1) sound = rules::spoilt * shape;
     if (shape >= sound && off(s) <= (tries == 1 ? rules::count_first : rules::count_aimed) * target)
-      return tries;
-    if (!best || (shape >= sound && off(s) < off(*best))) best = s;
+      return {tries, goal};
+    if (!best || (shape >= sound && off(s) < off(*best))) best = s, kept = goal;
     if (tries > 1) response = (s.mesh.live - last_live) / (goal - last_goal);
     if (shape < sound && surplus > 0) break;
     if (tries >= (response < rules::sluggish ? rules::sluggish_tries : rules::tries)) break;
@@ -130,52 +132,63 @@ int optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   }
   s = std::move(*best);
   if (samples) samples->forget();
-  return tries;
+  return {tries, kept};
 }
 
-/// Lowers the sizes of vertices nearer to a dip than that, and around them by gradation. Returns the number
-/// of triangles that this asks for in addition.
-double lower_sizes(State& s, const std::vector<Dip>& dips) {
+/// Reduces the size of each vertex that is nearer to a place of reduction than its own size, and of those
+/// around by gradation. Returns whether there were such vertices.
+bool reduce_sizes(State& s, const std::vector<SizeReduction>& reductions) {
   const int n = (int)s.points.size();
-  std::vector<double> before(n), size(n);
-  std::vector<int> lowered;
+  std::vector<double> size(n);
+  std::vector<int> reduced;
   for (int v = 0; v < n; ++v) {
-    size[v] = before[v] = s.target(v);
-    for (const Dip& d : dips)
-      if (norm(s.points[v] - d.at) < before[v]) size[v] = std::min(size[v], d.factor * before[v]);
-    if (s.mesh.out[v] >= 0 && size[v] < before[v]) lowered.push_back(v);
+    const double before = size[v] = s.target(v);
+    for (const SizeReduction& r : reductions)
+      if (norm(s.points[v] - r.at) < before) size[v] = std::min(size[v], r.factor * before);
+    if (s.mesh.out[v] >= 0 && size[v] < before) reduced.push_back(v);
   }
-  shortest_paths(lowered, size, [&](int v, auto reach) {
+  shortest_paths(reduced, size, [&](int v, auto reach) {
     for_copies(s, v, [&](int c) { reach(c, size[v]); });
     s.mesh.neighbors(
-        v, [&](int u) { reach(u, size[v] + rules::dip_gradation * norm(s.points[u] - s.points[v])); });
+        v, [&](int u) { reach(u, size[v] + rules::reduced_gradation * norm(s.points[u] - s.points[v])); });
   });
-  for (int v = 0; v < n; ++v) s.refinement[v] *= size[v] / before[v];
-  auto sum = [](const Tri& t, const std::vector<double>& x) { return x[t[0]] + x[t[1]] + x[t[2]]; };
+  for (int v = 0; v < n; ++v) s.refinement[v] *= size[v] / s.target(v);
+  return !reduced.empty();
+}
+
+/// The number of triangles that the sizes ask for beyond what they do with factors `before` on them.
+double triangles_added(const State& s, const std::vector<double>& before) {
   double added = 0;
-  for (const Tri& t : s.mesh.tris) {
-    const double ratio = sum(t, before) / sum(t, size);
+  for (const auto& [a, b, c] : s.mesh.tris) {
+    const double ratio = (s.size[a] * before[a] + s.size[b] * before[b] + s.size[c] * before[c]) /
+                         (s.target(a) + s.target(b) + s.target(c));
     added += ratio * ratio - 1;
   }
   return added;
 }
 
 /// Removes faults. Where some are left for which mcheck would refuse the mesh, sizes are too large: the mesh
-/// at the `start` is optimized again, with smaller ones there, as long as that helps.
-Intersections remove_all_faults(State& s, State start, int sweeps, double target, Samples& samples) {
+/// at the `start` is optimized to `goal` again, with smaller ones there, as long as that helps. Returns what
+/// is left, and sets the number of restarts.
+Intersections remove_all_faults(State& s, State start, int sweeps, double goal, Samples& samples,
+                                int& restarts) {
+  const std::vector<double> refinement = start.refinement;
   Faults left = remove_faults(s, samples);
-  double added = 0;
-  for (int i = 0; i < rules::most_restarts && !left.dips.empty(); ++i) {
-    added += lower_sizes(start, left.dips);
-    if (added > rules::dips_growth * target) break;
+  while (restarts < rules::most_restarts && !left.reductions.empty()) {
+    if (!reduce_sizes(start, left.reductions)) break;
+    const double added = triangles_added(start, refinement);
+    if (added > rules::reduced_growth * goal) break;
     State again = start;
     coarse_rounds(again);
-    optimize(again, sweeps, target + added, &samples);
+    optimize(again, sweeps, goal + added, &samples);
     Faults now = remove_faults(again, samples);
-    const bool better = now.less_than(left);
-    if (!better && !(now.lowest < rules::less_excess * left.lowest)) break;
-    left.dips = now.dips, left.lowest = now.lowest;
-    if (better) s = std::move(again), left = std::move(now);
+    ++restarts;
+    if (now.less_than(left)) {
+      s = std::move(again), left = std::move(now);
+    } else {
+      if (!(now.lowest < rules::less_excess * left.lowest)) break;
+      left.reductions = now.reductions, left.lowest = now.lowest;
+    }
   }
   return left;
 }
@@ -253,18 +266,21 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
       s.points, on_border, [&](int v) { return s.target(v); }, s.hold);
   const Surface& surface = ordered.surface;
   const double natural = ordered.on->sizes ? count_for_size(surface, *ordered.on->sizes) : s.mesh.live;
-  const State start = s;
+  State start = s;
   coarse_rounds(s);
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
   Samples samples{feature_samples(*ordered.on, size_for_count(total_area(surface), target)), {}};
-  int tries = 1;
-  if (options.target_triangles > 0)
-    tries = optimize_to_count(s, options.sweeps, target, &samples);
-  else
+  int tries = 1, restarts = 0;
+  double goal = natural;
+  if (options.target_triangles > 0) {
+    std::tie(tries, goal) = optimize_to_count(s, options.sweeps, target, &samples);
+    for (double& f : start.refinement) f *= std::sqrt(target / goal);
+  } else {
     optimize(s, options.sweeps, natural, &samples);
-  const Intersections left = remove_all_faults(s, start, options.sweeps, target, samples);
+  }
+  const Intersections left = remove_all_faults(s, std::move(start), options.sweeps, goal, samples, restarts);
   RelaxReport report{s.counts, left.pairs, left.of_reference};
-  report.tries = tries;
+  report.tries = tries, report.restarts = restarts;
   const std::vector<int> left_at = finish(s, mesh);
   if (!options.sheets.empty()) report.volume_error = keep_volumes(mesh, original, options.sheets);
   for (auto& [a, b] : report.intersections) a = left_at[a], b = left_at[b];
@@ -419,7 +435,7 @@ void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& p
   } else {
     coarse_rounds(s);
     if (pass.to_count)
-      tries = optimize_to_count(s, pass.sweeps, goal, nullptr);
+      tries = optimize_to_count(s, pass.sweeps, goal, nullptr).first;
     else
       optimize(s, pass.sweeps, goal, nullptr);
   }

@@ -35,6 +35,7 @@ struct RelaxReport : RelaxCounts {
   std::vector<std::pair<int, int>> intersections;
   int intersections_of_reference = 0;  ///< pairs of the result that intersect where the reference does, too
   double kappa_min = 0, kappa_mean = 0;
+  int restarts = 0;         ///< optimizations with sizes reduced where faults were left
   double volume_error = 0;  ///< of regions between sheets: the largest relative difference of a volume
 };
 

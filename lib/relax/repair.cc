@@ -158,8 +158,8 @@ bool failed_before(const State& s, const std::vector<int>& failed, const std::ve
 
 /// Repairs at each of these triangles, as long as it is wanted; returns the number of changes.
 template <class Wanted>
-int repair_each(State& s, std::vector<int> triangles, bool thorough, std::vector<int>& failed,
-                Wanted wanted) {
+int repair_each(State& s, std::vector<int> triangles, bool thorough, Repairs& memory, Wanted wanted) {
+  std::vector<int>& failed = memory.failed[thorough];
   auto around = [&](int t, std::vector<int> found) -> std::vector<int> {
     if (s.mesh.dead(t) || !wanted(t)) return {};
     if (found.empty()) found = triangles_around(s, t, thorough ? rules::thorough_rings : rules::rings);
@@ -170,6 +170,7 @@ int repair_each(State& s, std::vector<int> triangles, bool thorough, std::vector
   auto remember = [&](const std::vector<int>& patch) {
     failed.resize(s.mesh.tris.size());
     failed[patch.front()] = s.clocks.now;
+    memory.in_vain += thorough;
   };
   return change_neighborhoods(s, triangles, INT_MAX, INT_MAX, around, attempt, remember);
 }
@@ -234,15 +235,17 @@ void repair_worst(State& s, Repairs& memory) {
     before = count;
     // far more than can be repaired: then there is time for fewer
     int few = count > 4 * most ? most / 2 : most;
-    if (round > 0) few = std::min(few, rules::thorough_repairs + s.mesh.live / rules::triangles_per_thorough);
+    if (round > 0)
+      few = std::clamp(rules::thorough_repairs + s.mesh.live / rules::triangles_per_thorough - memory.in_vain,
+                       0, few);
     if (count > few) triangles.resize(few);
     const bool done = triangles.empty();
-    int changes = repair_each(s, std::move(triangles), round > 0, memory.failed[round > 0],
-                              [&](int t) { return quality(s, t) < 1; });
+    int changes =
+        repair_each(s, std::move(triangles), round > 0, memory, [&](int t) { return quality(s, t) < 1; });
     for (int v = 0; v < (int)s.mesh.out.size() && (int)irregular.size() < most; ++v)
       if (irregularity(s, v)) irregular.push_back(s.mesh.out[v] / 3);
     if (done && irregular.empty()) return;
-    changes += repair_each(s, std::move(irregular), false, memory.failed[false], [&](int t) {
+    changes += repair_each(s, std::move(irregular), false, memory, [&](int t) {
       const Tri& v = s.mesh.tris[t];
       return irregularity(s, v[0]) + irregularity(s, v[1]) + irregularity(s, v[2]) > 0;
     });

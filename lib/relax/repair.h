@@ -14,6 +14,7 @@ struct Repairs {
   std::vector<int> failed[2];
   std::vector<double> quality;  ///< per triangle, at `time`
   int time = -1;
+  int in_vain = 0;      ///< triangles at which pairs of edits have failed
   bool forced = false;  ///< do the model or a kept border force most of the bad triangles?
 };
 
@@ -71,17 +72,18 @@ struct Intersections {
 };
 
 /// A place where triangles are too large, and the factor on their size that may do.
-struct Dip {
+struct SizeReduction {
   Vec3 at;
   double factor;
 };
 
 /// What removal of faults has left.
 struct Faults : Intersections {
-  int count = 0;            ///< of pairs and folds
-  double sum = 0;           ///< of these, of distances, and of 1/kappa of needles, over what is bearable
-  double lowest = 0;        ///< sum that was seen: of a mesh with pairs, if it is less than `sum`
-  std::vector<Dip> dips{};  ///< of that mesh if mcheck would refuse it; none if its faults are too many
+  int count = 0;      ///< of pairs and folds
+  double sum = 0;     ///< of these, of distances, and of 1/kappa of needles, over what is bearable
+  double lowest = 0;  ///< sum of any mesh seen, which may have pairs although the result has none
+  /// Where to reduce sizes before another start; empty: mcheck accepts the result, or sizes do not help.
+  std::vector<SizeReduction> reductions{};
   /// Returns whether this is less: a mesh without pairs and folds is better than any with them.
   bool less_than(const Faults& other) const;
 };

@@ -92,7 +92,7 @@ constexpr int repair_rounds = 4;
 constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
 constexpr int thorough_repairs = 30,
-              triangles_per_thorough = 1000;  // of pairs of edits: for the worst; the others may be forced
+              triangles_per_thorough = 1000;  // of pairs of edits: for the worst, until as many fail: forced
 // triangles: of more needles those over the limit wait, and of more bad ones it is seen whether rounds help
 constexpr int hopeless = 100;
 constexpr double forced_share = 0.8,
@@ -102,7 +102,10 @@ constexpr double forced_share = 0.8,
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
-constexpr double as_near = 1e-6;        // of a distance: rounding errors
+constexpr int few_to_look_on = 20;      // triangles at fault: with more, more will be looked for later
+constexpr double own_sheet =
+    2;  // of the distance: where the mesh of the sheet of a missed place is looked for
+constexpr double as_near = 1e-6;  // of a distance: rounding errors
 constexpr double doubtful = 0.4;  // of the bearable, walked to: from there all of a triangle is searched
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
@@ -119,13 +122,14 @@ constexpr double much_worse = 4;  // than the best seen: what is wrong does not 
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
-constexpr double dip_at_pair = 0.35, dip_at_needle = 0.3;  // of the size, where the mesh is begun again
-constexpr double dip_at_distance = 0.3;  // over the distance in sizes: the same, well within a half,
-constexpr double least_dip = 0.25, most_dip = 0.6;  // within these bounds
-constexpr double dip_gradation = 0.5;               // growth of the size per length away from there
-constexpr double dips_growth = 0.5;                 // of the triangles: what dips may add
-constexpr int most_restarts = 3;                    // each takes as long as the first time
-constexpr double far_weight = 10, pair_weight = 5;  // of the objective
+constexpr double reduced_at_pair = 0.35,
+                 reduced_at_needle = 0.3;    // of the size, where the mesh is begun again
+constexpr double reduced_at_distance = 0.3;  // over the distance in sizes: the same, well within a half,
+constexpr double least_reduced = 0.25, most_reduced = 0.6;  // within these bounds
+constexpr double reduced_gradation = 0.5;                   // growth of the size per length away from there
+constexpr double reduced_growth = 0.5;                      // of the triangles: what smaller sizes may add
+constexpr int most_restarts = 3;                            // each takes as long as the first time
+constexpr double far_weight = 10, pair_weight = 5;          // of the objective
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples

@@ -16,6 +16,9 @@ std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles
   if (asked > 0 && std::abs((double)triangles - asked) > much * asked)
     lines.push_back("narrow places of the model keep it from the " + std::to_string(asked) +
                     " triangles asked for");
+  if (r.restarts > 0)
+    lines.push_back("begun again " + std::to_string(r.restarts) + (r.restarts == 1 ? " time" : " times") +
+                    ", with smaller sizes where faults were left");
   if (r.corners_merged > 0)
     lines.push_back(std::to_string(r.corners_merged) +
                     " corners merged with another that was nearer than a twentieth of the size");
@@ -29,6 +32,7 @@ nlohmann::ordered_json relax_record(const RelaxReport& r, std::size_t triangles)
   record["kappa_mean"] = r.kappa_mean;
   record["kappa_min"] = r.kappa_min;
   record["tries"] = r.tries;
+  record["restarts"] = r.restarts;
   record["volume_error"] = r.volume_error;
   record["splits"] = r.splits;
   record["collapses"] = r.collapses;
