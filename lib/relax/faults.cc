@@ -15,10 +15,18 @@
 namespace meshpipe {
 namespace {
 
+/// From where on a distance, in sizes, and a kappa are faults.
+struct Limits {
+  double distance, kappa;
+};
+constexpr Limits wanted{rules::too_far, rules::bearable_kappa},
+    refused{rules::within_limit, rules::failing_kappa};
+
 /// What is asked of the reference more than once, computed when it is needed.
 struct Known {
   const Surface& reference;
   Samples& samples;
+  Limits limits = wanted;
   IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
@@ -232,7 +240,8 @@ int triangle_to_refine(const State& s, const MeshTree& search, const Sample& x, 
 }
 
 /// Triangles that are too far from the reference, and those nearest to samples of it that are.
-void find_far(const State& s, Known& known, double share, Fault& found) {
+void find_far(const State& s, Known& known, Fault& found) {
+  const double share = known.limits.distance;
   const double mean = mean_size(s), least = share * mean;
   std::vector<std::pair<int, double>> far;
   auto look_at_samples = [&](std::size_t first) {
@@ -300,7 +309,7 @@ void find_needles(const State& s, Known& known, Fault& found) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
-    if (k <= rules::bearable_kappa && !is_forced(s, t, k, known)) needles.push_back({k, t});
+    if (k <= known.limits.kappa && !is_forced(s, t, k, known)) needles.push_back({k, t});
   }
   if ((int)needles.size() > rules::hopeless)
     std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });
@@ -408,14 +417,14 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
-Fault find_faults(const State& s, Known& known, double share = rules::too_far) {
+Fault find_faults(const State& s, Known& known) {
   Fault found;
   find_intersections(s, known, found);
   for (int h : folded_edges(s, known)) {
     ++found.folds;
     found.triangles.insert(found.triangles.end(), {h / 3, s.mesh.opp[h] / 3});
   }
-  find_far(s, known, share, found);
+  find_far(s, known, found);
   find_needles(s, known, found);
   sort_unique(found.triangles);
   return found;
@@ -483,49 +492,49 @@ struct Search {
     s = seen->mesh, now = seen->fault;
     known.forget();
   }
-  /// Is the best within the limit itself, not only within what refinement aims at?
-  bool within_limit() {
-    return best->fault.count() == 0 &&
-           best->fault.excess < rules::within_limit / rules::too_far * best->fault.places() &&
-           beyond_limit().none();
+  /// Does mcheck accept the best?
+  bool is_accepted() {
+    if (best->fault.count() > 0) return false;
+    known.forget();
+    const Limits limits = std::exchange(known.limits, refused);
+    const bool none = find_faults(best->mesh, known).none();
+    known.forget(), known.limits = limits;
+    return none;
   }
-  /// What of the best mcheck refuses, and needles.
-  Fault beyond_limit() {
-    known.forget();
-    const Fault found = find_faults(best->mesh, known, rules::within_limit);
-    known.forget();
-    return found;
+  /// Goes on from the best by other limits: what was seen before counts no more.
+  void go_on(State& s, Limits limits) {
+    s = best->mesh;
+    known.forget(), known.limits = limits;
+    best = lowest = nullptr;
+    look(s);
   }
 };
 
-/// Refines as long as it helps. Returns whether no fault is left that matters.
-bool refine(State& s, Search& search, double most) {
+/// Refines as long as it helps, or until mcheck accepts the best.
+void refine(State& s, Search& search, double most) {
   Repairs memory;
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
-    const int n = (int)search.now.triangles.size();
+    const int n = (int)search.now.triangles.size(), since = s.clocks.now;
     refine_at(s, search.now);
-    if (n > 0) reach_features(s, search.known.samples, rules::too_far, n), repair_worst(s, memory);
+    if (n > 0) reach_features(s, search.known.samples, rules::too_far, n), repair_worst(s, memory, since);
     search.look(s), ++search.rounds;
-    if (search.now.none()) return true;
+    if (search.now.none()) return;
     useless = search.better || search.lower ? 0 : useless + 1;
-    if (useless == 1 && search.within_limit()) return true;
-    if (search.now.sum() > rules::much_worse * search.lowest->fault.sum()) return false;
+    if (useless == 1 && search.is_accepted()) return;
+    if (search.now.sum() > rules::much_worse * search.lowest->fault.sum()) return;
   }
-  return false;
 }
 
-/// Repairs as long as it helps, from the mesh with the lowest sum, then from the best. Returns whether one of
-/// them was repaired.
-bool repair(State& s, Search& search) {
-  bool any = false;
+/// Repairs as long as it helps, from the mesh with the lowest sum, then from the best.
+void repair(State& s, Search& search) {
   std::shared_ptr<const Seen> tried;
   for (const bool from_best : {false, true}) {
     const auto start = from_best ? search.best : search.lowest;
     if (start == tried || search.best->fault.none()) continue;
     if (start->fault.places() > rules::few_faults || start->fault.involved() > start->mesh.mesh.live / 2)
       continue;
-    search.go_to(s, start), tried = start, any = true;
+    search.go_to(s, start), tried = start;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
       repair_at(s, search.now, search.known);
       search.look(s);
@@ -533,7 +542,6 @@ bool repair(State& s, Search& search) {
       tried = from_best ? search.best : search.lowest;
     }
   }
-  return any;
 }
 
 /// Where faults are more than mcheck accepts: none if there are too many. Of needles those are left out that
@@ -576,18 +584,21 @@ bool Faults::less_than(const Faults& other) const {
 Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
+  auto remove = [&] {
+    if (!search.best->fault.none()) refine(s, search, most);
+    if (!search.best->fault.none()) repair(s, search);
+  };
   search.look(s);
-  // what repair has left is refined again, without what it has cured
-  const std::shared_ptr<const Seen> first = search.best;
-  for (int pass = 0; pass < 2 && !search.best->fault.none(); ++pass) {
-    if (pass > 0 && search.best == first) break;  // the same would be seen again
-    if (pass > 0) search.go_to(s, search.best);
-    if (refine(s, search, most) || !repair(s, search)) break;
+  remove();
+  if (!search.best->fault.none()) {
+    // what is only less than wanted is not worth faults elsewhere
+    search.go_on(s, refused);
+    remove();
   }
   const Seen &best = *search.best, &lowest = *search.lowest;
   s = best.mesh;
   Faults left{best.fault, best.fault.count(), best.fault.sum(), lowest.fault.sum()};
-  if (!best.fault.none()) left.reductions = reductions_at(best.mesh, search.beyond_limit(), search.known);
+  left.reductions = reductions_at(best.mesh, best.fault, search.known);
   if (!left.reductions.empty() && search.lowest != search.best)
     left.reductions = reductions_at(lowest.mesh, lowest.fault, search.known);
   return left;

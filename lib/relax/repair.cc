@@ -175,8 +175,8 @@ int repair_each(State& s, std::vector<int> triangles, bool thorough, Repairs& me
   return change_neighborhoods(s, triangles, INT_MAX, INT_MAX, around, attempt, remember);
 }
 
-/// The triangles that are not good enough, the worst first.
-std::vector<int> bad_triangles(const State& s, Repairs& memory) {
+/// The triangles that are not good enough and have changed after `since`, the worst first.
+std::vector<int> bad_triangles(const State& s, Repairs& memory, int since) {
   const int n = (int)s.mesh.tris.size(), before = (int)memory.quality.size();
   memory.quality.resize(n);
 #pragma omp parallel for schedule(dynamic, 1024) if (n > 10000)
@@ -186,7 +186,8 @@ std::vector<int> bad_triangles(const State& s, Repairs& memory) {
   memory.time = s.clocks.now;
   std::vector<std::pair<double, int>> bad;
   for (int t = 0; t < n; ++t)
-    if (!s.mesh.dead(t) && memory.quality[t] < 1) bad.push_back({memory.quality[t], t});
+    if (!s.mesh.dead(t) && memory.quality[t] < 1 && changed_since(s, t, since))
+      bad.push_back({memory.quality[t], t});
   std::sort(bad.begin(), bad.end());
   std::vector<int> triangles;
   for (auto [q, t] : bad) triangles.push_back(t);
@@ -216,16 +217,16 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   return std::move(best.state);
 }
 
-void repair_worst(State& s, Repairs& memory) {
+void repair_worst(State& s, Repairs& memory, int since) {
   const int most = rules::repairs + s.mesh.live / rules::triangles_per_repair;
   int before = 0, first = 0;
   if (memory.time < 0) {
     s.acute = true;
-    s.acute = (double)bad_triangles(s, memory).size() <= rules::few_bad * s.mesh.live;
+    s.acute = (double)bad_triangles(s, memory, -1).size() <= rules::few_bad * s.mesh.live;
     if (!s.acute) memory.quality.clear();
   }
   for (int round = 0; round < (memory.forced ? 1 : rules::repair_rounds); ++round) {
-    std::vector<int> triangles = bad_triangles(s, memory), irregular;
+    std::vector<int> triangles = bad_triangles(s, memory, since), irregular;
     const int count = (int)triangles.size();
     if (round == 0) first = count;
     if (round > 1 && count > rules::hopeless) {
@@ -243,7 +244,7 @@ void repair_worst(State& s, Repairs& memory) {
     int changes =
         repair_each(s, std::move(triangles), round > 0, memory, [&](int t) { return quality(s, t) < 1; });
     for (int v = 0; v < (int)s.mesh.out.size() && (int)irregular.size() < most; ++v)
-      if (irregularity(s, v)) irregular.push_back(s.mesh.out[v] / 3);
+      if (s.clocks.changed[v] > since && irregularity(s, v)) irregular.push_back(s.mesh.out[v] / 3);
     if (done && irregular.empty()) return;
     changes += repair_each(s, std::move(irregular), false, memory, [&](int t) {
       const Tri& v = s.mesh.tris[t];

@@ -26,7 +26,8 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
 
 /// Repairs the triangles that are not good enough, the worst first, then vertices of a valence other than 5,
 /// 6, 7: in each of 4 rounds at most 200 + n/100 of n triangles, since more mean that sizes are at fault.
-void repair_worst(State& s, Repairs& memory);
+/// Only where something has changed after `since`, on the clock of `s`.
+void repair_worst(State& s, Repairs& memory, int since = -1);
 
 // --- missed_features.cc ---
 
@@ -90,7 +91,8 @@ struct Faults : Intersections {
 
 /// Refines where triangles intersect or fold but the reference does not, where they are needles, and where
 /// mesh and reference are almost half the size apart; then repairs there. Goes on until rounds no longer
-/// help, and leaves the mesh with the fewest faults seen; returns what is left.
+/// help, then again only where mcheck would refuse the mesh. Leaves the mesh with the fewest faults seen, and
+/// returns those that mcheck would refuse.
 Faults remove_faults(State& s, Samples& samples);
 
 }  // namespace meshpipe

@@ -101,7 +101,7 @@ constexpr double forced_share = 0.8,
 // faults (faults.cc)
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
-constexpr double within_limit = 0.495;  // of the size: rounds that do not help are not worth the rest
+constexpr double within_limit = 0.495;  // of the size: mcheck accepts less, with any rounding
 constexpr int few_to_look_on = 20;      // triangles at fault: with more, more will be looked for later
 constexpr double own_sheet =
     2;  // of the distance: where the mesh of the sheet of a missed place is looked for
