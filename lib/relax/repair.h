@@ -64,7 +64,7 @@ bool reach_features(State& s, Samples& samples, double least, int most);
 /// the nearest triangle of each sample.
 std::vector<double> sample_distances(const State& s, Samples& samples, double enough);
 
-// --- faults.cc ---
+// --- remove_faults.cc ---
 
 /// Pairs of triangles that intersect where the reference does not, sorted; and the number of all others.
 struct Intersections {

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <memory>
+
+#include "lib/core/intersect.h"
+#include "lib/core/triangle_count.h"
+#include "lib/relax/faults.h"
+
+namespace meshpipe {
+namespace {
+
+/// Asks for smaller triangles around the offending ones, splits their longest edges and smooths.
+void refine_at(State& s, const Fault& fault) {
+  const EditMesh& m = s.mesh;
+  std::vector<int> offending = fault.triangles, around, whole;  // corners of what cannot be split
+  for (auto [a, b] : fault.pairs) offending.insert(offending.end(), {a, b});
+  sort_unique(offending);
+  for (int t : offending)
+    for (int v : m.tris[t]) {
+      around.push_back(v);
+      m.neighbors(v, [&](int w) { around.push_back(w); });
+    }
+  sort_unique(around);
+  for (int v : around) s.refinement[v] *= rules::refinement, mark_changed(s, v);
+  for (int t : offending) {
+    int longest = -1;
+    double length = 0;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const double l = norm(s.points[m.to(h)] - s.points[m.from(h)]);
+      if (l > length) length = l, longest = h;
+    }
+    if (longest >= 0 && split_edge(s, longest))
+      around.push_back((int)m.out.size() - 1);
+    else
+      whole.insert(whole.end(), m.tris[t].begin(), m.tris[t].end());
+  }
+  for (int v : whole) {
+    std::vector<int> edges;
+    m.star(v, [&](int h) { edges.push_back(h); });
+    for (int h : edges)  // a split leaves the other edges at v where they are
+      if (!m.hard[h] && s.length(h) > rules::split_above && split_edge(s, h))
+        around.push_back((int)m.out.size() - 1);
+  }
+  flip_to_shape(s);
+  for (int repeat = 0; repeat < rules::sweeps_to_settle; ++repeat)
+    for (int v : around) improve_vertex(s, v);
+}
+
+/// A patch as it was first, and what was found of it: an edit changes few of its triangles.
+struct Before {
+  Mesh mesh{};
+  std::vector<double> deviation{};
+  std::vector<std::pair<int, int>> pairs{};
+
+  bool has(const Mesh& now, int t) const {
+    if (t >= (int)mesh.tris.size() || now.tris[t] != mesh.tris[t]) return false;
+    const Tri& v = now.tris[t];
+    return std::all_of(v.begin(), v.end(), [&](int i) { return now.points[i] == mesh.points[i]; });
+  }
+};
+
+/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
+/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
+/// is asked for becomes `before`.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
+                  Before& before) {
+  double sum = 0;
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0);
+  const Mesh mesh{s.points, s.mesh.tris};
+  std::vector<Box> box(mesh.tris.size());
+  std::vector<char> same(mesh.tris.size(), 0);
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = mesh.tris[t];
+    same[t] = before.has(mesh, t);
+    const double most = bearable_distance(s, t, mean);
+    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
+    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
+    sum += rules::far_weight * std::max(0.0, there / most - 1);
+    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
+        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
+      sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
+    box[t] = box_of(mesh, t);
+    for (int u = 0; u < t; ++u)
+      if (!s.mesh.dead(u) && !(same[t] && same[u]) && overlap(box[t], box[u]) &&
+          triangles_intersect(mesh, u, t))
+        pairs.push_back({u, t});
+    for (std::size_t i = 0; i < missed.size(); ++i)
+      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
+          d <= (1 + rules::as_near) * distance[i]) {
+        const bool nearer = d < (1 - rules::as_near) * distance[i];
+        bearable[i] = nearer ? most : std::min(most, bearable[i]);
+        distance[i] = std::min(d, distance[i]);
+      }
+  }
+  for (std::size_t i = 0; i < missed.size(); ++i)
+    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
+  if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
+  for (auto [t, u] : chords_of(s))
+    if (!(same[t] && same[u])) pairs.push_back({t, u});
+  sort_unique(pairs);
+  if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
+  for (auto [t, u] : before.pairs)
+    if (same[t] && same[u]) pairs.push_back({t, u});
+  if (before.deviation.empty()) before = {mesh, far, pairs};
+  return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
+}
+
+/// Tries all edits where refinement did not help, and takes the best of each place.
+void repair_at(State& s, const Fault& fault, Known& known) {
+  struct Item {
+    int t, other;
+    std::vector<Vec3> missed;
+  };
+  std::vector<Item> items;
+  for (auto [a, b] : fault.pairs) items.push_back({a, b, {}});
+  for (int t : fault.triangles) items.push_back({t, -1, {}});
+  for (Item& i : items)
+    for (const auto& [t, p] : fault.missed)
+      if (t == i.t || t == i.other) i.missed.push_back(p);
+  const double mean = mean_size(s);
+  known.tree(), known.needle_corners();  // before threads ask for them
+  auto around = [&](const Item& item, std::vector<int> before) {
+    if (!before.empty() || s.mesh.dead(item.t)) return before;
+    std::vector<int> found = triangles_around(s, item.t, rules::thorough_rings);
+    if (item.other >= 0 && !s.mesh.dead(item.other))
+      for (int t : triangles_around(s, item.other, rules::rings))
+        if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
+    if ((int)found.size() > rules::largest_patch) found.clear();
+    return found;
+  };
+  auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
+    Before before;
+    return repaired(s, triangles, true,
+                    {[&](const State& patch) {
+                       return objective(patch) + faultiness(patch, item.missed, mean, known, before);
+                     },
+                     true});
+  };
+  change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+}
+
+/// A mesh and its faults.
+struct Seen {
+  State mesh;
+  Fault fault;
+};
+
+/// The meshes seen while faults are removed. Repair begins with the one with the lowest sum, since a few
+/// pairs can often be repaired; `best` is the result, or if mcheck refuses that, `accepted`, the best of
+/// those that it accepts.
+struct Search {
+  Known known;
+  std::shared_ptr<const Seen> best{}, lowest{}, accepted{};
+  Fault now{};
+  int rounds = 0;
+  bool better = false, lower = false;  ///< is the mesh looked at last?
+
+  void look(const State& s) {
+    now = find_faults(s, known);
+    better = !best || now.less_than(best->fault);
+    lower = !lowest || now.sum() < rules::less_excess * lowest->fault.sum();
+    const bool best_accepted = now.acceptable && (!accepted || now.less_than(accepted->fault));
+    if (!better && !lower && !best_accepted) return;
+    const auto seen = std::make_shared<const Seen>(Seen{s, now});
+    if (better) best = seen;
+    if (lower) lowest = seen;
+    if (best_accepted) accepted = seen;
+  }
+  void go_to(State& s, const std::shared_ptr<const Seen>& seen) {
+    s = seen->mesh, now = seen->fault;
+    known.forget();
+  }
+  /// Goes on from the best by other limits: what was seen before counts no more.
+  void go_on(State& s, Limits limits) {
+    s = best->mesh;
+    known.forget(), known.limits = limits;
+    best = lowest = nullptr;
+    look(s);
+  }
+};
+
+/// Refines as long as it helps, or until mcheck accepts the best.
+void refine(State& s, Search& search, double most) {
+  Repairs memory;
+  int since = s.clocks.now;  // when all was repaired
+  for (int useless = 0;
+       useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
+    const int n = (int)search.now.triangles.size();
+    refine_at(s, search.now);
+    if (n > 0) {
+      reach_features(s, search.known.samples, rules::too_far, n);
+      repair_worst(s, memory, since);
+      since = s.clocks.now;
+    }
+    search.look(s), ++search.rounds;
+    if (search.now.none()) return;
+    useless = search.better || search.lower ? 0 : useless + 1;
+    if (useless == 1 && search.accepted) return;
+    if (search.now.sum() > rules::much_worse * search.lowest->fault.sum()) return;
+  }
+}
+
+/// Repairs as long as it helps, from the mesh with the lowest sum, then from the best.
+void repair(State& s, Search& search) {
+  std::shared_ptr<const Seen> tried;
+  for (const bool from_best : {false, true}) {
+    const auto start = from_best ? search.best : search.lowest;
+    if (start == tried || search.best->fault.none()) continue;
+    if (start->fault.places() > rules::few_faults || start->fault.involved() > start->mesh.mesh.live / 2)
+      continue;
+    search.go_to(s, start), tried = start;
+    for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
+      repair_at(s, search.now, search.known);
+      search.look(s);
+      if (search.now.none() || !(from_best ? search.better : search.lower)) break;
+      tried = from_best ? search.best : search.lowest;
+    }
+  }
+}
+
+/// Where faults are more than mcheck accepts: none if there are too many. Of needles those are left out that
+/// the model forces, also at smaller sizes.
+std::vector<SizeReduction> reductions_at(const State& s, const Fault& fault, Known& known) {
+  std::vector<SizeReduction> reductions;
+  if (fault.places() > rules::few_faults) return reductions;
+  const double mean = mean_size(s);
+  auto add = [&](int t, double factor) {
+    const auto [a, b, c] = s.mesh.tris[t];
+    reductions.push_back({(1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]), factor});
+  };
+  for (const auto& [t, u] : fault.pairs) add(t, rules::reduced_at_pair), add(u, rules::reduced_at_pair);
+  for (int h : folded_edges(s, known))
+    add(h / 3, rules::reduced_at_pair), add(s.mesh.opp[h] / 3, rules::reduced_at_pair);
+  for (int t : fault.triangles) {
+    const auto [a, b, c] = s.mesh.tris[t];
+    const double k = kappa(s.points[a], s.points[b], s.points[c]);
+    const double size = bearable_distance(s, t, mean, 1);
+    double far = distance_of(s, t, known.tree(), rules::within_limit * size);
+    for (const auto& [near, p] : fault.missed)
+      if (near == t) far = std::max(far, norm(nearest_point(s, t, p) - p));
+    far /= size;
+    if (k <= rules::failing_kappa && k * rules::worst_needle >= rules::bearable_kappa &&
+        !is_forced(s, t, k, known))
+      add(t, rules::reduced_at_needle);
+    else if (far > rules::within_limit)
+      add(t, std::clamp(rules::reduced_at_distance / far, rules::least_reduced, rules::most_reduced));
+  }
+  return reductions;
+}
+
+}  // namespace
+
+bool Faults::less_than(const Faults& other) const {
+  if ((count == 0) != (other.count == 0)) return count == 0;
+  return sum < rules::less_excess * other.sum;
+}
+
+Faults remove_faults(State& s, Samples& samples) {
+  const double most = rules::growth * s.mesh.live + rules::few;
+  Search search{{s.reference->surface, samples}};
+  auto remove = [&] {
+    if (!search.best->fault.none()) refine(s, search, most);
+    if (!search.best->fault.none()) repair(s, search);
+  };
+  search.look(s);
+  remove();
+  if (!search.best->fault.none() && search.accepted) {
+    s = search.accepted->mesh;
+    return {{{}, search.accepted->fault.of_reference}};
+  }
+  if (!search.best->fault.none()) {
+    // what is only less than wanted is not worth faults elsewhere
+    search.go_on(s, refused);
+    remove();
+  }
+  const Seen &best = *search.best, &lowest = *search.lowest;
+  s = best.mesh;
+  Faults left{best.fault, best.fault.count(), best.fault.sum(), lowest.fault.sum()};
+  left.reductions = reductions_at(best.mesh, best.fault, search.known);
+  if (!left.reductions.empty() && search.lowest != search.best)
+    left.reductions = reductions_at(lowest.mesh, lowest.fault, search.known);
+  return left;
+}
+
+}  // namespace meshpipe
