@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
     SizeReport r = set_size(s, chart, o, !stream.find("ref_vertex"));
     if (has_sheets(stream) && !stream.find("ref_vertex")) r.added += match_sheets(s, chart, o.gradation);
     drop_downstream(stream, Stage::sizes);
-    stream.asked_triangles = met_count(r, o) ? static_cast<int>(o.triangles) : 0;
+    stream.asked_triangles = counted && met_count(r, o) ? static_cast<int>(o.triangles) : 0;
     if (r.added > 0) follow_split(stream);
     report(io, o, r, counted);
     io.write(stream);

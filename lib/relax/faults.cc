@@ -120,10 +120,10 @@ void look_at_changed(const State& s, Known& known) {
 }
 
 /// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
-/// those on vertices and edges do not show these. Looks where one at a corner was measured after `time` and a
-/// triangle of the mesh near a corner has another normal; with `all`, at all triangles longer than the size,
-/// of which corners do not tell enough: there may be a whole fold between them.
-void add_missed_places(const State& s, Samples& samples, int time, double share, bool all) {
+/// those on vertices and edges do not show these. Looks in triangle f, a `piece` with corners last measured
+/// at `time`, if may_miss(f, piece, time).
+template <class MayMiss>
+void add_missed_places(const State& s, Samples& samples, double share, MayMiss may_miss) {
   const Surface& reference = s.reference->surface;
   const double mean = mean_size(s);
   const Mesh mesh{s.points, s.mesh.tris};
@@ -137,16 +137,10 @@ void add_missed_places(const State& s, Samples& samples, int time, double share,
     const auto [a, b, c] = reference.tris[f];
     if (std::min({sample[a], sample[b], sample[c]}) < 0) continue;
     const Sample &x = samples.list[sample[a]], &y = samples.list[sample[b]], &z = samples.list[sample[c]];
-    if (!all && std::max({x.time, y.time, z.time}) <= time) continue;
     const Piece whole{{reference.points[a], reference.points[b], reference.points[c]},
                       {x.near, y.near, z.near},
                       {x.distance, y.distance, z.distance}};
-    if (whole.within(share * mean, mesh)) continue;
-    if (all && whole.side(whole.longest()) <= mean) continue;
-    const Vec3 normal = normalized(area_vector(reference, f));
-    if (!all && std::all_of(whole.face.begin(), whole.face.end(),
-                            [&](int t) { return dot(normal, s.face_normal(t)) > rules::parallel; }))
-      continue;
+    if (!may_miss(f, whole, std::max({x.time, y.time, z.time})) || whole.within(share * mean, mesh)) continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
     const auto [p, hit, complete, halvings] =
         farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
@@ -162,6 +156,14 @@ void add_missed_places(const State& s, Samples& samples, int time, double share,
     return again[x.place.face] && std::min({x.place.b0, x.place.b1, x.place.b2}) > 0;
   });
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
+}
+
+/// The triangles that have changed since `time`; -1: all.
+Mesh changed_triangles(const State& s, int time) {
+  Mesh changed{s.points, {}};
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
+    if (!s.mesh.dead(t) && changed_since(s, t, time)) changed.tris.push_back(s.mesh.tris[t]);
+  return changed;
 }
 
 /// The triangle by whose size the distance of a sample at p is judged: of those that are as near to it, as
@@ -209,7 +211,12 @@ void find_far(const State& s, Known& known, Fault& found) {
     }
   };
   sample_distances(s, known.samples, least);
-  add_missed_places(s, known.samples, known.time, share, false);
+  add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int time) {
+    if (time <= known.time) return false;
+    const Vec3 normal = normalized(area_vector(known.reference, f));
+    return std::any_of(whole.face.begin(), whole.face.end(),
+                       [&](int t) { return dot(normal, s.face_normal(t)) <= rules::parallel; });
+  });
   look_at_samples();
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
@@ -219,12 +226,23 @@ void find_far(const State& s, Known& known, Fault& found) {
     const double bearable = bearable_distance(s, t, mean, share);
     if (known.searched[t] > bearable) far.push_back({t, -known.searched[t] / bearable});
   }
-  // takes long: only when little else is wrong
+  // of triangles longer than the size corners do not tell enough: there may be a whole fold between them. A
+  // look at all takes long, so it waits until little else is wrong
   std::vector<int> triangles = found.triangles;
   for (const auto& [t, ratio] : far) triangles.push_back(t);
   sort_unique(triangles);
   if ((int)(triangles.size() + found.pairs.size()) <= rules::few_to_look_on) {
-    add_missed_places(s, known.samples, known.time, share, true);
+    const Mesh changed = changed_triangles(s, known.looked);
+    const std::optional<Bvh> tree = changed.tris.empty() ? std::nullopt : std::optional<Bvh>(changed);
+    add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
+      bool near = false;
+      const Vec3 reach{mean, mean, mean};
+      const Box box = box_of(known.reference, f);
+      if (tree && whole.side(whole.longest()) > mean)
+        tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
+      return near;
+    });
+    known.looked = s.clocks.now;
     look_at_samples();
   } else {
     found.acceptable = false;
@@ -245,7 +263,11 @@ void find_needles(const State& s, Known& known, Fault& found) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
-    if (k <= known.limits.kappa && !is_forced(s, t, k, known)) needles.push_back({k, t});
+    if (k > wanted.kappa || is_forced(s, t, k, known)) continue;
+    if (k <= known.limits.kappa)
+      needles.push_back({k, t});
+    else
+      ++found.mild;
   }
   if ((int)needles.size() > rules::hopeless)
     std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });

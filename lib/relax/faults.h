@@ -12,18 +12,19 @@ namespace meshpipe {
 struct Limits {
   double distance, kappa;
 };
-constexpr Limits wanted{rules::too_far, rules::bearable_kappa},
-    refused{rules::within_limit, rules::failing_kappa};
+constexpr Limits wanted{rules::too_far, rules::bearable_kappa}, needed{rules::too_far, rules::failing_kappa},
+    refused{rules::within_limit, rules::failing_kappa};  // by mcheck
 
 /// What is asked of the reference more than once, computed when it is needed.
 struct Known {
   const Surface& reference;
   Samples& samples;
-  Limits limits = wanted;
+  Limits limits = needed;
   IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
+  int looked = -1;                    ///< when long triangles of the reference were looked at
   std::optional<Mesh> contacts{};     ///< where the reference intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
@@ -32,7 +33,7 @@ struct Known {
   /// Forgets the mesh: call it before it becomes another.
   void forget() {
     samples.forget();
-    intersections = {}, time = -1;
+    intersections = {}, time = looked = -1;
     walked.clear(), searched.clear();
   }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
@@ -54,6 +55,7 @@ struct Fault : Intersections {
   int folds = 0;
   std::vector<int> triangles;  ///< those at folds, those that are too far from the reference, and needles
   std::vector<std::pair<int, Vec3>> missed;  ///< places of the reference, by the triangle nearest to them
+  int mild = 0;                              ///< needles that are wanted away, but are within the limits
   double excess = 0;
   bool acceptable = true;  ///< to mcheck? Not if it was not looked for all that mcheck looks for
 

@@ -91,15 +91,38 @@ void attend_to_places(State& s, Samples& samples, bool at_rest) {
   }
 }
 
-/// Sweeps with `target` triangles, then attends to places. Without samples, as tiles have none until their
-/// seams have been swept, too, it only comes to rest.
+/// Attends to places after sweeps. Without samples, as tiles have none until their seams have been swept,
+/// too, it only comes to rest.
+void finish_sweeps(State& s, Samples* samples) {
+  if (!samples) return even_out(s);
+  samples->forget();
+  attend_to_places(s, *samples, false);
+}
+
+/// Sweeps with `target` triangles, then attends to places.
 void optimize(State& s, int sweeps, double target, Samples* samples) {
-  if (samples) samples->forget();
   sweep(s, sweeps, target);
-  if (samples)
-    attend_to_places(s, *samples, false);
-  else
-    even_out(s);
+  finish_sweeps(s, samples);
+}
+
+/// Sweeps again from `start`, with sizes for `goal` triangles instead of `target`, until about `wanted` are
+/// left; `goal` made `live` of them before. Returns the last goal.
+double sweep_to_count(State& s, const State& start, int sweeps, double target, double wanted, double goal,
+                      double live) {
+  double response = 1;
+  for (int i = 0; i < rules::sweeps_to_count; ++i) {
+    const double last_goal = goal, last_live = live;
+    goal = std::clamp(goal - (live - wanted) / std::clamp(response, rules::least_response, 1.0),
+                      rules::goal_range * target, target / rules::goal_range);
+    if (goal == last_goal) break;
+    s = start;
+    for (double& f : s.refinement) f *= std::sqrt(target / goal);
+    sweep(s, sweeps, goal);
+    live = s.mesh.live;
+    if (std::abs(live - wanted) <= rules::count_tolerance * target) break;
+    response = (live - last_live) / (goal - last_goal);
+  }
+  return goal;
 }
 
 /// Optimizes so that `target` triangles are left in the end. Repair adds some where the model is narrow, and
@@ -110,29 +133,27 @@ void optimize(State& s, int sweeps, double target, Samples* samples) {
 std::pair<int, double> optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   const State start = s;
   std::optional<State> best;
-  double goal = target, kept = target, sound = 0, last_goal = 0, last_live = 0, response = 1;
+  double goal = target, kept = target, sound = 0;
   auto off = [&](const State& state) { return std::abs(state.mesh.live - target); };
-  int tries = 1;
-  for (;; ++tries) {
-    optimize(s, sweeps, goal, samples);
-    const double surplus = s.mesh.live - target, shape = quality(s, worst(s));
+  sweep(s, sweeps, goal);
+  for (int tries = 1;; ++tries) {
+    const int swept = s.mesh.live;
+    finish_sweeps(s, samples);
+    const double shape = quality(s, worst(s));
     if (tries == 1) sound = rules::spoilt * shape;
-    if (shape >= sound && off(s) <= (tries == 1 ? rules::count_first : rules::count_aimed) * target)
-      return {tries, goal};
+    const double within = tries == 1 ? rules::count_first : rules::count_aimed;
+    if (shape >= sound && off(s) <= within * target) return {tries, goal};
+    const int added = s.mesh.live - swept;
+    const bool spoilt = shape < sound && s.mesh.live > target;
     if (!best || (shape >= sound && off(s) < off(*best))) best = s, kept = goal;
-    if (tries > 1) response = (s.mesh.live - last_live) / (goal - last_goal);
-    if (shape < sound && surplus > 0) break;
-    if (tries >= (response < rules::sluggish ? rules::sluggish_tries : rules::tries)) break;
-    last_goal = goal, last_live = s.mesh.live;
-    s = start;
-    goal = std::clamp(goal - surplus / std::max(std::min(response, 1.0), rules::least_response),
-                      rules::goal_range * target, target / rules::goal_range);
-    if (goal == last_goal) break;
-    for (double& f : s.refinement) f *= std::sqrt(target / goal);
+    const double wanted = target - added, last = goal;
+    if (!spoilt && tries < rules::tries) goal = sweep_to_count(s, start, sweeps, target, wanted, goal, swept);
+    if (goal == last) {
+      s = std::move(*best);
+      if (samples) samples->forget();
+      return {tries, kept};
+    }
   }
-  s = std::move(*best);
-  if (samples) samples->forget();
-  return {tries, kept};
 }
 
 /// Reduces the size of each vertex that is nearer to a place of reduction than its own size, and of those

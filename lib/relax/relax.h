@@ -27,7 +27,7 @@ struct RelaxOptions {
 struct RelaxCounts {
   int splits = 0, collapses = 0, flips = 0, moves = 0;
   int corners_merged = 0;  ///< corners of the model merged with one much nearer than the size
-  int tries = 1;           ///< optimizations that it took to meet the target count, at most 4
+  int tries = 1;           ///< optimizations that it took to meet the target count, at most 3
 };
 
 struct RelaxReport : RelaxCounts {

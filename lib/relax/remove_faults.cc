@@ -151,7 +151,7 @@ struct Seen {
 /// those that it accepts.
 struct Search {
   Known known;
-  std::shared_ptr<const Seen> best{}, lowest{}, accepted{};
+  std::shared_ptr<const Seen> best{}, lowest{}, accepted{}, last{};
   Fault now{};
   int rounds = 0;
   bool better = false, lower = false;  ///< is the mesh looked at last?
@@ -161,21 +161,24 @@ struct Search {
     better = !best || now.less_than(best->fault);
     lower = !lowest || now.sum() < rules::less_excess * lowest->fault.sum();
     const bool best_accepted = now.acceptable && (!accepted || now.less_than(accepted->fault));
+    last = nullptr;
     if (!better && !lower && !best_accepted) return;
-    const auto seen = std::make_shared<const Seen>(Seen{s, now});
-    if (better) best = seen;
-    if (lower) lowest = seen;
-    if (best_accepted) accepted = seen;
+    last = std::make_shared<const Seen>(Seen{s, now});
+    if (better) best = last;
+    if (lower) lowest = last;
+    if (best_accepted) accepted = last;
   }
   void go_to(State& s, const std::shared_ptr<const Seen>& seen) {
-    s = seen->mesh, now = seen->fault;
+    now = seen->fault;
+    if (seen == last && s.clocks.now == seen->mesh.clocks.now) return;  // s is as it was seen
+    s = seen->mesh;
     known.forget();
   }
   /// Goes on from the best by other limits: what was seen before counts no more.
   void go_on(State& s, Limits limits) {
-    s = best->mesh;
-    known.forget(), known.limits = limits;
-    best = lowest = nullptr;
+    go_to(s, accepted ? accepted : best);
+    known.limits = limits;
+    best = lowest = accepted = nullptr;
     look(s);
   }
 };
@@ -186,6 +189,14 @@ void refine(State& s, Search& search, double most) {
   int since = s.clocks.now;  // when all was repaired
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
+    // split pairs intersect in more places, and most can be repaired as they are
+    if (!search.now.pairs.empty() && (int)search.now.pairs.size() <= rules::few_faults) {
+      Fault pairs;
+      pairs.pairs = search.now.pairs;
+      repair_at(s, pairs, search.known);
+      search.look(s);
+      if (search.now.none()) return;
+    }
     const int n = (int)search.now.triangles.size();
     refine_at(s, search.now);
     if (n > 0) {
@@ -217,6 +228,13 @@ void repair(State& s, Search& search) {
       tried = from_best ? search.best : search.lowest;
     }
   }
+}
+
+/// Repairs the needles of the accepted mesh that are only not wanted.
+void repair_mild(State& s, Search& search) {
+  search.go_on(s, wanted);
+  repair_at(s, search.now, search.known);
+  search.look(s);
 }
 
 /// Where faults are more than mcheck accepts: none if there are too many. Of needles those are left out that
@@ -259,20 +277,20 @@ bool Faults::less_than(const Faults& other) const {
 Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
+  search.look(s);
   auto remove = [&] {
     if (!search.best->fault.none()) refine(s, search, most);
     if (!search.best->fault.none()) repair(s, search);
   };
-  search.look(s);
   remove();
-  if (!search.best->fault.none() && search.accepted) {
-    s = search.accepted->mesh;
-    return {{{}, search.accepted->fault.of_reference}};
-  }
-  if (!search.best->fault.none()) {
-    // what is only less than wanted is not worth faults elsewhere
-    search.go_on(s, refused);
-    remove();
+  if (!search.accepted) search.go_on(s, refused), remove();  // a margin is not worth faults elsewhere
+  if (search.accepted) {
+    search.go_to(s, search.accepted);
+    const std::shared_ptr<const Seen> accepted = search.accepted;
+    if (search.now.mild > 0 && search.now.mild <= rules::few_faults) repair_mild(s, search);
+    const Seen& result = search.accepted ? *search.accepted : *accepted;
+    s = result.mesh;
+    return {{{}, result.fault.of_reference}};
   }
   const Seen &best = *search.best, &lowest = *search.lowest;
   s = best.mesh;

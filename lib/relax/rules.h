@@ -156,9 +156,9 @@ constexpr int feature_rounds = 5;   // what is repaired misses features, what re
 constexpr double goal_range = 0.6;  // of the count: sizes are not scaled beyond
 constexpr double spoilt = 0.7;      // of the first try's worst quality: what another may come to
 constexpr double count_first = 0.025,
-                 count_aimed = 0.015;                   // of the count: good enough at once, and when aimed
-constexpr double sluggish = 0.6, least_response = 0.2;  // triangles gone per triangle less asked for
-constexpr int tries = 4, sluggish_tries = 3;
+                 count_aimed = 0.015;   // of the count: good enough at once, and when aimed
+constexpr double least_response = 0.2;  // triangles gone per triangle less asked for
+constexpr int tries = 3, sweeps_to_count = 3;
 
 // tiles (tiles.cc, relax.cc)
 constexpr int seam_rings = 6;   // of triangles that seams are optimized with: farther away all is as it was
