@@ -95,8 +95,9 @@ void add_options(CLI::App& app, Options& o) {
     return app.add_option(name, value, what)->check(positive_number())->type_name(type);
   };
   auto* fixed = length("--size", o.size, "target edge length", "H");
-  app.add_option("--triangles", o.triangles,
-                 "number of triangles, distributed as the other options ask (default: that of the input)")
+  app.add_option(
+         "--triangles", o.triangles,
+         "number of triangles, distributed as the other options ask (default: about that of the input)")
       ->check(count_between(1, 715827882))
       ->type_name("N")
       ->excludes(fixed);

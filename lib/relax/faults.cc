@@ -158,7 +158,7 @@ void add_missed_places(const State& s, Samples& samples, double share, MayMiss m
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
 }
 
-/// The triangles that have changed since `time`; -1: all.
+/// The triangles that have changed since.
 Mesh changed_triangles(const State& s, int time) {
   Mesh changed{s.points, {}};
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
@@ -210,6 +210,10 @@ void find_far(const State& s, Known& known, Fault& found) {
       far.push_back({t, -x.distance / bearable}), found.missed.push_back({t, p});
     }
   };
+  if (mean < rules::same_mean * known.mean) {  // what was near enough may not be now
+    known.looked = -1;
+    std::fill(known.searched.begin(), known.searched.end(), -1);
+  }
   sample_distances(s, known.samples, least);
   add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int time) {
     if (time <= known.time) return false;
@@ -232,17 +236,18 @@ void find_far(const State& s, Known& known, Fault& found) {
   for (const auto& [t, ratio] : far) triangles.push_back(t);
   sort_unique(triangles);
   if ((int)(triangles.size() + found.pairs.size()) <= rules::few_to_look_on) {
-    const Mesh changed = changed_triangles(s, known.looked);
-    const std::optional<Bvh> tree = changed.tris.empty() ? std::nullopt : std::optional<Bvh>(changed);
+    const Mesh changed = known.looked < 0 ? Mesh{} : changed_triangles(s, known.looked);
+    std::optional<Bvh> tree;
+    if (!changed.tris.empty()) tree.emplace(changed);
     add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
-      bool near = false;
+      if (!(whole.side(whole.longest()) > rules::long_side * mean)) return false;
+      bool near = known.looked < 0;
       const Vec3 reach{mean, mean, mean};
       const Box box = box_of(known.reference, f);
-      if (tree && whole.side(whole.longest()) > mean)
-        tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
+      if (tree) tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
       return near;
     });
-    known.looked = s.clocks.now;
+    known.looked = s.clocks.now, known.mean = mean;
     look_at_samples();
   } else {
     found.acceptable = false;
@@ -255,7 +260,7 @@ void find_far(const State& s, Known& known, Fault& found) {
   }
 }
 
-/// Triangles that are needles and that no corner forces; of too many only the worst.
+/// Triangles that are needles and that no corner forces.
 void find_needles(const State& s, Known& known, Fault& found) {
   const EditMesh& m = s.mesh;
   std::vector<std::pair<double, int>> needles;
@@ -263,14 +268,12 @@ void find_needles(const State& s, Known& known, Fault& found) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
-    if (k > wanted.kappa || is_forced(s, t, k, known)) continue;
+    if (k > rules::bearable_kappa || is_forced(s, t, k, known)) continue;
     if (k <= known.limits.kappa)
       needles.push_back({k, t});
     else
       ++found.mild;
   }
-  if ((int)needles.size() > rules::hopeless)
-    std::erase_if(needles, [](const auto& n) { return n.first > rules::failing_kappa; });
   for (const auto& [k, t] : needles) {
     found.triangles.push_back(t);
     found.excess += std::min(rules::worst_needle, rules::bearable_kappa / k);

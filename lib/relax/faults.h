@@ -12,8 +12,8 @@ namespace meshpipe {
 struct Limits {
   double distance, kappa;
 };
-constexpr Limits wanted{rules::too_far, rules::bearable_kappa}, needed{rules::too_far, rules::failing_kappa},
-    refused{rules::within_limit, rules::failing_kappa};  // by mcheck
+constexpr Limits needed{rules::too_far, rules::failing_kappa},
+    refused{rules::within_limit, rules::failing_kappa};  // the second by mcheck, with no margin
 
 /// What is asked of the reference more than once, computed when it is needed.
 struct Known {
@@ -24,7 +24,8 @@ struct Known {
   std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
-  int looked = -1;                    ///< when long triangles of the reference were looked at
+  int looked = -1;                    ///< when long triangles of the reference were looked at,
+  double mean = 0;                    ///< and the mean size then
   std::optional<Mesh> contacts{};     ///< where the reference intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
@@ -55,7 +56,7 @@ struct Fault : Intersections {
   int folds = 0;
   std::vector<int> triangles;  ///< those at folds, those that are too far from the reference, and needles
   std::vector<std::pair<int, Vec3>> missed;  ///< places of the reference, by the triangle nearest to them
-  int mild = 0;                              ///< needles that are wanted away, but are within the limits
+  int mild = 0;  ///< needles with less than rules::bearable_kappa that are within the limits
   double excess = 0;
   bool acceptable = true;  ///< to mcheck? Not if it was not looked for all that mcheck looks for
 

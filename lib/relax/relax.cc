@@ -133,7 +133,8 @@ double sweep_to_count(State& s, const State& start, int sweeps, double target, d
 std::pair<int, double> optimize_to_count(State& s, int sweeps, double target, Samples* samples) {
   const State start = s;
   std::optional<State> best;
-  double goal = target, kept = target, sound = 0;
+  double goal = target, kept = target, sound = 0, response = 1;
+  int last_swept = 0, last_live = 0;
   auto off = [&](const State& state) { return std::abs(state.mesh.live - target); };
   sweep(s, sweeps, goal);
   for (int tries = 1;; ++tries) {
@@ -143,10 +144,13 @@ std::pair<int, double> optimize_to_count(State& s, int sweeps, double target, Sa
     if (tries == 1) sound = rules::spoilt * shape;
     const double within = tries == 1 ? rules::count_first : rules::count_aimed;
     if (shape >= sound && off(s) <= within * target) return {tries, goal};
-    const int added = s.mesh.live - swept;
-    const bool spoilt = shape < sound && s.mesh.live > target;
+    if (tries > 1 && swept != last_swept) response = double(s.mesh.live - last_live) / (swept - last_swept);
+    last_swept = swept, last_live = s.mesh.live;
+    const double surplus = s.mesh.live - target;
+    const double wanted = swept - surplus / std::clamp(response, rules::least_response, 1.0);
+    const bool spoilt = shape < sound && surplus > 0;
     if (!best || (shape >= sound && off(s) < off(*best))) best = s, kept = goal;
-    const double wanted = target - added, last = goal;
+    const double last = goal;
     if (!spoilt && tries < rules::tries) goal = sweep_to_count(s, start, sweeps, target, wanted, goal, swept);
     if (goal == last) {
       s = std::move(*best);

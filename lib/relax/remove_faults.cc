@@ -147,8 +147,8 @@ struct Seen {
 };
 
 /// The meshes seen while faults are removed. Repair begins with the one with the lowest sum, since a few
-/// pairs can often be repaired; `best` is the result, or if mcheck refuses that, `accepted`, the best of
-/// those that it accepts.
+/// pairs can often be repaired. The result is `accepted`, the best of those that mcheck accepts, or else
+/// `best`.
 struct Search {
   Known known;
   std::shared_ptr<const Seen> best{}, lowest{}, accepted{}, last{};
@@ -168,34 +168,37 @@ struct Search {
     if (lower) lowest = last;
     if (best_accepted) accepted = last;
   }
-  void go_to(State& s, const std::shared_ptr<const Seen>& seen) {
+  void go_to(State& s, std::shared_ptr<const Seen> seen) {
     now = seen->fault;
     if (seen == last && s.clocks.now == seen->mesh.clocks.now) return;  // s is as it was seen
-    s = seen->mesh;
+    s = seen->mesh, last = std::move(seen);
     known.forget();
   }
-  /// Goes on from the best by other limits: what was seen before counts no more.
+  /// Goes on from the result by other limits: what was seen before counts no more.
   void go_on(State& s, Limits limits) {
     go_to(s, accepted ? accepted : best);
+    if (limits.distance != known.limits.distance) known.forget();
     known.limits = limits;
     best = lowest = accepted = nullptr;
     look(s);
   }
 };
 
-/// Refines as long as it helps, or until mcheck accepts the best.
+/// Refines as long as it helps. Pairs are repaired first: split they intersect in more places.
 void refine(State& s, Search& search, double most) {
   Repairs memory;
   int since = s.clocks.now;  // when all was repaired
+  bool repair_helps = true;
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
-    // split pairs intersect in more places, and most can be repaired as they are
-    if (!search.now.pairs.empty() && (int)search.now.pairs.size() <= rules::few_faults) {
+    bool helps = false;
+    if (repair_helps && !search.now.pairs.empty() && (int)search.now.pairs.size() <= rules::few_faults) {
       Fault pairs;
-      pairs.pairs = search.now.pairs;
+      pairs.pairs = search.now.pairs, pairs.missed = search.now.missed;
       repair_at(s, pairs, search.known);
       search.look(s);
       if (search.now.none()) return;
+      helps = repair_helps = search.better || search.lower;
     }
     const int n = (int)search.now.triangles.size();
     refine_at(s, search.now);
@@ -206,7 +209,8 @@ void refine(State& s, Search& search, double most) {
     }
     search.look(s), ++search.rounds;
     if (search.now.none()) return;
-    useless = search.better || search.lower ? 0 : useless + 1;
+    helps = helps || search.better || search.lower;
+    useless = helps ? 0 : useless + 1;
     if (useless == 1 && search.accepted) return;
     if (search.now.sum() > rules::much_worse * search.lowest->fault.sum()) return;
   }
@@ -230,9 +234,10 @@ void repair(State& s, Search& search) {
   }
 }
 
-/// Repairs the needles of the accepted mesh that are only not wanted.
+/// Repairs the mild needles of the accepted mesh, if a look at all still accepts it.
 void repair_mild(State& s, Search& search) {
-  search.go_on(s, wanted);
+  search.go_on(s, {search.known.limits.distance, rules::bearable_kappa});
+  if (!search.accepted) return;
   repair_at(s, search.now, search.known);
   search.look(s);
 }
@@ -283,14 +288,14 @@ Faults remove_faults(State& s, Samples& samples) {
     if (!search.best->fault.none()) repair(s, search);
   };
   remove();
-  if (!search.accepted) search.go_on(s, refused), remove();  // a margin is not worth faults elsewhere
+  if (!search.accepted) search.go_on(s, refused), remove();
+  if (search.accepted) {
+    const int mild = search.accepted->fault.mild;
+    if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
+  }
   if (search.accepted) {
     search.go_to(s, search.accepted);
-    const std::shared_ptr<const Seen> accepted = search.accepted;
-    if (search.now.mild > 0 && search.now.mild <= rules::few_faults) repair_mild(s, search);
-    const Seen& result = search.accepted ? *search.accepted : *accepted;
-    s = result.mesh;
-    return {{{}, result.fault.of_reference}};
+    return {{{}, search.now.of_reference}};
   }
   const Seen &best = *search.best, &lowest = *search.lowest;
   s = best.mesh;

@@ -89,10 +89,11 @@ struct Faults : Intersections {
   bool less_than(const Faults& other) const;
 };
 
-/// Refines where triangles intersect or fold but the reference does not, where they are needles, and where
-/// mesh and reference are almost half the size apart; then repairs there. Goes on until rounds no longer
-/// help, then again only where mcheck would refuse the mesh. Leaves the mesh with the fewest faults seen, and
-/// returns those that mcheck would refuse.
+/// Repairs pairs of triangles that intersect where the reference does not; refines there, where the mesh
+/// folds, at needles, and where mesh and reference are almost half the size apart; then repairs there. Goes
+/// on until rounds no longer help, then again without a margin. If mcheck accepts one of the meshes seen,
+/// leaves the best of these, with its mild needles repaired; else the one with the fewest faults, which it
+/// returns.
 Faults remove_faults(State& s, Samples& samples);
 
 }  // namespace meshpipe

@@ -105,8 +105,10 @@ constexpr double within_limit = 0.495;  // of the size: mcheck accepts less, wit
 constexpr int few_to_look_on = 20;      // triangles at fault: with more, more will be looked for later
 constexpr double own_sheet =
     2;  // of the distance: where the mesh of the sheet of a missed place is looked for
-constexpr double as_near = 1e-6;  // of a distance: rounding errors
-constexpr double doubtful = 0.4;  // of the bearable, walked to: from there all of a triangle is searched
+constexpr double as_near = 1e-6;    // of a distance: rounding errors
+constexpr double long_side = 1.5;   // of the mean size: up to there a triangle's corners show what is missed
+constexpr double same_mean = 0.99;  // of the mean size: if it is less, looks at distances begin again
+constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
 constexpr double bearable_kappa = 0.25, worst_needle = 10;  // kappa, and what a needle adds at most
 constexpr double sharp_half = 0.34;  // sine of 20 degrees: wider corners have room for good triangles

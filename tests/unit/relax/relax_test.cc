@@ -331,7 +331,7 @@ TEST(Relax, TriesToMeetACountHaveABound) {
     options.target_triangles = target;
     const RelaxReport r = relax(m, s, {}, {}, options);
     EXPECT_GE(r.tries, 1);
-    EXPECT_LE(r.tries, 4) << target;
+    EXPECT_LE(r.tries, 3) << target;
     expect_on_surface(m, s);
   }
 }
