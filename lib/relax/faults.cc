@@ -210,13 +210,15 @@ void find_far(const State& s, Known& known, Fault& found) {
       far.push_back({t, -x.distance / bearable}), found.missed.push_back({t, p});
     }
   };
+  int since = known.time;
   if (mean < rules::same_mean * known.mean) {  // what was near enough may not be now
-    known.looked = -1;
+    since = known.looked = -1, known.mean = 0;
     std::fill(known.searched.begin(), known.searched.end(), -1);
   }
+  known.mean = std::max(known.mean, mean);
   sample_distances(s, known.samples, least);
   add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int time) {
-    if (time <= known.time) return false;
+    if (time <= since) return false;
     const Vec3 normal = normalized(area_vector(known.reference, f));
     return std::any_of(whole.face.begin(), whole.face.end(),
                        [&](int t) { return dot(normal, s.face_normal(t)) <= rules::parallel; });
@@ -230,24 +232,25 @@ void find_far(const State& s, Known& known, Fault& found) {
     const double bearable = bearable_distance(s, t, mean, share);
     if (known.searched[t] > bearable) far.push_back({t, -known.searched[t] / bearable});
   }
-  // of triangles longer than the size corners do not tell enough: there may be a whole fold between them. A
-  // look at all takes long, so it waits until little else is wrong
+  // of triangles much longer than the size corners do not show enough: there may be a whole fold between
+  // them. A look at all takes long, so it waits until little else is wrong
   std::vector<int> triangles = found.triangles;
   for (const auto& [t, ratio] : far) triangles.push_back(t);
   sort_unique(triangles);
   if ((int)(triangles.size() + found.pairs.size()) <= rules::few_to_look_on) {
     const Mesh changed = known.looked < 0 ? Mesh{} : changed_triangles(s, known.looked);
+    const double most = std::max(mean, *std::max_element(s.size.begin(), s.size.end()));
     std::optional<Bvh> tree;
     if (!changed.tris.empty()) tree.emplace(changed);
     add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
       if (!(whole.side(whole.longest()) > rules::long_side * mean)) return false;
       bool near = known.looked < 0;
-      const Vec3 reach{mean, mean, mean};
+      const Vec3 reach{most, most, most};
       const Box box = box_of(known.reference, f);
       if (tree) tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
       return near;
     });
-    known.looked = s.clocks.now, known.mean = mean;
+    known.looked = s.clocks.now;
     look_at_samples();
   } else {
     found.acceptable = false;

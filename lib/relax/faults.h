@@ -21,11 +21,11 @@ struct Known {
   Samples& samples;
   Limits limits = needed;
   IntersectingPairs intersections{};
-  std::vector<double> walked{};    ///< per triangle, `deviation` over the size, at `time`
+  std::vector<double> walked{};    ///< per triangle, `deviation` as a length, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
-  int looked = -1;                    ///< when long triangles of the reference were looked at,
-  double mean = 0;                    ///< and the mean size then
+  int looked = -1;                    ///< when long triangles of the reference were looked at
+  double mean = 0;                    ///< the largest mean size that is known of looks
   std::optional<Mesh> contacts{};     ///< where the reference intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
@@ -34,7 +34,7 @@ struct Known {
   /// Forgets the mesh: call it before it becomes another.
   void forget() {
     samples.forget();
-    intersections = {}, time = looked = -1;
+    intersections = {}, time = looked = -1, mean = 0;
     walked.clear(), searched.clear();
   }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }

@@ -234,7 +234,7 @@ void repair(State& s, Search& search) {
   }
 }
 
-/// Repairs the mild needles of the accepted mesh, if a look at all still accepts it.
+/// Repairs the mild needles of the accepted mesh. If another look no longer accepts it, none is accepted.
 void repair_mild(State& s, Search& search) {
   search.go_on(s, {search.known.limits.distance, rules::bearable_kappa});
   if (!search.accepted) return;
@@ -288,11 +288,11 @@ Faults remove_faults(State& s, Samples& samples) {
     if (!search.best->fault.none()) repair(s, search);
   };
   remove();
-  if (!search.accepted) search.go_on(s, refused), remove();
   if (search.accepted) {
     const int mild = search.accepted->fault.mild;
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
+  if (!search.accepted) search.go_on(s, refused), remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

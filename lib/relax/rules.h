@@ -93,7 +93,7 @@ constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
 constexpr int thorough_repairs = 30,
               triangles_per_thorough = 1000;  // of pairs of edits: for the worst, until as many fail: forced
-// triangles: of more needles those over the limit wait, and of more bad ones it is seen whether rounds help
+// triangles: of more bad ones it is seen whether rounds help
 constexpr int hopeless = 100;
 constexpr double forced_share = 0.8,
                  same_share = 0.98;  // of the bad ones are left: borders and lines force them
@@ -106,7 +106,7 @@ constexpr int few_to_look_on = 20;      // triangles at fault: with more, more w
 constexpr double own_sheet =
     2;  // of the distance: where the mesh of the sheet of a missed place is looked for
 constexpr double as_near = 1e-6;    // of a distance: rounding errors
-constexpr double long_side = 1.5;   // of the mean size: up to there a triangle's corners show what is missed
+constexpr double long_side = 1.5;   // of the mean size: shorter triangles are looked at where the mesh bends
 constexpr double same_mean = 0.99;  // of the mean size: if it is less, looks at distances begin again
 constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
 constexpr double needed_kappa = 0.1, failing_kappa = 0.11;  // the limit of mcheck, and a margin over it
