@@ -9,7 +9,7 @@
 # NAME.mesh.EXT is made from NAME.stl, .obj, .off, .ply, .msh, .vtu, .vtp, .vtk, .mesh or .meshb, whichever is there first.
 # Where the result misses its contract, sizes are made smaller there and the chain is repeated from msize on, as mremesh does:
 # in NAME.stages/again.
-#   SIZE, TRIANGLES      what mremesh takes as --size and --triangles (default: as many triangles as the input has)
+#   SIZE, TRIANGLES      what mremesh takes as --size and --triangles (default: about as many triangles as the input has)
 #   BOUNDS               --min, --max and --gradation, which hold for smaller sizes, too
 #   CLEAN_ARGS, FEATURE_ARGS, PARTITION_ARGS, ... CHECK_ARGS
 #                        further options of a stage's program: FEATURE_ARGS='--feature-angle none'

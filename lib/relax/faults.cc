@@ -158,7 +158,7 @@ void add_missed_places(const State& s, Samples& samples, double share, MayMiss m
   samples.list.insert(samples.list.end(), missed.begin(), missed.end());
 }
 
-/// The triangles that have changed since.
+/// The triangles that have changed after `time`.
 Mesh changed_triangles(const State& s, int time) {
   Mesh changed{s.points, {}};
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t)
@@ -266,18 +266,15 @@ void find_far(const State& s, Known& known, Fault& found) {
 /// Triangles that are needles and that no corner forces.
 void find_needles(const State& s, Known& known, Fault& found) {
   const EditMesh& m = s.mesh;
-  std::vector<std::pair<double, int>> needles;
   for (int t = 0; t < (int)m.tris.size(); ++t) {
     if (m.dead(t)) continue;
     const auto [a, b, c] = m.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
     if (k > rules::bearable_kappa || is_forced(s, t, k, known)) continue;
-    if (k <= known.limits.kappa)
-      needles.push_back({k, t});
-    else
+    if (k > known.limits.kappa) {
       ++found.mild;
-  }
-  for (const auto& [k, t] : needles) {
+      continue;
+    }
     found.triangles.push_back(t);
     found.excess += std::min(rules::worst_needle, rules::bearable_kappa / k);
     if (k <= refused.kappa) found.acceptable = false;

@@ -13,7 +13,7 @@ struct Limits {
   double distance, kappa;
 };
 constexpr Limits needed{rules::too_far, rules::failing_kappa},
-    refused{rules::within_limit, rules::failing_kappa};  // the second by mcheck, with no margin
+    refused{rules::within_limit, rules::failing_kappa};  // by mcheck, which `needed` has a margin over
 
 /// What is asked of the reference more than once, computed when it is needed.
 struct Known {
@@ -25,7 +25,7 @@ struct Known {
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
   int looked = -1;                    ///< when long triangles of the reference were looked at
-  double mean = 0;                    ///< the largest mean size that is known of looks
+  double mean = 0;                    ///< the largest mean size of all looks at this mesh
   std::optional<Mesh> contacts{};     ///< where the reference intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
