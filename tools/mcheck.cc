@@ -5,7 +5,6 @@
 
 #include "formats/stream/check_tables.h"
 #include "lib/check/check.h"
-#include "lib/core/triangle_count.h"
 #include "tools/check_shards.h"
 #include "tools/common.h"
 #include "tools/compare.h"
@@ -39,9 +38,10 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
 
 /// Writes the result with sizes that may meet the contract. Returns how many triangles they ask for: 0 if no
 /// size changed, then nothing is written.
-double write_refined(const Io& io, const Stream& stream, const std::string& file, std::vector<double> size) {
+double write_refined(const Io& io, const Stream& stream, const Mesh& reference, const std::string& file,
+                     std::vector<double> size) {
   if (size == stream.surface.vertex.get<double>("size")) return 0;
-  const double triangles = count_for_size(stream.surface, size);
+  const double triangles = triangles_asked_for(stream.surface, size, reference);
   Stream refined;
   static_cast<Mesh&>(refined.surface) = stream.surface;
   refined.surface.vertex.set("size", std::move(size));
@@ -77,7 +77,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
   if (!o.refine.empty() && !failures.empty())
     verdict.outcome.refined =
-        write_refined(io, stream, o.refine, smaller_sizes(contract, f, stream.surface, reference));
+        write_refined(io, stream, reference, o.refine, smaller_sizes(contract, f, stream.surface, reference));
   summary.failures = failures;
   summary.figures = figures(f);
   const bool last = io.names_way_out = summary.counts = !verdict.repeats();

@@ -129,4 +129,8 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 
+/// Returns how many triangles these sizes of the result ask for, on the result or on the reference, whichever
+/// are more: what the result misses of the reference has the sizes that are nearest, however small.
+double triangles_asked_for(const Mesh& result, const std::vector<double>& size, const Mesh& reference);
+
 }  // namespace meshpipe

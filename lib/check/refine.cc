@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/check/check.h"
+#include "lib/size/size.h"
 
 namespace meshpipe {
 namespace {
@@ -46,6 +47,16 @@ std::vector<double> smaller_sizes(const Contract& contract, const Findings& find
     size = refined_size(result, size, deviation, r.limit);
   }
   return refined_size(result, size, errors_at_faults(offending_faces(contract, findings, result), result), 1);
+}
+
+double triangles_asked_for(const Mesh& result, const std::vector<double>& size, const Mesh& reference) {
+  SizeField field;
+  static_cast<Mesh&>(field) = result;
+  field.size = size;
+  const Bvh tree(field);
+  std::vector<double> there(reference.points.size());
+  for (std::size_t v = 0; v < there.size(); ++v) there[v] = size_near(field, tree, reference.points[v]);
+  return std::max(count_for_size(result, size), count_for_size(reference, there));
 }
 
 }  // namespace meshpipe

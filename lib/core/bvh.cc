@@ -322,7 +322,7 @@ Bvh::Hit Bvh::search(Vec3 p, double bound, double enough, const char* left_out) 
     const Tri& v = mesh_.tris[t];
     const Vec3 &x = mesh_.points[v[0]], &y = mesh_.points[v[1]], &z = mesh_.points[v[2]];
     const auto w = closest_on_triangle(p, x, y, z);
-    const Vec3 d = w[0] * x + w[1] * y + w[2] * z - p;
+    const Vec3 d = vector_to(w, x, y, z, p);
     const double dd = dot(d, d);
     if (!(dd < best || (hit.place.face < 0 && dd <= best))) return false;
     best = dd;

@@ -143,7 +143,7 @@ std::vector<Vec3> contact(const Mesh& mesh, int s, int t) {
       if (d0 * d1 > 0 || d0 == d1) continue;
       const Vec3 x = lerp(p[i], p[i + 1], d0 / (d0 - d1));
       const auto b = closest_on_triangle(x, g.a, g.b, g.c);
-      if (norm(b[0] * g.a + b[1] * g.b + b[2] * g.c - x) <= 1e-6 * longest) found.push_back(x);
+      if (norm(vector_to(b, g.a, g.b, g.c, x)) <= 1e-6 * longest) found.push_back(x);
     }
   }
   if (found.empty()) {

@@ -18,7 +18,7 @@ double walk_to(Vec3 p, const std::vector<Vec3>& points, const std::vector<Tri>& 
     const auto [a, b, c] = tris[at];
     const Vec3 x = points[a], y = points[b], z = points[c];
     const auto w = closest_on_triangle(p, x, y, z);
-    const double d = norm(w[0] * x + w[1] * y + w[2] * z - p);
+    const double d = norm(vector_to(w, x, y, z, p));
     if (!(d < least)) return least;
     least = d, t = at;
     const int i = w[0] <= 0 ? 1 : w[1] <= 0 ? 2 : 0;  // the edge opposite to a corner without weight

@@ -41,8 +41,8 @@ bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double le
 }
 
 double distance(const std::vector<Vec3>& points, const Tri& t, int v) {
-  const auto w = closest_on_triangle(points[v], points[t[0]], points[t[1]], points[t[2]]);
-  return norm(w[0] * points[t[0]] + w[1] * points[t[1]] + w[2] * points[t[2]] - points[v]);
+  const Vec3 &p = points[v], &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+  return norm(vector_to(closest_on_triangle(p, a, b, c), a, b, c, p));
 }
 
 /// How far a flip moves the surface at most, and the triangle that is then where the smaller one was.

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lib/core/random.h"
+#include "lib/core/surface_walk.h"
 #include "lib/shape/shape.h"
 
 namespace meshpipe {
@@ -14,7 +15,7 @@ namespace {
 double distance_to(const Mesh& m, int t, Vec3 p) {
   const Tri& v = m.tris[t];
   const auto w = closest_on_triangle(p, m.points[v[0]], m.points[v[1]], m.points[v[2]]);
-  return norm(w[0] * m.points[v[0]] + w[1] * m.points[v[1]] + w[2] * m.points[v[2]] - p);
+  return norm(vector_to(w, m.points[v[0]], m.points[v[1]], m.points[v[2]], p));
 }
 
 //        c            the seven regions of the plane round a triangle
@@ -84,6 +85,20 @@ TEST(bvh, scale_and_place_of_the_model_do_not_matter) {
       EXPECT_DOUBLE_EQ(bvh.nearest(p).distance, best);
     }
   }
+}
+
+// Coordinates there are 1/256 apart: sums of a third of each corner are not.
+TEST(bvh, distances_are_exact_where_coordinates_are_far_apart) {
+  constexpr double far = 3e13, apart = 1.0 / 256;
+  const Mesh m{{{far, far, far}, {far + 7 * apart, far, far}, {far, far + 7 * apart, far}}, {{0, 1, 2}}};
+  const std::vector<int> opposite{-1, -1, -1};
+  for (int x = 0; x <= 3; ++x)
+    for (int y = 0; y <= 3; ++y) {
+      const Vec3 p{far + x * apart, far + y * apart, far + apart};
+      int face = 0;
+      EXPECT_DOUBLE_EQ(Bvh(m).nearest(p).distance, apart);
+      EXPECT_DOUBLE_EQ(walk_to(p, m.points, m.tris, opposite, face), apart);
+    }
 }
 
 TEST(bvh, meshes_of_any_count) {
