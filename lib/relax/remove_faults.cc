@@ -106,6 +106,18 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
+bool intersect(const State& s, int t, int u) {
+  Mesh pair{{}, {s.mesh.tris[t], s.mesh.tris[u]}};
+  std::vector<int> vertices;
+  for (Tri& corners : pair.tris)
+    for (int& v : corners) {
+      const auto row = std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
+      if (row == (int)vertices.size()) vertices.push_back(v), pair.points.push_back(s.points[v]);
+      v = (int)row;
+    }
+  return triangles_intersect(pair, 0, 1);
+}
+
 /// Tries all edits where refinement did not help, and takes the best of each place.
 void repair_at(State& s, const Fault& fault, Known& known) {
   struct Item {
@@ -119,10 +131,15 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     for (const auto& [t, p] : fault.missed)
       if (t == i.t || t == i.other) i.missed.push_back(p);
   const double mean = mean_size(s);
+  const int begun = s.clocks.now;
+  bool thorough = (int)fault.pairs.size() <= rules::many_pairs;
   known.tree(), known.needle_corners();  // before threads ask for them
   auto around = [&](const Item& item, std::vector<int> before) {
     if (!before.empty() || s.mesh.dead(item.t)) return before;
-    std::vector<int> found = triangles_around(s, item.t, rules::thorough_rings);
+    if (item.other >= 0 && (changed_since(s, item.t, begun) || changed_since(s, item.other, begun)) &&
+        (s.mesh.dead(item.other) || !intersect(s, item.t, item.other)))
+      return std::vector<int>{};  // repaired with another
+    std::vector<int> found = triangles_around(s, item.t, thorough ? rules::thorough_rings : rules::rings);
     if (item.other >= 0 && !s.mesh.dead(item.other))
       for (int t : triangles_around(s, item.other, rules::rings))
         if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
@@ -131,13 +148,18 @@ void repair_at(State& s, const Fault& fault, Known& known) {
   };
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
     Before before;
-    return repaired(s, triangles, true,
+    return repaired(s, triangles, thorough,
                     {[&](const State& patch) {
                        return objective(patch) + faultiness(patch, item.missed, mean, known, before);
                      },
                      true});
   };
-  change_neighborhoods(s, items, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+  auto repair = [&](const std::vector<Item>& at) {
+    change_neighborhoods(s, at, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
+  };
+  if (!thorough) repair({items.begin(), items.begin() + (int)fault.pairs.size()});
+  thorough = true;
+  repair(items);
 }
 
 /// A mesh and its faults.
