@@ -36,17 +36,11 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   io.report["failed"] = failures_json(failures);
 }
 
-/// Writes the result with sizes that may meet the contract. Returns how many triangles they ask for: 0 if no
-/// size changed, then nothing is written.
-double write_refined(const Io& io, const Stream& stream, const Mesh& reference, const std::string& file,
-                     std::vector<double> size) {
-  if (size == stream.surface.vertex.get<double>("size")) return 0;
-  const double triangles = triangles_asked_for(stream.surface, size, reference);
+void write_refined(const Io& io, const Mesh& result, const std::string& file, std::vector<double> size) {
   Stream refined;
-  static_cast<Mesh&>(refined.surface) = stream.surface;
+  static_cast<Mesh&>(refined.surface) = result;
   refined.surface.vertex.set("size", std::move(size));
   io.write_to(file, refined);
-  return triangles;
 }
 
 void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
@@ -75,9 +69,13 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   verdict.outcome.mean_size = f.mean_size;
   verdict.outcome.triangles = (double)stream.surface.tris.size();
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
-  if (!o.refine.empty() && !failures.empty())
-    verdict.outcome.refined =
-        write_refined(io, stream, reference, o.refine, smaller_sizes(contract, f, stream.surface, reference));
+  if (!o.refine.empty() && !failures.empty()) {
+    std::vector<double> size = smaller_sizes(contract, f, stream.surface, reference);
+    if (size != stream.surface.vertex.get<double>("size")) {
+      if (!o.verdict.empty()) verdict.outcome.refined = triangles_asked_for(stream.surface, size, reference);
+      write_refined(io, stream.surface, o.refine, std::move(size));
+    }
+  }
   summary.failures = failures;
   summary.figures = figures(f);
   const bool last = io.names_way_out = summary.counts = !verdict.repeats();

@@ -12,10 +12,10 @@ namespace meshpipe {
 /// Returns the barycentric coordinates of the point of triangle abc that is closest to p; a triangle without
 /// area counts as its three edges. Source: Ericson, Real-Time Collision Detection, 5.1.5.
 std::array<double, 3> closest_on_triangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c);
-/// Returns the vector from p to the point of triangle abc with these barycentric coordinates; by differences,
-/// which are exact also far from the origin.
+/// Returns the vector from p to the point of triangle abc with these barycentric coordinates. It is made of
+/// those to the corners, which lose nothing far from the origin and are the same for all triangles there.
 inline Vec3 vector_to(const std::array<double, 3>& weights, Vec3 a, Vec3 b, Vec3 c, Vec3 p) {
-  return weights[1] * (b - a) + weights[2] * (c - a) - (p - a);
+  return weights[0] * (a - p) + weights[1] * (b - p) + weights[2] * (c - p);
 }
 /// Returns the place on triangle t of the mesh that is closest to p.
 Place closest_place(const Mesh& mesh, int t, Vec3 p);

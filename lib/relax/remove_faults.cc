@@ -106,6 +106,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
 
+/// As triangles_intersect, without a copy of the mesh.
 bool intersect(const State& s, int t, int u) {
   Mesh pair{{}, {s.mesh.tris[t], s.mesh.tris[u]}};
   std::vector<int> vertices;
@@ -118,15 +119,18 @@ bool intersect(const State& s, int t, int u) {
   return triangles_intersect(pair, 0, 1);
 }
 
-/// Tries all edits where refinement did not help, and takes the best of each place.
+/// Tries all edits where refinement did not help, and takes the best of each place. Of many pairs first
+/// single edits. Pairs that the repair of others has removed are left out, except chords, which need not
+/// intersect.
 void repair_at(State& s, const Fault& fault, Known& known) {
   struct Item {
     int t, other;
+    bool intersects;
     std::vector<Vec3> missed;
   };
   std::vector<Item> items;
-  for (auto [a, b] : fault.pairs) items.push_back({a, b, {}});
-  for (int t : fault.triangles) items.push_back({t, -1, {}});
+  for (auto [a, b] : fault.pairs) items.push_back({a, b, intersect(s, a, b), {}});
+  for (int t : fault.triangles) items.push_back({t, -1, false, {}});
   for (Item& i : items)
     for (const auto& [t, p] : fault.missed)
       if (t == i.t || t == i.other) i.missed.push_back(p);
@@ -136,9 +140,9 @@ void repair_at(State& s, const Fault& fault, Known& known) {
   known.tree(), known.needle_corners();  // before threads ask for them
   auto around = [&](const Item& item, std::vector<int> before) {
     if (!before.empty() || s.mesh.dead(item.t)) return before;
-    if (item.other >= 0 && (changed_since(s, item.t, begun) || changed_since(s, item.other, begun)) &&
+    if (item.intersects && (changed_since(s, item.t, begun) || changed_since(s, item.other, begun)) &&
         (s.mesh.dead(item.other) || !intersect(s, item.t, item.other)))
-      return std::vector<int>{};  // repaired with another
+      return std::vector<int>{};
     std::vector<int> found = triangles_around(s, item.t, thorough ? rules::thorough_rings : rules::rings);
     if (item.other >= 0 && !s.mesh.dead(item.other))
       for (int t : triangles_around(s, item.other, rules::rings))

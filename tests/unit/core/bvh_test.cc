@@ -92,13 +92,24 @@ TEST(bvh, distances_are_exact_where_coordinates_are_far_apart) {
   constexpr double far = 3e13, apart = 1.0 / 256;
   const Mesh m{{{far, far, far}, {far + 7 * apart, far, far}, {far, far + 7 * apart, far}}, {{0, 1, 2}}};
   const std::vector<int> opposite{-1, -1, -1};
-  for (int x = 0; x <= 3; ++x)
-    for (int y = 0; y <= 3; ++y) {
+  for (int x = 0; x <= 7; ++x)
+    for (int y = 0; x + y <= 7; ++y) {
       const Vec3 p{far + x * apart, far + y * apart, far + apart};
       int face = 0;
       EXPECT_DOUBLE_EQ(Bvh(m).nearest(p).distance, apart);
       EXPECT_DOUBLE_EQ(walk_to(p, m.points, m.tris, opposite, face), apart);
     }
+}
+
+//   1---0 p    the corner that is nearest is the first, second and third of its triangles
+//    \ / \.
+//     2---3
+TEST(bvh, triangles_of_the_nearest_corner_are_equally_near) {
+  const Vec3 p{0.37, 0.11, -0.2};
+  const Vec3 a{0.1, 0.11, -0.2}, b{-0.6, 0.3, 0.1}, c{-0.2, -0.7, 0.3}, d{-0.3, -0.9, 0.7};
+  const double distance = norm(a - p);
+  for (const auto& [x, y, z] : {std::array{a, b, c}, {b, c, a}, {c, a, b}, {a, c, d}, {c, d, a}, {d, a, c}})
+    EXPECT_EQ(norm(vector_to(closest_on_triangle(p, x, y, z), x, y, z, p)), distance);
 }
 
 TEST(bvh, meshes_of_any_count) {
