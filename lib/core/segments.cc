@@ -49,48 +49,39 @@ SegmentTree::SegmentTree(const std::vector<Segment>& segments) : segments_(segme
   }
 }
 
-template <class Overlaps, class Visit>
-void SegmentTree::visit(const Overlaps& overlaps, const Visit& leaf) const {
-  const int n = (int)segments_.size();
-  if (n == 0) return;
-  int stack[64], top = 0;
-  stack[top++] = 1;  // the root, or the only leaf
-  while (top > 0) {
-    int k = stack[--top];
-    if (!overlaps(box_[k])) continue;
-    if (k >= n) {
-      leaf(k - n);
-    } else {
-      stack[top++] = 2 * k + 1;
-      stack[top++] = 2 * k;
-    }
-  }
-}
-
 std::vector<std::array<int, 2>> SegmentTree::crossings() const {
   const int n = (int)segments_.size();
-  std::vector<std::array<int, 2>> pairs;
-  for (int i = 0; i < n; ++i) {
-    const Box& mine = box_[n + i];
-    visit(
-        [&](const Box& b) {
-          return b.low.x <= mine.high.x && mine.low.x <= b.high.x && b.low.y <= mine.high.y &&
-                 mine.low.y <= b.high.y;
-        },
-        [&](int j) {
-          if (j > i && meet(segments_[i], segments_[j])) pairs.push_back({i, j});
-        });
+  std::vector<std::array<int, 2>> pairs, stack;  // of segments; of nodes, each pair once
+  if (n > 0) stack.push_back({1, 1});
+  while (!stack.empty()) {
+    const int k = std::min(stack.back()[0], stack.back()[1]), m = std::max(stack.back()[0], stack.back()[1]);
+    const Box &a = box_[k], &b = box_[m];
+    stack.pop_back();
+    if (!(b.low.x <= a.high.x && a.low.x <= b.high.x && b.low.y <= a.high.y && a.low.y <= b.high.y)) continue;
+    if (k < n) {  // the higher node, or both
+      stack.insert(stack.end(), {{2 * k, m == k ? 2 * k : m}, {2 * k + 1, m == k ? 2 * k + 1 : m}});
+      if (m == k) stack.push_back({2 * k, 2 * k + 1});
+    } else if (k < m && meet(segments_[k - n], segments_[m - n])) {
+      pairs.push_back({k - n, m - n});
+    }
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
 int SegmentTree::winding(Vec2 p, const std::vector<int>& weight) const {
-  int turns = 0;
-  visit([&](const Box& b) { return b.low.y <= p.y && p.y <= b.high.y && p.x <= b.high.x; },
-        [&](int i) {
-          if (weight[i] != 0) turns += weight[i] * ray_crossing(p, segments_[i].p, segments_[i].q);
-        });
+  const int n = (int)segments_.size();
+  int turns = 0, stack[64], top = 0;
+  if (n > 0) stack[top++] = 1;  // the root, or the only leaf
+  while (top > 0) {
+    const int k = stack[--top];
+    const Box& b = box_[k];
+    if (!(b.low.y <= p.y && p.y <= b.high.y && p.x <= b.high.x)) continue;
+    if (k < n)
+      for (int child : {2 * k + 1, 2 * k}) stack[top++] = child;
+    else if (weight[k - n] != 0)
+      turns += weight[k - n] * ray_crossing(p, segments_[k - n].p, segments_[k - n].q);
+  }
   return turns;
 }
 

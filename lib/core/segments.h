@@ -31,9 +31,6 @@ class SegmentTree {
   struct Box {
     Vec2 low, high;
   };
-  template <class Overlaps, class Visit>
-  void visit(const Overlaps& overlaps, const Visit& leaf) const;
-
   const std::vector<Segment>& segments_;
   std::vector<Box> box_;  ///< node k has children 2 k and 2 k + 1; leaves are nodes n .. 2 n - 1
 };
