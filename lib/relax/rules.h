@@ -122,7 +122,7 @@ constexpr double growth = 1.6,
                  few = 300;       // of the triangles, and triangles: what the removal of faults may add
 constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
 constexpr int fault_rounds = 24, useless_rounds = 6;
-constexpr int many_pairs = 30;  // of more single edits are tried first, in a sixth of the time of all
+constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
 constexpr double reduced_at_pair = 0.35,
