@@ -158,6 +158,7 @@ void repair(Repair& r, const std::vector<Vec3>& points, const CleanOptions& opti
     for (int round = 1; !make_manifold(r, points, options, report) && round < most_rounds; ++round) unite(r);
     report.components = components(r.opposite, component);
     const std::vector<char> before = r.flipped;
+    if (options.keep_orientation) return;
     report.sheets.nested = face_outward(r, points, component, report.components);  // when holes are filled
     // solids are on the other side now of triangles that were paired
     if (pass == most_passes || report.paired_edges == 0 || r.flipped == before) return;
@@ -408,13 +409,11 @@ CleanReport clean(Surface& surface, const CleanOptions& options) {
 }
 
 void split_sheets(Surface& surface) {
-  const std::size_t n = surface.tris.size();
   const CleanReport r =
-      clean(surface, {.weld = 0, .open_flips = true, .keep_flat = true, .sheets = CleanOptions::split});
-  if (surface.tris.size() != n || r.flipped || r.degenerate || r.duplicate)
-    throw NotAdmissible("the surface has " + std::to_string(r.flipped) + " misoriented, " +
-                        std::to_string(r.degenerate) + " degenerate, " + std::to_string(r.duplicate) +
-                        " duplicate triangles; run mclean first");
+      clean(surface, {.weld = 0, .keep_orientation = true, .keep_flat = true, .sheets = CleanOptions::split});
+  if ((int)surface.tris.size() != r.input_triangles || r.degenerate || r.duplicate)
+    throw NotAdmissible("the surface has " + std::to_string(r.degenerate) + " degenerate and " +
+                        std::to_string(r.duplicate) + " duplicate triangles; run mclean first");
 }
 
 }  // namespace meshpipe

@@ -16,12 +16,12 @@ struct CleanOptions {
   /// of the coordinates does not separate, where all other edges are much longer.
   double weld = -1;
   bool drop_nonorientable = false;  ///< leave such components out instead of cutting them open
-  bool open_flips = false;   ///< where neighbors disagree, leaves the edge open rather than reverse triangles
-  int keep_components = 0;   ///< the largest by area; 0: all
-  int fill_holes = 0;        ///< fill border loops of at most this many edges; 0: none
-  bool cap_patches = false;  ///< give each filled hole a patch of its own
-  bool keep_flat = false;    ///< leave triangles of zero area, and fill no holes
-  bool keep_slits = false;   ///< leave edges that only one side divides
+  bool keep_orientation = false;    ///< reverse no triangle: edges where neighbors disagree are left open
+  int keep_components = 0;          ///< the largest by area; 0: all
+  int fill_holes = 0;               ///< fill border loops of at most this many edges; 0: none
+  bool cap_patches = false;         ///< give each filled hole a patch of its own
+  bool keep_flat = false;           ///< leave triangles of zero area, and fill no holes
+  bool keep_slits = false;          ///< leave edges that only one side divides
   /// Sheets that meet in edges of more than two triangles: connected in pairs that bound the same solid and
   /// split elsewhere, all split, or left to share their vertices; or paired unless they, or solids within
   /// solids, divide space into regions (lib/solids/solids.h) or pairs leave borders, and else kept.

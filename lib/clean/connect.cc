@@ -37,7 +37,7 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
         else
           first = i;
       const int h = half_edge(uses[0]), g = half_edge(uses[1]);
-      if (uses.size() > 2 || (options.open_flips && origin(r.tris, h) == origin(r.tris, g))) {
+      if (uses.size() > 2 || (options.keep_orientation && origin(r.tris, h) == origin(r.tris, g))) {
         ++edges;
         for (EdgeUse e : uses) many.push_back(half_edge(e) / 3);
         r.split[origin(r.tris, h)] = r.split[target(r.tris, h)] = 1;

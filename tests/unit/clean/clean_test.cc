@@ -255,6 +255,13 @@ TEST(Clean, SplitSheetsLeavesFlatTriangles) {
   EXPECT_EQ(s.tris, before);
 }
 
+TEST(Clean, SplitSheetsLeavesOrientationAsItIs) {
+  Surface s = nested("-+");  // which clean would reverse
+  const std::vector<Tri> before = s.tris;
+  split_sheets(s);
+  EXPECT_EQ(s.tris, before);
+}
+
 TEST(Clean, TwoTetrahedraOnOneEdgeStayClosed) {
   std::vector<Vec3> p = tetra_points;
   p.push_back({0, -1, 0});
