@@ -16,8 +16,9 @@ namespace {
 
 constexpr double per_width = 7;       ///< size over the width of a strip; from 10 on kappa falls below 0.1
 constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are no features if they are short
-constexpr double most_sag = 0.45;     ///< of the gap; triangles sag by 4/3 of what edges do
-constexpr double longest = 1.4;       ///< edge, in sizes: a longer one is split
+constexpr double rounding_of_places = 1e-15;  ///< of coordinates: lines no farther apart may be one
+constexpr double most_sag = 0.45;             ///< of the gap; triangles sag by 4/3 of what edges do
+constexpr double longest = 1.4;               ///< edge, in sizes: a longer one is split
 constexpr double least_width_share =
     0.1;  ///< size over the widths of the triangles, where sheets almost touch
 constexpr double least_share =
@@ -255,7 +256,7 @@ void lines_near(const Measure& m, int h, Vec3 p, const double& width, int most, 
 
 SizeBound Measure::strip(int h, Vec3 p, Search& search) const {
   double width = asked(h, p) / per_width;
-  const double least = surface_.length(h) < per_width * width ? least_width_ : 0;
+  const double least = surface_.length(h) < per_width * width ? least_width_ : rounding_of_places * norm(p);
   SizeBound found{h, p, infinity, 0};
   lines_near(*this, h, p, width, surface_.n_tris(), search, [&](int, int g, Vec3 q) {
     const double d = norm(q - p);

@@ -87,6 +87,16 @@ TEST(Permitted, LinesThatMeetAreNotNear) {
   EXPECT_TRUE(bounds_of(rectangle(1, 0.2), 100).empty());  // five widths long
 }
 
+TEST(Permitted, LinesThatTouchWithinRoundingAreNotNear) {
+  auto far_off = [](double width) {
+    Mesh mesh = rectangle(8, width);
+    for (Vec3& p : mesh.points) p.z = 20;  // doubles are 3.6e-15 apart there
+    return mesh;
+  };
+  EXPECT_TRUE(bounds_of(far_off(1e-14), 4).empty());
+  EXPECT_FALSE(bounds_of(far_off(1e-13), 4).empty());
+}
+
 TEST(Permitted, ChordsOfASheetStayOffTheNext) {
   Mesh mesh;
   add_tube(mesh, 1, 2);
