@@ -2,10 +2,31 @@
 #include "formats/foreign/colors.h"
 
 #include <cmath>
+#include <string_view>
+#include <system_error>
 
-#include "formats/text.h"
+#include "lib/core/number.h"
 
 namespace meshpipe {
+
+bool rest_of_line(Text& text, std::vector<double>& channels) {
+  channels.clear();
+  bool whole = true, given = true;
+  while (!text.line_ends()) {
+    const std::string_view w = text.peek();
+    double x;
+    whole = whole && w.find_first_of(".eE") == std::string_view::npos;
+    if (w.find_first_of("nN") != std::string_view::npos &&
+        from_chars(w.data(), w.data() + w.size(), x).ec == std::errc() && std::isnan(x)) {
+      text.word();
+      given = false;
+    } else {
+      channels.push_back(text.number("a color"));
+    }
+  }
+  if (!given) channels.clear();
+  return whole;
+}
 
 void Colors::add(const double* c, std::size_t n, bool whole) {
   if (n != 3 && n != 4) return;

@@ -5,8 +5,13 @@
 #include <vector>
 
 #include "formats/foreign/columns.h"
+#include "formats/text.h"
 
 namespace meshpipe {
+
+/// Takes the channels left on the line; returns whether all are whole numbers. None if one is nan, as
+/// programs write colors that were not set.
+bool rest_of_line(Text& text, std::vector<double>& channels);
 
 /// Collects the colors of a table's rows; they are kept if all rows have one.
 class Colors {

@@ -136,15 +136,8 @@ void ObjReader::point() {
   stream_.surface.points.push_back(next_point(text_));
   if (text_.line_ends()) return;
   std::vector<double>& c = numbers_;
-  bool given = true;  // colors that were not set may be written as nan
-  for (c.clear(); !text_.line_ends();)
-    if (text_.peek() == "nan") {
-      text_.word();
-      given = false;
-    } else {
-      c.push_back(text_.number("a color"));
-    }
-  colors_.add(c.data(), given ? c.size() : 0,
+  rest_of_line(text_, c);
+  colors_.add(c.data(), c.size(),
               c.size() == 3 && std::any_of(c.begin(), c.end(), [](double x) { return x > 1; }));
 }
 

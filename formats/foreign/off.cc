@@ -63,17 +63,6 @@ class OffReader {
   }
 
  private:
-  /// Takes the numbers left on the line; returns whether all are whole.
-  bool rest_of_line(std::vector<double>& out) {
-    out.clear();
-    bool whole = true;
-    while (!text_.line_ends()) {
-      whole = whole && text_.peek().find_first_of(".eE") == std::string_view::npos;
-      out.push_back(text_.number("a color"));
-    }
-    return whole;
-  }
-
   void ascii() {
     if (text_.line_ends()) text_.need_line("the counts of vertices and faces");
     const int n_vertices = text_.count("the count of vertices", 6),
@@ -86,7 +75,7 @@ class OffReader {
       points[i] = next_point(text_);
       if (!keyword_.colors) continue;
       if (keyword_.normals) next_point(text_);
-      const bool whole = rest_of_line(more);
+      const bool whole = rest_of_line(text_, more);
       vertex_colors_.add(more.data(), more.size() - (keyword_.texture && more.size() > 4 ? 2 : 0), whole);
     }
     polygons_.ends.reserve(n_faces);
@@ -99,7 +88,7 @@ class OffReader {
                                            [&](const std::string& what) { text_.fail(what); }));
       polygons_.ends.push_back(polygons_.corners.size());
       if (text_.line_ends()) continue;
-      const bool whole = rest_of_line(more);
+      const bool whole = rest_of_line(text_, more);
       face_colors_.add(more.data(), more.size(), whole);
     }
     if (text_.next_line())

@@ -157,8 +157,8 @@ void repair(Repair& r, const std::vector<Vec3>& points, const CleanOptions& opti
   for (int pass = 1;; ++pass) {
     for (int round = 1; !make_manifold(r, points, options, report) && round < most_rounds; ++round) unite(r);
     report.components = components(r.opposite, component);
-    const std::vector<char> before = r.flipped;
     if (options.keep_orientation) return;
+    const std::vector<char> before = r.flipped;
     report.sheets.nested = face_outward(r, points, component, report.components);  // when holes are filled
     // solids are on the other side now of triangles that were paired
     if (pass == most_passes || report.paired_edges == 0 || r.flipped == before) return;

@@ -166,8 +166,10 @@ TEST(Colors, OfObjAndOffAreKept) {
   EXPECT_EQ(faces.surface.face.get<std::uint8_t>("red"), (std::vector<std::uint8_t>{255, 128}));
   EXPECT_EQ(write_as(faces, "a.off", true),
             "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 9\n3 2 1 0 128 255 0\n");
+  EXPECT_EQ(read_any("COFF\n3 1 0\n0 0 0 1 0 0 1\n1 0 0 -nan 0 0 1\n0 1 0 0 0 1 1\n3 0 1 2\n", "in").remarks,
+            std::vector<std::string>{"left out: vertex data color, given for 2 of 3"});
   // not all have one
-  for (const char* second : {"", " nan nan nan"})
+  for (const char* second : {"", " nan nan nan", " 1 -NaN 0"})
     EXPECT_EQ(
         read_any(std::string("v 0 0 0 1 0 0\nv 1 0 0") + second + "\nv 0 1 0 0 0 1\nf 1 2 3\n", "in").remarks,
         std::vector<std::string>{"left out: vertex data color, given for 2 of 3"});
