@@ -15,7 +15,7 @@
 namespace meshpipe {
 namespace {
 
-class Sections : public Rows {
+class SectionWriter : public Rows {
  public:
   using Rows::Rows;
   /// Writes a count, which is text in both encodings.
@@ -27,7 +27,7 @@ class Sections : public Rows {
   }
 };
 
-void head(Sections& sink, const char* version) {
+void head(SectionWriter& sink, const char* version) {
   sink.out = std::string("$MeshFormat\n") + version + (sink.ascii() ? " 0 8\n" : " 1 8\n");
   if (!sink.ascii()) {
     put(sink.out, 1);
@@ -67,7 +67,8 @@ Curves curves_of(const Stream& stream) {
   return c;
 }
 
-void names(Sections& sink, const Stream& stream, const ByPatch& by, long long shift, const Curves& curves) {
+void names(SectionWriter& sink, const Stream& stream, const ByPatch& by, long long shift,
+           const Curves& curves) {
   std::string named;
   int n_named = 0;
   auto add = [&](int dim, int tag, long long shown) {
@@ -88,7 +89,7 @@ struct Begun {
   ByPatch by;
   long long shift;
   Curves curves;
-  Sections sink;
+  SectionWriter sink;
 
   Begun(const Stream& stream, const char* version, bool ascii)
       : second(stream),
@@ -119,7 +120,7 @@ void for_each_node(const LineEdge& e, const SecondOrder& second, const Visit& vi
 }
 
 /// Writes data of all vertices or faces. Line elements get zeros, since readers want data for all elements.
-void data(Sections& sink, const char* section, const Table& table, const Curves& curves) {
+void data(SectionWriter& sink, const char* section, const Table& table, const Curves& curves) {
   const std::size_t more = table.name == "face" ? curves.edges.size() : 0;
   for (const Group& g : groups_of(table)) {
     if (g.name == "patch" || (g.name == "model" && curves.all)) continue;
@@ -158,7 +159,7 @@ struct Bounds {
 };
 
 /// Writes an entity: its box, one physical tag, nothing that bounds it.
-void entity_4(Sections& sink, long long tag, const Bounds& box) {
+void entity_4(SectionWriter& sink, long long tag, const Bounds& box) {
   sink.integer(tag);
   for (double x : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z}) sink.real(x);
   sink.wide(1);
@@ -168,7 +169,7 @@ void entity_4(Sections& sink, long long tag, const Bounds& box) {
 }
 
 void entities_4(Begun& begun, const std::vector<long long>& surfaces) {
-  Sections& sink = begun.sink;
+  SectionWriter& sink = begun.sink;
   const Surface& s = begun.second.surface();
   const Curves& curves = begun.curves;
   sink.out += "$Entities\n";
@@ -191,7 +192,7 @@ void entities_4(Begun& begun, const std::vector<long long>& surfaces) {
 }
 
 /// Writes all nodes as one block on a surface.
-void nodes_4(Sections& sink, const std::vector<Vec3>& points, long long surface) {
+void nodes_4(SectionWriter& sink, const std::vector<Vec3>& points, long long surface) {
   const auto n = static_cast<long long>(points.size());
   sink.out += "$Nodes\n";
   for (long long v : {1LL, n, std::min(1LL, n), n}) sink.wide(v);
@@ -211,7 +212,7 @@ void nodes_4(Sections& sink, const std::vector<Vec3>& points, long long surface)
 }
 
 void elements_4(Begun& begun, const std::vector<long long>& surfaces) {
-  Sections& sink = begun.sink;
+  SectionWriter& sink = begun.sink;
   const SecondOrder& second = begun.second;
   const std::vector<Tri>& tris = second.surface().tris;
   const Curves& curves = begun.curves;
@@ -249,7 +250,7 @@ void elements_4(Begun& begun, const std::vector<long long>& surfaces) {
 
 std::string write_msh2(const Stream& stream, bool ascii) {
   Begun begun(stream, "2.2", ascii);
-  Sections& sink = begun.sink;
+  SectionWriter& sink = begun.sink;
   const SecondOrder& second = begun.second;
   const Surface& s = second.surface();
   const Curves& curves = begun.curves;

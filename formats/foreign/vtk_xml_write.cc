@@ -81,7 +81,7 @@ class Xml {
   bool ascii_;
 };
 
-std::string write(const Stream& stream, bool ascii, bool polygons) {
+std::string write_xml(const Stream& stream, bool ascii, bool polygons) {
   const SecondOrder second(stream);
   const bool curved = second && !polygons;
   const Surface& s = curved ? second.surface() : stream.surface;
@@ -124,7 +124,7 @@ std::string write(const Stream& stream, bool ascii, bool polygons) {
 
 }  // namespace
 
-std::string write_vtu(const Stream& stream, bool ascii) { return write(stream, ascii, false); }
-std::string write_vtp(const Stream& stream, bool ascii) { return write(stream, ascii, true); }
+std::string write_vtu(const Stream& stream, bool ascii) { return write_xml(stream, ascii, false); }
+std::string write_vtp(const Stream& stream, bool ascii) { return write_xml(stream, ascii, true); }
 
 }  // namespace meshpipe

@@ -18,8 +18,6 @@ constexpr double rounding = 1e-6;
 /// Share of its radius by which a rim may be off its plane and is made plane without being asked to: the
 /// wobble of an extraction, up to 0.06 where vessels were clipped. Holes along a wall start at 0.17.
 constexpr double almost_plane = 0.1;
-/// Radii below the lowest vertex of a rim at which it is cut, if moving it would fold the wall.
-constexpr double below_rim = 0.1;
 
 /// Radii that a rim is moved at most to make it plane: one that is farther out is cut, or is no vessel's end
 /// but a hole in its wall.

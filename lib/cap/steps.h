@@ -8,6 +8,9 @@
 
 namespace meshpipe {
 
+/// Radii below the lowest vertex of a rim at which an end is cut.
+constexpr double below_rim = 0.1;
+
 struct Plane {
   Vec3 point, normal;
   double height(Vec3 p) const { return dot(p - point, normal); }

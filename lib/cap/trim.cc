@@ -16,7 +16,7 @@ namespace {
 /// Radii between points of the axis: short enough to follow bends, long enough to hold a ring of triangles.
 constexpr double axis_step = 0.5;
 /// And at most this many, of ends that are very small.
-constexpr double most_rings = 10000;
+constexpr double most_steps = 10000;
 /// Radii to either side of a cut in which the wall determines its axis.
 constexpr double axis_reach = 0.75;
 /// Cosine between the axis by the wall's normals and that by the middles of rings, below which the latter
@@ -24,8 +24,6 @@ constexpr double axis_reach = 0.75;
 constexpr double same_axis = 0.8;
 /// Share of an edge within which a cut runs through its end, lest triangles get thin; flattening follows.
 constexpr double snap = 0.02;
-/// Radii between a cut and what is lowest of the rim.
-constexpr double below_rim = 0.1;
 
 /// The triangles near an end, by their distance along edges from the rim.
 struct Wall {
@@ -90,7 +88,7 @@ struct AxisPoint {
 std::vector<AxisPoint> axis_of(const Mesh& mesh, const End& end, const Wall& wall) {
   const double farthest =
       wall.distance.empty() ? 0 : *std::max_element(wall.distance.begin(), wall.distance.end());
-  const double step = std::max(axis_step * end.radius, farthest / most_rings);
+  const double step = std::max(axis_step * end.radius, farthest / most_steps);
   std::vector<Vec3> sum;
   std::vector<double> area, distance;
   for (std::size_t i = 0; i < wall.triangle.size(); ++i) {

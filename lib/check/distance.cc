@@ -11,7 +11,8 @@
 namespace meshpipe {
 namespace {
 
-constexpr int chunk = 256;  // points that one thread takes on: each search starts where the last ended
+constexpr int points_at_once =
+    256;  // points that one thread takes on: each search starts where the last ended
 constexpr double relative = 0.05, absolute = 1e-4;  // of the Hausdorff distance, of the diagonal
 
 /// A point's distance to the other surface, and the nearest triangle.
@@ -135,7 +136,7 @@ void OneSided::sample(int samples) {
     const Tri& t = from_.tris[order[i]];
     area[i] = total += 0.5 * norm(area_vector(from_.points[t[0]], from_.points[t[1]], from_.points[t[2]]));
   }
-  const int chunks = (samples + chunk - 1) / chunk;
+  const int chunks = (samples + points_at_once - 1) / points_at_once;
   struct Part {
     double sum = 0, squares = 0;
     std::vector<std::tuple<Near, Vec3, int>> found;
@@ -144,7 +145,7 @@ void OneSided::sample(int samples) {
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (int k = 0; k < chunks; ++k) {
     Seeker seek(to_tree_, to_);
-    for (int j = k * chunk; j < std::min(samples, (k + 1) * chunk); ++j) {
+    for (int j = k * points_at_once; j < std::min(samples, (k + 1) * points_at_once); ++j) {
       const double at = (j + 0.5) / samples * total;
       const int i = std::min(n - 1, (int)(std::lower_bound(area.begin(), area.end(), at) - area.begin()));
       // within the triangle by the additive sequence of the plane's golden ratio, folded
@@ -237,10 +238,10 @@ std::vector<OneSided::Piece> OneSided::doubtful_pieces(std::span<const int> tria
   // what is neither the farthest nor the farthest over what is allowed need not be known exactly
   const double small =
       allowed_.at.empty() ? largest : std::min(largest, std::min(deviation.worst, 0.5) * allowed_.least);
-#pragma omp parallel for schedule(dynamic) if (n > chunk)
-  for (int first = 0; first < n; first += chunk) {
+#pragma omp parallel for schedule(dynamic) if (n > points_at_once)
+  for (int first = 0; first < n; first += points_at_once) {
     Seeker seek(to_tree_, to_);
-    for (int i = first; i < std::min(n, first + chunk); ++i)
+    for (int i = first; i < std::min(n, first + points_at_once); ++i)
       near[vertices[i]] = seek(from_.points[vertices[i]], small);
   }
   for (int t : triangles)
@@ -364,10 +365,10 @@ std::vector<double> vertex_distances(const Mesh& mesh, std::span<const int> tria
   const std::vector<int> vertices = vertices_of(mesh, triangles);
   std::vector<double> distances(mesh.points.size(), 0);
   const int n = (int)vertices.size();
-#pragma omp parallel for schedule(dynamic) if (n > chunk)
-  for (int first = 0; first < n; first += chunk) {
+#pragma omp parallel for schedule(dynamic) if (n > points_at_once)
+  for (int first = 0; first < n; first += points_at_once) {
     Seeker seek(tree, surface);
-    for (int i = first; i < std::min(n, first + chunk); ++i)
+    for (int i = first; i < std::min(n, first + points_at_once); ++i)
       distances[vertices[i]] = seek(mesh.points[vertices[i]]).distance;
   }
   return distances;
@@ -384,14 +385,14 @@ std::vector<double> triangle_errors(const Mesh& reference, const Bvh& reference_
     const Mesh& from = back ? reference : mesh;
     const Bvh &from_tree = back ? reference_tree : mesh_tree, &tree = back ? mesh_tree : reference_tree;
     const auto& order = from_tree.order();
-    const int n = (int)order.size(), chunks = (n + chunk - 1) / chunk;
+    const int n = (int)order.size(), chunks = (n + points_at_once - 1) / points_at_once;
     constexpr double weights[7][3] = {{1, 0, 0},   {0, 1, 0},   {0, 0, 1},  {1.0 / 3, 1.0 / 3, 1.0 / 3},
                                       {.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}};
     std::vector<std::vector<Found>> found(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
     for (int c = 0; c < chunks; ++c) {
       Seeker seek(tree);
-      for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+      for (int i = c * points_at_once; i < std::min(n, (c + 1) * points_at_once); ++i) {
         const Tri& t = from.tris[order[i]];
         for (const auto& w : weights) {
           const Near near =
@@ -430,10 +431,10 @@ double curve_distance(const Mesh& a, const Mesh& b) {
     const Mesh *from = swapped ? &b : &a, *to = swapped ? &a : &b;
     const Bvh from_tree(*from), tree(*to);
     const int n = (int)from->tris.size();
-#pragma omp parallel for schedule(dynamic) reduction(max : worst) if (n > chunk)
-    for (int first = 0; first < n; first += chunk) {
+#pragma omp parallel for schedule(dynamic) reduction(max : worst) if (n > points_at_once)
+    for (int first = 0; first < n; first += points_at_once) {
       Seeker seek(tree);
-      for (int i = first; i < std::min(n, first + chunk); ++i) {
+      for (int i = first; i < std::min(n, first + points_at_once); ++i) {
         const Tri& t = from->tris[from_tree.order()[i]];
         for (int k = 0; k <= 8; ++k)
           worst = std::max(worst, seek(lerp(from->points[t[0]], from->points[t[1]], k / 8.0)).distance);

@@ -6,7 +6,8 @@
 namespace meshpipe {
 namespace {
 
-constexpr double gap = 1e-8;  // of the area: what rounding may leave uncovered is no wider than its root
+constexpr double uncovered =
+    1e-8;  // of the area: what rounding may leave uncovered is no wider than its root
 
 /// A triangle in its own plane, and the coordinates of points there: x and y, and z above it.
 struct Frame {
@@ -131,7 +132,7 @@ double sheet_height(const Connectivity& surface, int face, const std::array<Vec3
       if (std::any_of(faces, faces + n, [&](const Face& f) { return f.entered / 3 == g / 3; })) continue;
       if (n == most || !add(g, to, from, frame(surface.point(surface.apex(g))))) return infinity;
     }
-  return highest + std::sqrt(gap * frame.area);
+  return highest + std::sqrt(uncovered * frame.area);
 }
 
 double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec3, 3>& c, double enough) {
@@ -158,7 +159,8 @@ double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec
                      }
                    });
   const double area = frame.area;
-  return seen <= most && std::abs(covered - area) <= gap * area ? highest + std::sqrt(gap * area) : infinity;
+  return seen <= most && std::abs(covered - area) <= uncovered * area ? highest + std::sqrt(uncovered * area)
+                                                                      : infinity;
 }
 
 }  // namespace meshpipe

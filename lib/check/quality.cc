@@ -9,7 +9,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = 180 / std::numbers::pi;
+constexpr double to_degrees = 180 / std::numbers::pi;
 constexpr int chunk = 4096;  // triangles; sums are taken by chunks, so that they do not depend on the threads
 
 /// Shapes of the triangles of one chunk.
@@ -33,7 +33,7 @@ Shapes shapes(const Mesh& mesh, int first, int last, std::vector<float>& kappas)
     kappas[t] = (float)k;
     s.kappa_sum += k;
     const double shortest = std::min({xx, yy, zz}), longest = std::max({xx, yy, zz}), all = xx + yy + zz;
-    const double least = std::atan2(2 * n, all - 2 * shortest) * degree;  // dot = (all - 2 l^2) / 2
+    const double least = std::atan2(2 * n, all - 2 * shortest) * to_degrees;  // dot = (all - 2 l^2) / 2
     s.angle_sum += least;
     s.min_angle = std::min(s.min_angle, least);
     ++s.angles[std::clamp((int)least, 0, 59)];
@@ -42,7 +42,7 @@ Shapes shapes(const Mesh& mesh, int first, int last, std::vector<float>& kappas)
     else
       s.max_angle = 180;
   }
-  s.max_angle = std::max(s.max_angle, std::atan2(1, cotangent) * degree);
+  s.max_angle = std::max(s.max_angle, std::atan2(1, cotangent) * to_degrees);
   return s;
 }
 

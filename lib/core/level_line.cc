@@ -10,7 +10,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double sharp_peak = 15 * pi / 180;  ///< radians around: within a part its map is too uneven
 
 using Edge = std::pair<int, int>;
@@ -98,7 +98,7 @@ struct Star {
 
 class Pull {
  public:
-  Pull(const Connectivity& c, LevelLine& line, const std::vector<Hold>& hold)
+  Pull(const Connectivity& c, LevelLine& line, const std::vector<LineVertex>& hold)
       : c_{c.mesh.tris, c.mesh.points, c.opposite, line.sign, std::vector<double>(c.opposite.size(), -1), {}},
         hold_(hold),
         first_(c.mesh.points.size(), -1) {
@@ -114,7 +114,7 @@ class Pull {
     for (int i = 0, n = (int)c_.crossed.size(); i < n; ++i)
       for (int v : {c.from(c_.crossed[i]), c.to(c_.crossed[i])}) {
         star_.gather(c_, first_[v]);
-        if (c_.sign[v] != 0 && hold[v] == Hold::moves && star_.is_peak()) put_on(v);
+        if (c_.sign[v] != 0 && hold[v] == LineVertex::moves && star_.is_peak()) put_on(v);
       }
   }
 
@@ -127,7 +127,7 @@ class Pull {
       if (c_.at[c_.crossed[i]] >= 0) slide(c_.crossed[i]);
     std::erase_if(on_, [&](int v) { return c_.sign[v] != 0; });
     for (std::size_t i = 0; i < on_.size(); ++i)
-      if (hold_[on_[i]] == Hold::moves && c_.sign[on_[i]] == 0) leave(on_[i]);
+      if (hold_[on_[i]] == LineVertex::moves && c_.sign[on_[i]] == 0) leave(on_[i]);
   }
 
   std::vector<EdgeCrossing> crossings() const { return c_.list(); }
@@ -152,8 +152,8 @@ class Pull {
       s = (s * height2 + s2 * height) / (height + height2);
     }
     const double at = s / length;
-    if (at < snap_ && hold_[a] == Hold::moves && put_on(a)) return;
-    if (1 - at < snap_ && hold_[b] == Hold::moves && put_on(b)) return;
+    if (at < snap_ && hold_[a] == LineVertex::moves && put_on(a)) return;
+    if (1 - at < snap_ && hold_[b] == LineVertex::moves && put_on(b)) return;
     c_.set(h, std::clamp(at, least_, 1 - least_));  // kept off a vertex that cannot be run through
   }
 
@@ -249,7 +249,7 @@ class Pull {
   }
 
   Crossings c_;
-  const std::vector<Hold>& hold_;
+  const std::vector<LineVertex>& hold_;
   double snap_ = 0, least_ = 0;  // least_: of an edge between a vertex and a crossing
   std::vector<int> first_;       // of each vertex: a half-edge that leaves it, on the border the first
   std::vector<int> on_;          // vertices that the line runs through
@@ -269,7 +269,7 @@ double crossing_on(const LevelLine& line, int low, int high) {
   return found->at;
 }
 
-void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<Hold>& hold, double snap,
+void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<LineVertex>& hold, double snap,
                    int sweeps) {
   // the vertices that it runs through hold the line: in the end only, when it is straight
   constexpr double freely = 0.1, part = 0.67;

@@ -25,7 +25,7 @@ struct LevelLine {
 double crossing_on(const LevelLine& line, int low, int high);
 
 /// Whether a vertex keeps its side of a line, or may change sides.
-enum class Hold : char { stays, moves };
+enum class LineVertex : char { stays, moves };
 
 /// Straightens the line on the unfolded surface: in each of `sweeps`, each crossing moves along its edge to
 /// where the line is shortest between its neighbors (on the mesh's border, to where the line is perpendicular
@@ -34,7 +34,7 @@ enum class Hold : char { stays, moves };
 /// bend: so it may pass over vertices, but keeps the topology of both sides. It also runs through peaks of
 /// less than 15 degrees that it passes next to. Only these two may make it longer. Requires: no pinched
 /// vertices.
-void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<Hold>& hold, double snap,
+void pull_straight(const Connectivity& c, LevelLine& line, const std::vector<LineVertex>& hold, double snap,
                    int sweeps);
 
 /// Returns the zero level of a field (one finite value per vertex, linear on triangles).

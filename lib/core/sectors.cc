@@ -7,7 +7,6 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 /// kappa of an isosceles triangle is 0.1 at an apex of 3 degrees; a vertex without feature edges needs at
 /// least three triangles.
 constexpr double needle_angle = 3 * degree;

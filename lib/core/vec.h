@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace meshpipe {
 
@@ -46,6 +47,7 @@ inline Vec3 normalized(Vec3 a) {
 }
 /// Returns the normal of triangle abc with twice its area as length.
 inline Vec3 area_vector(Vec3 a, Vec3 b, Vec3 c) { return cross(b - a, c - a); }
+constexpr double degree = std::numbers::pi / 180;  ///< in radians
 /// Returns the angle between two vectors, 0 to pi; by atan2, as acos loses half the digits near both.
 inline double angle(Vec3 a, Vec3 b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 /// Returns where the segment from a to b is nearest to p, as a fraction of it from a; 0 if it has no length.

@@ -12,9 +12,9 @@
 namespace meshpipe {
 namespace {
 
-constexpr double rounding = 3e-6;   ///< of the diagonal: single-precision coordinates, with a margin
-constexpr double least_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
-constexpr int most_passes = 20;     ///< one for each row of caps that lean on each other
+constexpr double rounding = 3e-6;     ///< of the diagonal: single-precision coordinates, with a margin
+constexpr double nearest_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
+constexpr int most_rows = 20;         ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
 double height(Vec3 a, Vec3 b, Vec3 c) {
@@ -35,7 +35,7 @@ bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double le
   const Vec3 a = points[m.from(h)], b = points[m.to(h)], c = points[m.apex(h)], d = points[m.apex(m.opp[h])];
   const double low = height(a, b, c), at = dot(c - a, b - a) / dot(b - a, b - a);
   const Vec3 up = area_vector(b, a, d);
-  return low < least && std::min(at, 1 - at) > least_end && dot(area_vector(c, a, d), up) > 0 &&
+  return low < least && std::min(at, 1 - at) > nearest_end && dot(area_vector(c, a, d), up) > 0 &&
          dot(area_vector(d, b, c), up) > 0 && std::min(height(c, a, d), height(d, b, c)) > low &&
          !m.joined(m.apex(h), m.apex(m.opp[h]));
 }
@@ -118,7 +118,7 @@ Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double
     if (const int o = m.opp[h]; o >= 0 && (line[h] >= 0 || line[o] >= 0)) m.hard[h] = 1;
   Flips flips;
   Drift drift(surface.tris.size(), 0);
-  for (int pass = 0, before = -1; pass < most_passes && flips.count != before; ++pass) {
+  for (int pass = 0, before = -1; pass < most_rows && flips.count != before; ++pass) {
     before = flips.count;
     for (int t = 0; t < (int)m.tris.size(); ++t) {
       int h = longest_edge(surface, t);

@@ -8,9 +8,9 @@
 namespace meshpipe {
 namespace {
 
-constexpr int most_triangles = 256;  ///< of a fragment
-constexpr double least_share = 0.1;  ///< of the tolerance: smaller distances count as this
-constexpr double around = 1.1;       ///< of the distance of corners: what is tried before the tolerance
+constexpr int largest_fragment = 256;  ///< of a fragment
+constexpr double least_share = 0.1;    ///< of the tolerance: smaller distances count as this
+constexpr double around = 1.1;         ///< of the distance of corners: what is tried before the tolerance
 /// Halvings that the search for the farthest point may take, in one triangle and in all.
 constexpr int most_halvings = 2000, halvings_per_triangle = 20, halvings_at_least = 100000;
 
@@ -74,7 +74,7 @@ std::vector<RemovedFeature> remove_fragments(const Surface& s, const DefeatureOp
   std::vector<double> area(n, 0);
   for (int t = 0; t < (int)s.tris.size(); ++t) {
     const int c = component[t];
-    if ((int)triangles[c].size() <= most_triangles) triangles[c].push_back(t);
+    if ((int)triangles[c].size() <= largest_fragment) triangles[c].push_back(t);
     for (int h = 3 * t; h < 3 * t + 3; ++h) open[c] |= m.opp[h] < 0;
     kept[c] |= !options.kept.empty() && options.kept[t];
     area[c] += triangle_area(s, t);
@@ -82,7 +82,7 @@ std::vector<RemovedFeature> remove_fragments(const Surface& s, const DefeatureOp
   kept[std::max_element(area.begin(), area.end()) - area.begin()] = 1;
   bool any = false;
   for (int c = 0; c < n; ++c) {
-    if (!open[c] || kept[c] || (int)triangles[c].size() > most_triangles) triangles[c].clear();
+    if (!open[c] || kept[c] || (int)triangles[c].size() > largest_fragment) triangles[c].clear();
     for (int t : triangles[c]) loose[t] = 1, any = true;
   }
   std::vector<RemovedFeature> removed;

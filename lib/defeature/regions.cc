@@ -9,7 +9,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr int most_triangles = 256;  ///< of a region: fine meshes of no feature are not searched
+constexpr int largest_region = 256;  ///< of a region: fine meshes of no feature are not searched
 /// Length of the mean unit normal around a region, at least: 1 in a plane, 0 around the end of a thin rod,
 /// which would become a needle.
 constexpr double least_mean = 0.25;
@@ -25,7 +25,7 @@ std::vector<int> region_of(const EditMesh& mesh, int t, std::vector<char>& seen)
       seen[o / 3] = 1;
       region.push_back(o / 3);
     }
-  if ((int)region.size() > most_triangles) region.clear();
+  if ((int)region.size() > largest_region) region.clear();
   return region;
 }
 

@@ -10,7 +10,6 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 /// The surface folds back where normals differ by more: what is between is the rim of a thin plate or the
 /// bottom of a slot, and closing it would bring two sheets together.
 constexpr double fold_angle = 160 * degree;

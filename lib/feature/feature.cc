@@ -17,7 +17,6 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 50 * degree;    ///< a chain that turns by more ends there
 constexpr double continue_turn = 45 * degree;  ///< along weak edges it turns by less
 constexpr double near_cosine = 0.8;            ///< of normals that turn by less than continue_turn: 0.71

@@ -25,8 +25,8 @@ std::vector<int> plane_faces(const Connectivity& c, const std::vector<double>& a
 }
 
 /// Flags the creases at steps.
-std::vector<char> steps(const Connectivity& c, const std::vector<int>& face,
-                        const std::vector<char>& strong) {
+std::vector<char> find_steps(const Connectivity& c, const std::vector<int>& face,
+                             const std::vector<char>& strong) {
   struct Side {
     int face, direction, half_edge;  ///< the direction of the face beyond
     bool up;
@@ -59,7 +59,7 @@ std::vector<char> steps(const Connectivity& c, const std::vector<int>& face,
 
 std::vector<PlaneShares> plane_shares(const Connectivity& c, const Bends& bends) {
   const std::vector<int> face = plane_faces(c, bends.angle);
-  const std::vector<char> is_step = steps(c, face, bends.strong);
+  const std::vector<char> is_step = find_steps(c, face, bends.strong);
   std::vector<int> triangles(c.n_tris(), 0);
   for (int f : face) ++triangles[f];
   std::vector<PlaneShares> shares(bends.components);

@@ -13,10 +13,9 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double steepest = 30 * degree;     ///< between a curve and its chord
-constexpr double smooth_turn = 45 * degree;  ///< of a line at a vertex where it is a curve
-constexpr double flat = 0.5 * degree;        ///< between normals of one flat piece
+constexpr double steepest_chord = 30 * degree;  ///< between a curve and its chord
+constexpr double smooth_turn = 45 * degree;     ///< of a line at a vertex where it is a curve
+constexpr double flat = 0.5 * degree;           ///< between normals of one flat piece
 constexpr double much_larger = 4;  ///< ratio from which on a flat piece or straight edge is by design
 
 /// Returns the inner control point next to the start of a cubic that leaves along `direction`, less a third
@@ -29,9 +28,9 @@ Vec3 control_off(Vec3 chord, Vec3 direction) {
   double c = dot(t, along);
   const Vec3 aside = normalized(t - c * along);
   if (!(norm(aside) > 0)) return {};
-  if (c < std::cos(steepest)) {
-    c = std::cos(steepest);
-    t = c * along + std::sin(steepest) * aside;
+  if (c < std::cos(steepest_chord)) {
+    c = std::cos(steepest_chord);
+    t = c * along + std::sin(steepest_chord) * aside;
   }
   return 2 * length / (3 * (1 + c)) * t - 1.0 / 3 * chord;
 }

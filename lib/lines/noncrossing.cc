@@ -61,7 +61,7 @@ struct SegmentOf {
 };
 
 /// The drawing of one part, segment by segment, all its border with the part on the left.
-struct Drawing {
+struct ChartLines {
   std::vector<Segment> segments;
   std::vector<SegmentOf> source;
   std::vector<int> drawn;   ///< per segment: which chain of the part
@@ -93,18 +93,18 @@ class Refinement {
 
  private:
   void locate_chains(const std::vector<Chart>& charts);
-  Drawing draw(int part, const std::vector<int>& first_key) const;
+  ChartLines draw(int part, const std::vector<int>& first_key) const;
   Finding examine(int part, const std::vector<int>& first_key) const;
-  void examine_nesting(int part, const Drawing& d, const SegmentTree& tree, Finding& finding) const;
-  std::vector<int> loops_of(const Drawing& d) const;
+  void examine_nesting(int part, const ChartLines& d, const SegmentTree& tree, Finding& finding) const;
+  std::vector<int> loops_of(const ChartLines& d) const;
   template <class Edge>
-  void for_piece(int part, const Drawing& d, int segment, const Edge& edge) const;
+  void for_piece(int part, const ChartLines& d, int segment, const Edge& edge) const;
   bool refinable(const SegmentOf& s) const {
     const auto& cuts = division_[s.line];
     return count_inner(cuts[s.index], cuts[s.index + 1]) > 0;
   }
   int leader_of(int line) const { return chains_.leader.empty() ? line : chains_.leader[line]; }
-  double deviation(int part, const Drawing& d, int segment) const;
+  double deviation(int part, const ChartLines& d, int segment) const;
   void insert(int line, const std::vector<int>& segments);
   void keep_graded(int line);
 
@@ -140,8 +140,8 @@ void Refinement::locate_chains(const std::vector<Chart>& charts) {
   }
 }
 
-Drawing Refinement::draw(int part, const std::vector<int>& first_key) const {
-  Drawing d;
+ChartLines Refinement::draw(int part, const std::vector<int>& first_key) const {
+  ChartLines d;
   for (int i = 0; i < (int)drawn_[part].size(); ++i) {
     const Drawn& use = drawn_[part][i];
     const Chain& c = chains_.chain[use.line];
@@ -167,7 +167,7 @@ Drawing Refinement::draw(int part, const std::vector<int>& first_key) const {
 
 /// Calls edge(a, b) along the piece of the chain that a segment stands for, in the segment's direction.
 template <class Edge>
-void Refinement::for_piece(int part, const Drawing& d, int segment, const Edge& edge) const {
+void Refinement::for_piece(int part, const ChartLines& d, int segment, const Edge& edge) const {
   const Drawn& use = drawn_[part][d.drawn[segment]];
   const auto& cuts = division_[use.line];
   const int k = d.source[segment].index;
@@ -183,7 +183,7 @@ void Refinement::for_piece(int part, const Drawing& d, int segment, const Edge& 
 }
 
 /// Returns how far the chain strays from the segment.
-double Refinement::deviation(int part, const Drawing& d, int segment) const {
+double Refinement::deviation(int part, const ChartLines& d, int segment) const {
   const Segment& s = d.segments[segment];
   double most = 0;
   for_piece(part, d, segment, [&](Vec2, Vec2 x) {
@@ -194,7 +194,7 @@ double Refinement::deviation(int part, const Drawing& d, int segment) const {
 
 Finding Refinement::examine(int part, const std::vector<int>& first_key) const {
   Finding finding;
-  const Drawing d = draw(part, first_key);
+  const ChartLines d = draw(part, first_key);
   const SegmentTree tree(d.segments);
   const auto pairs = tree.crossings();
   for (const auto& pair : pairs) {
@@ -220,7 +220,7 @@ Finding Refinement::examine(int part, const std::vector<int>& first_key) const {
 }
 
 /// Numbers the border loops: per segment its loop, -1 on lines inside.
-std::vector<int> Refinement::loops_of(const Drawing& d) const {
+std::vector<int> Refinement::loops_of(const ChartLines& d) const {
   const int n = (int)d.segments.size();
   std::vector<int> by_from;
   for (int i = 0; i < n; ++i)
@@ -245,7 +245,7 @@ std::vector<int> Refinement::loops_of(const Drawing& d) const {
 
 /// Finds what is wrong where no two segments meet: border loops of reversed orientation, with too little
 /// area, or inside another one that did not hold them, and inner lines and points outside the border.
-void Refinement::examine_nesting(int part, const Drawing& d, const SegmentTree& tree,
+void Refinement::examine_nesting(int part, const ChartLines& d, const SegmentTree& tree,
                                  Finding& finding) const {
   const int n = (int)d.segments.size();
   const std::vector<int> loop = loops_of(d);

@@ -25,12 +25,12 @@ constexpr Rule delaunay_rule{false, 0.755, {0.6, 0.3}};
 // A triangle in the queue. Fronts first, row by row; then the triangles no front could serve, largest first;
 // last those that take no circumcenter either.
 enum Rank { at_front, at_center, at_middle };
-struct Entry {
+struct Poor {
   Rank rank;
   double key;  // smaller first
   std::int64_t order;
   int triangle, version;
-  bool operator<(const Entry& e) const {
+  bool operator<(const Poor& e) const {
     if (rank != e.rank) return rank > e.rank;
     if (key != e.key) return key > e.key;
     return order > e.order;
@@ -55,7 +55,7 @@ class Refiner {
  private:
   void drain_queue() {
     while (!queue_.empty()) {
-      Entry e = queue_.top();
+      Poor e = queue_.top();
       queue_.pop();
       if (cdt_.version[e.triangle] != e.version) continue;
       const bool done = e.rank == at_front    ? insert_from_front(e.triangle)
@@ -187,7 +187,7 @@ class Refiner {
   const Rule rule_;
   std::vector<int> row_;
   std::vector<double> radius_;
-  std::priority_queue<Entry> queue_;
+  std::priority_queue<Poor> queue_;
   std::int64_t order_ = 0;
 };
 

@@ -13,7 +13,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 double angle_of(Vec2 a) { return std::atan2(a.y, a.x); }

@@ -14,7 +14,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // a level resolves about four diameters of a tube (a factor e^-2 in length each); two more make a margin for
 // the natural condition where the system is cut off
 constexpr double depth_in_diameters = 6;

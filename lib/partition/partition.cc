@@ -47,7 +47,7 @@ Interfaces measure_interfaces(const Connectivity& view, const std::vector<int>& 
     if (is_crease(view, h)) crease[a] = crease[b] = 1;
   }
   if (r.length > 0) r.length /= diagonal(view.mesh);
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   std::vector<double> turning;
   for (std::size_t v = 0; v < points.size(); ++v) {
     if (count[v] > 2) ++r.junctions;

@@ -42,7 +42,7 @@ struct Attempt {
   int steps, sweeps;
   bool ends_stay;
 };
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}};
 constexpr Attempt last_attempt = {0, 0, 100, true};
 
@@ -237,15 +237,15 @@ std::vector<double> sides(const Bands& bands, const std::vector<double>& sign) {
 /// The zero level of the bands' field, pulled straight, as a line of the surface, which has n vertices.
 LevelLine straight_line(const Bands& bands, std::vector<double> field, double snap, const Attempt& attempt,
                         std::size_t n) {
-  std::vector<Hold> hold;
+  std::vector<LineVertex> hold;
   for (std::size_t v = 0; v < field.size(); ++v) {
     double& f = field[v];
     if (bands.held[v] != not_held) f = bands.held[v];
     if (bands.apex[v] != 0 && f != 0) f = bands.apex[v] * std::max(1e-3, bands.apex[v] * f);
-    hold.push_back(bands.held[v] == not_held && bands.apex[v] == 0 ? Hold::moves : Hold::stays);
+    hold.push_back(bands.held[v] == not_held && bands.apex[v] == 0 ? LineVertex::moves : LineVertex::stays);
   }
   for (int h = 0; attempt.ends_stay && h < (int)bands.opposite.size(); ++h)
-    if (bands.opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = Hold::stays;
+    if (bands.opposite[h] < 0) hold[origin(bands.mesh.tris, h)] = LineVertex::stays;
   LevelLine line = zero_level(bands.mesh, field);
   pull_straight({bands.mesh, bands.opposite}, line, hold, snap, attempt.sweeps);
   return in_whole(line, bands.mesh.vertex, n);

@@ -56,7 +56,7 @@ Halves split(const Neighborhood& near, const ConnectedPart& part, const std::vec
              const std::vector<char>& active, int expected_loops) {
   using Pull = std::pair<double, int>;
   const LevelLine level = zero_level(part, field);
-  const std::vector<Hold> hold(field.size(), Hold::moves);
+  const std::vector<LineVertex> hold(field.size(), LineVertex::moves);
   Halves best;
   for (auto [snap, sweeps] : {Pull{0.1, 60}, Pull{0.03, 30}, Pull{0.01, 30}, Pull{0, 30}, Pull{0, 0}}) {
     LevelLine line = level;

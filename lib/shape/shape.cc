@@ -13,7 +13,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const double row_height = std::sqrt(3) / 2;  // of equilateral triangles of side 1
 
 Vec3 on_circle(double radius, double turn, double z) {

@@ -16,7 +16,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Smooth minimum: differs from the minimum where a and b differ by less than k, by k / 4 at most; |gradient|
 /// <= 1.

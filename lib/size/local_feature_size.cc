@@ -17,10 +17,10 @@
 namespace meshpipe {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double least_triangles = 12;  ///< of a closed component: those of a sphere with four edges around
 constexpr double least_peak = 9 * pi / 180;  ///< radians around a peak: needles at sharper ones are excused
-constexpr double least_share = 1.0 / 64;     ///< of the mean size: less is not asked for by peaks
+constexpr double least_of_mean = 1.0 / 64;   ///< of the mean size: less is not asked for by peaks
 constexpr double full_bend = 0.7 * 2 * pi;   ///< of a ring by its curvature, which is that of a neighborhood
 constexpr double opposite_sides = -0.31;     ///< largest cosine between the two ends of a ring at its vertex
 constexpr double across = 0.4;  ///< largest mean cosine between the ring's plane and the surface's normals
@@ -154,7 +154,7 @@ std::vector<double> closed_line_lengths(const Connectivity& surface) {
 }
 
 double least_at_peaks(const Mesh& mesh, const std::vector<double>& size) {
-  return least_share * size_for_count(total_area(mesh), count_for_size(mesh, size));
+  return least_of_mean * size_for_count(total_area(mesh), count_for_size(mesh, size));
 }
 
 double least_tube_curvature(const std::vector<double>& size) {

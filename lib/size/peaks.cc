@@ -10,9 +10,9 @@ namespace {
 /// Angle of the surface around a peak: three good triangles fill half a turn, and a mesh without a vertex
 /// there ends where four edges fit around, more than half a size away.
 constexpr double widest = std::numbers::pi;
-constexpr double across = 0.6;  ///< length of the mean normal; 0.5 at the widest cone
-constexpr double scale = 0.5;   ///< of the size: what is sharp only below it is noise
-constexpr int most_looks = 10;  ///< at triangles, for each triangle of the surface
+constexpr double steep = 0.6;           ///< length of the mean normal; 0.5 at the widest cone
+constexpr double scale = 0.5;           ///< of the size: what is sharp only below it is noise
+constexpr int looks_per_triangle = 10;  ///< at triangles, for each triangle of the surface
 
 /// The angle around a vertex at a distance.
 class Around {
@@ -81,7 +81,7 @@ std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<dou
   Around around(surface);
   for (int h = 0; h < surface.n_half_edges(); ++h) {
     const int v = surface.from(h);
-    if (!(norm(sum[v]) < across * weight[v])) continue;
+    if (!(norm(sum[v]) < steep * weight[v])) continue;
     weight[v] = 0;
     double total = 0, nearest = infinity;
     surface.for_each_spoke(h, [&](int g) {
@@ -90,8 +90,9 @@ std::vector<Peak> sharp_peaks(const Connectivity& surface, const std::vector<dou
       nearest = std::min(nearest, norm(a));
     });
     if (total < widest && nearest < scale * size[v])
-      total = around.looks < (long long)most_looks * surface.n_tris() ? around.angle(h, scale * size[v])
-                                                                      : infinity;
+      total = around.looks < (long long)looks_per_triangle * surface.n_tris()
+                  ? around.angle(h, scale * size[v])
+                  : infinity;
     if (total < widest) peaks.push_back({v, total});
   }
   return peaks;

@@ -13,14 +13,13 @@
 namespace meshpipe {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double tilt[] = {20 * degree, 40 * degree};  ///< of the rays around that along the normal
 constexpr int per_ring = 6;
 constexpr int least_hits = 5;  ///< of 13 rays: with fewer nothing faces the point
 /// Of the ball that counts, from the smallest. Where branches meet, most are too large: of vertices there 99
 /// % are within 4 % of a branch's radius, and with the median within 8 %. Tubes gain up to 1 % by the median.
 constexpr double rank = 0.25;
-const double opposed =
+const double most_sheet_cosine =
     std::cos(120 * degree);  ///< largest cosine between the normals of sheets that face each other
 /// Largest cosine between normals of parallel sheets. Others meet: where the ball between them is below
 /// `least_slanted` of the longest edge or of the rim's radius, it lies in a fold that no single edge shows.
@@ -155,7 +154,7 @@ SheetDistance::Ball SheetDistance::ball(Vec3 p, Vec3 normal) const {
     const Bvh::RayHit hit = tree_.first_hit(p, d, sign);
     if (hit.face < 0) return;
     const Vec3 m = normal_at(hit.face, hit.b1, hit.b2), across = normal - m;
-    if (dot(normal, m) > opposed) return;
+    if (dot(normal, m) > most_sheet_cosine) return;
     // a ball of radius r around c touches both: p = c + r normal, p + distance d = c + r m; in the mean
     const double r = -sign * hit.distance * dot(d, across) / dot(across, across);
     if (r > 0) found[n++] = {r, dot(normal, m)};

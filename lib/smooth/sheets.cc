@@ -17,10 +17,10 @@
 namespace meshpipe {
 namespace {
 
-constexpr int steps = 25;                           // of each sign
+constexpr int sheet_steps = 25;                     // of each sign
 constexpr double forward = 0.5, backward = -0.526;  // waves of more than about 9 edges pass (Taubin)
 constexpr double least_cosine = 0.9;                // between normals of triangles whose edge is flipped
-constexpr int rounds = 4;  // of volume: what one holds back leaves the rest to others
+constexpr int volume_rounds = 4;  // of volume: what one holds back leaves the rest to others
 
 /// What each vertex is averaged with: along lines for those on lines where sheets meet, else all neighbors,
 /// as at the end of such a line, which would become ever shorter.
@@ -192,11 +192,11 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
   r.angle_before = mean_angle(joined, net.smooth);
   const std::vector<Vec3> start = joined.points;
   const Solids before = find_solids(joined);
-  for (int i = 0; i < steps; ++i)
+  for (int i = 0; i < sheet_steps; ++i)
     for (double share : {forward, backward}) step(net, start, r.within, share, joined.points);
   // moving vertices back takes volume again, which others then have to give
   int moved = 1;
-  for (int i = 0; i < rounds && moved > 0; ++i) {
+  for (int i = 0; i < volume_rounds && moved > 0; ++i) {
     Compliance compliance{{}, std::vector<double>(start.size(), r.within), start};
     for (char held : net.held) compliance.share.push_back(!held);
     match_volumes(joined, before.sides, before.volume, std::move(compliance));

@@ -18,7 +18,7 @@ constexpr double shortest = 0.3;
 constexpr double most_turn = 0.9;
 /// Rounds of independent operations: slivers lie in clusters along sharp edges, of which a round cures one
 /// each.
-constexpr int most_rounds = 60;
+constexpr int sliver_rounds = 60;
 
 /// A contraction of the edge of half-edge h, or a flip if gone < 0.
 struct Operation {
@@ -128,7 +128,7 @@ void remove_slivers(Mesh& mesh, const Mesh& soup, double spacing, double least,
   const int n_points = (int)mesh.points.size();
   EditMesh m(mesh.tris, n_points, {});
   std::vector<std::uint8_t> refused(3 * m.tris.size(), 0);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < sliver_rounds; ++round) {
     std::vector<Operation> chosen = independent(m, mesh.points, shortest * spacing, refused);
     if (chosen.empty()) break;
     for (;;) {

@@ -13,7 +13,7 @@ constexpr double side = 1000, gap = 50, head = 60;  ///< of one drawing, in unit
 constexpr int digits = 5;                           ///< of a coordinate: a twentieth of a unit at least
 
 /// Where a drawing stands in the picture; v points up, as in the plane.
-struct Frame {
+struct ChartFrame {
   Vec2 low, high;
   double scale, x;
   Vec2 operator()(Vec2 p) const { return {x + scale * (p.x - low.x), head + scale * (high.y - p.y)}; }
@@ -27,7 +27,7 @@ struct Triangles {
 
 /// Returns the path of the edges that `chosen(half_edge)` wants, each once. `point(vertex)` is in the plane.
 template <class Point, class Chosen>
-SvgPath edges(const Frame& frame, const Triangles& mesh, Point point, Chosen chosen) {
+SvgPath edges(const ChartFrame& frame, const Triangles& mesh, Point point, Chosen chosen) {
   SvgPath path(digits);
   for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) {
     if (mesh.opposite[h] > h || !chosen(h)) continue;
@@ -44,7 +44,7 @@ std::string chart_svg(const Chart& chart, const PlaneMesh& mesh, const std::stri
   for (Vec2 p : chart.uv) low = lower(low, p), high = upper(high, p);
   const double scale = side / std::max({high.x - low.x, high.y - low.y, 1e-300});
   const double width = scale * (high.x - low.x), height = scale * (high.y - low.y);
-  const Frame left{low, high, scale, gap}, right{low, high, scale, 2 * gap + width};
+  const ChartFrame left{low, high, scale, gap}, right{low, high, scale, 2 * gap + width};
   // lines at most a tenth as thick as the triangles are wide
   auto thickness = [&](std::size_t triangles) {
     const double triangle =

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int shades = 25;
 
-struct Box {
+struct Extent {
   Vec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
 };
 
-Box box_of(const std::vector<Vec2>& uv) {
-  Box box;
+Extent box_of(const std::vector<Vec2>& uv) {
+  Extent box;
   for (Vec2 p : uv) box.low = lower(box.low, p), box.high = upper(box.high, p);
   return box;
 }
@@ -65,12 +65,12 @@ std::string shade(int k) {
   return text;
 }
 
-constexpr double page_width = 1200, gap = 16, caption = 44, least_slot = 330;  ///< units of the picture
+constexpr double page_width = 1200, slot_gap = 16, caption = 44, least_slot = 330;  ///< units of the picture
 
 /// A chart as it is drawn.
 struct Drawing {
   std::vector<Vec2> uv;
-  Box box;
+  Extent box;
   std::vector<double> scale;  ///< log of the area scale per triangle
 
   explicit Drawing(const Chart& chart) : uv(laid_flat(chart.uv)), box(box_of(uv)), scale(log_scale(chart)) {}
@@ -138,31 +138,33 @@ std::string charts_svg(const std::vector<Chart>& charts, const std::vector<Param
     area += drawings.back().width() * drawings.back().height();
   }
   const double range = color_range(drawings);
-  const double unit = std::min(0.48 * (page_width - 2 * gap) / widest, 0.8 * page_width / std::sqrt(area));
+  const double unit =
+      std::min(0.48 * (page_width - 2 * slot_gap) / widest, 0.8 * page_width / std::sqrt(area));
   std::vector<int> order = identity(charts.size());
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return drawings[a].height() > drawings[b].height(); });
 
   std::vector<Vec2> corner(charts.size());
-  double x = gap, y = gap, row = 0;
+  double x = slot_gap, y = slot_gap, row = 0;
   for (int c : order) {
     const double slot = std::max(unit * drawings[c].width(), least_slot);
-    if (x > gap && x + slot + gap > page_width) x = gap, y += row + caption + gap, row = 0;
+    if (x > slot_gap && x + slot + slot_gap > page_width)
+      x = slot_gap, y += row + caption + slot_gap, row = 0;
     row = std::max(row, unit * drawings[c].height());
     corner[c] = {x, y};
-    x += slot + gap;
+    x += slot + slot_gap;
   }
   constexpr double swatch = 12;
-  const double key = y + row + caption + 2 * gap;
-  Svg svg(page_width, key + swatch + gap, "font-family=\"sans-serif\" font-size=\"13\"", true);
+  const double key = y + row + caption + 2 * slot_gap;
+  Svg svg(page_width, key + swatch + slot_gap, "font-family=\"sans-serif\" font-size=\"13\"", true);
   for (int c : order) {
     draw_triangles(svg, drawings[c], charts[c], corner[c], unit, range);
     draw_caption(svg, c, reports[c], drawings[c].scale.size(),
                  corner[c] + Vec2{0, unit * drawings[c].height() + 18});
   }
   for (int k = 0; k < shades; ++k)
-    svg.rectangle({gap + swatch * k, key}, {swatch, swatch}, "fill=\"" + shade(k) + '"');
-  svg.text({gap + swatch * shades + 10, key + 11},
+    svg.rectangle({slot_gap + swatch * k, key}, {swatch, swatch}, "fill=\"" + shade(k) + '"');
+  svg.text({slot_gap + swatch * shades + 10, key + 11},
            "area scale 1/" + shown(std::exp(range)) + " to " + shown(std::exp(range)));
   return svg.finish();
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double size = 900, disk_radius = 400;
 
 /// A square window on a level's plane: the point `center` is drawn at its middle, `scale` times as large.
-struct Frame {
+struct LevelFrame {
   Vec2 middle{size / 2, size / 2};
   double half = size / 2;
   Vec2 center = {};
@@ -30,9 +30,9 @@ struct Frame {
   }
 };
 
-constexpr int digits = 8;  ///< of coordinates: enough to enlarge a set that is a thousandth of the disk
+constexpr int level_digits = 8;  ///< of coordinates: enough to enlarge a set that is a thousandth of the disk
 
-void add_polygon(SvgPath& path, const Frame& frame, const std::vector<Vec2>& polygon, bool closed) {
+void add_polygon(SvgPath& path, const LevelFrame& frame, const std::vector<Vec2>& polygon, bool closed) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (i)
       path.line_to(frame(polygon[i]));
@@ -42,8 +42,8 @@ void add_polygon(SvgPath& path, const Frame& frame, const std::vector<Vec2>& pol
   if (closed) path.close();
 }
 
-SvgPath path_of(const Frame& frame, const std::vector<Vec2>& polygon, bool closed) {
-  SvgPath path(digits);
+SvgPath path_of(const LevelFrame& frame, const std::vector<Vec2>& polygon, bool closed) {
+  SvgPath path(level_digits);
   add_polygon(path, frame, polygon, closed);
   return path;
 }
@@ -60,7 +60,7 @@ std::vector<int> depths(const std::vector<Level>& levels) {
 }
 
 /// Draws the triangles of a level, in shades of the logarithm of their area scale.
-void draw_triangles(Svg& svg, const Frame& frame, const FilledDisk& disk, const Level& level) {
+void draw_triangles(Svg& svg, const LevelFrame& frame, const FilledDisk& disk, const Level& level) {
   constexpr std::array<const char*, 8> shades{"#f2f7fc", "#dde9f5", "#c3d9ee", "#a3c5e4",
                                               "#7dabd6", "#588fc4", "#3a72ad", "#245490"};
   std::vector<double> shrink(level.tris.size(), 0);
@@ -74,7 +74,7 @@ void draw_triangles(Svg& svg, const Frame& frame, const FilledDisk& disk, const 
     least = std::min(least, shrink[i]);
     most = std::max(most, shrink[i]);
   }
-  std::vector<SvgPath> path(shades.size(), SvgPath(digits));
+  std::vector<SvgPath> path(shades.size(), SvgPath(level_digits));
   for (std::size_t i = 0; i < level.tris.size(); ++i) {
     const Vec2 corner[3] = {level.uv[level.corners[i][0]], level.uv[level.corners[i][1]],
                             level.uv[level.corners[i][2]]};
@@ -88,8 +88,8 @@ void draw_triangles(Svg& svg, const Frame& frame, const FilledDisk& disk, const 
 }
 
 /// Returns the path where the zero level of the part's field crosses the triangles of a level.
-SvgPath cut_path(const Frame& frame, const CutMaps& maps, const Level& level) {
-  SvgPath path(digits);
+SvgPath cut_path(const LevelFrame& frame, const CutMaps& maps, const Level& level) {
+  SvgPath path(level_digits);
   for (std::size_t i = 0; i < level.tris.size(); ++i) {
     if (level.tris[i] >= maps.disk.part_tris) continue;
     const Tri &t = maps.disk.tris[level.tris[i]], &c = level.corners[i];
@@ -109,7 +109,7 @@ SvgPath cut_path(const Frame& frame, const CutMaps& maps, const Level& level) {
   return path;
 }
 
-void draw_map(Svg& svg, const Frame& frame, const CutMaps& maps, int l,
+void draw_map(Svg& svg, const LevelFrame& frame, const CutMaps& maps, int l,
               const std::vector<std::string>& names) {
   const Level& level = maps.levels[l];
   draw_triangles(svg, frame, maps.disk, level);
@@ -118,7 +118,7 @@ void draw_map(Svg& svg, const Frame& frame, const CutMaps& maps, int l,
   for (std::size_t i = 0; i < level.holes.size(); ++i) hole_of[level.holes[i]] = i;
   for (const Tri& c : level.corners)  // a fan's triangles end in its center, and follow each other
     if (hole_of[c[2]] >= 0) outline[hole_of[c[2]]].push_back(level.uv[c[0]]);
-  SvgPath holes(digits), sets(digits);
+  SvgPath holes(level_digits), sets(level_digits);
   for (const std::vector<Vec2>& o : outline) add_polygon(holes, frame, o, true);
   for (int child : level.children) add_polygon(sets, frame, maps.levels[child].border, true);
   draw(svg, holes, "fill=\"#e8e8e8\" stroke=\"#222222\"");
@@ -143,7 +143,8 @@ void draw_enlarged(Svg& svg, const CutMaps& maps, int l, const std::vector<std::
   const double width = std::max(high.x - low.x, high.y - low.y);
   constexpr double inset = 260, close = 0.25;
   if (!(width > 0) || width > close) return;
-  const Frame frame{{size - inset / 2, size - inset / 2}, inset / 2, 0.5 * (low + high), 0.7 * inset / width};
+  const LevelFrame frame{
+      {size - inset / 2, size - inset / 2}, inset / 2, 0.5 * (low + high), 0.7 * inset / width};
   const Vec2 corner{size - inset, size - inset}, extent{inset, inset};
   svg.clip("corner", corner, extent);
   svg.begin_group("clip-path=\"url(#corner)\"");

@@ -34,10 +34,11 @@ std::vector<double> field_of(const Mesh& m, const std::function<double(Vec3)>& f
 
 /// Cuts along the field's zero level, pulled straight; the sides become parts 0 and 1.
 Surface cut_straight(const Surface& in, const std::vector<double>& field, int sweeps, double snap = 0.1,
-                     const std::vector<Hold>& given = {}) {
+                     const std::vector<LineVertex>& given = {}) {
   Surface s = in;
   LevelLine line = zero_level(s, field);
-  const std::vector<Hold> hold = given.empty() ? std::vector<Hold>(field.size(), Hold::moves) : given;
+  const std::vector<LineVertex> hold =
+      given.empty() ? std::vector<LineVertex>(field.size(), LineVertex::moves) : given;
   pull_straight({s, opposite_halfedges(s.tris, (int)s.points.size())}, line, hold, snap, sweeps);
   std::vector<int> side;
   std::vector<int> none;
@@ -89,7 +90,7 @@ TEST(LevelLine, IsStraightAcrossAFold) {
 TEST(LevelLine, RunsThroughVerticesOrPassesWellOff) {
   const Surface plane = grid(24);
   LevelLine line = zero_level(plane, field_of(plane, [](Vec3 p) { return p.x - 9.03 - 0.3 * p.y; }));
-  const std::vector<Hold> hold(plane.points.size(), Hold::moves);
+  const std::vector<LineVertex> hold(plane.points.size(), LineVertex::moves);
   pull_straight({plane, opposite_halfedges(plane.tris, (int)plane.points.size())}, line, hold, 0.1, 30);
   int on = 0;
   for (signed char s : line.sign) on += s == 0;
@@ -105,7 +106,7 @@ TEST(LevelLine, RunsThroughVerticesOrPassesWellOff) {
 TEST(LevelLine, IsHeld) {
   const Surface plane = grid(20);
   const std::vector<double> field = field_of(plane, [](Vec3 p) { return p.x - 9.6 - 0.8 * std::sin(p.y); });
-  std::vector<Hold> hold(plane.points.size(), Hold::stays);
+  std::vector<LineVertex> hold(plane.points.size(), LineVertex::stays);
   Surface s = cut_straight(plane, field, 50, 0.1, hold);
   const std::vector<int>& side = s.face.get<int>("part");
   for (std::size_t t = 0; t < side.size(); ++t)
