@@ -12,7 +12,7 @@
 #include "lib/feature/feature.h"
 #include "tools/common.h"
 #include "tools/files.h"
-#include "tools/report/removed.h"
+#include "tools/removed.h"
 
 using namespace meshpipe;
 

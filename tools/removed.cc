@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/report/removed.h"
+#include "tools/removed.h"
 
 #include <cstdio>
 
