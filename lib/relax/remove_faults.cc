@@ -69,6 +69,7 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   const Mesh mesh{s.points, s.mesh.tris};
   std::vector<Box> box(mesh.tris.size());
   std::vector<char> same(mesh.tris.size(), 0);
+  std::vector<int> seen, changed;  // triangles before t
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
     if (s.mesh.dead(t)) continue;
     const auto [a, b, c] = mesh.tris[t];
@@ -81,17 +82,18 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
         k <= rules::bearable_kappa && !is_forced(s, t, k, known))
       sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
-    for (int u = 0; u < t; ++u)
-      if (!s.mesh.dead(u) && !(same[t] && same[u]) && overlap(box[t], box[u]) &&
-          triangles_intersect(mesh, u, t))
-        pairs.push_back({u, t});
-    for (std::size_t i = 0; i < missed.size(); ++i)
-      if (const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
-          d <= (1 + rules::as_near) * distance[i]) {
-        const bool nearer = d < (1 - rules::as_near) * distance[i];
-        bearable[i] = nearer ? most : std::min(most, bearable[i]);
-        distance[i] = std::min(d, distance[i]);
-      }
+    for (int u : same[t] ? changed : seen)
+      if (overlap(box[t], box[u]) && triangles_intersect(mesh, u, t)) pairs.push_back({u, t});
+    seen.push_back(t);
+    if (!same[t]) changed.push_back(t);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
+      if (!overlap(box[t], {missed[i] - reach, missed[i] + reach})) continue;
+      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
+      if (d > (1 + rules::as_near) * distance[i]) continue;
+      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
+      distance[i] = std::min(d, distance[i]);
+    }
   }
   for (std::size_t i = 0; i < missed.size(); ++i)
     sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
@@ -108,14 +110,11 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
 
 /// As triangles_intersect, without a copy of the mesh.
 bool intersect(const State& s, int t, int u) {
-  Mesh pair{{}, {s.mesh.tris[t], s.mesh.tris[u]}};
-  std::vector<int> vertices;
-  for (Tri& corners : pair.tris)
-    for (int& v : corners) {
-      const auto row = std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
-      if (row == (int)vertices.size()) vertices.push_back(v), pair.points.push_back(s.points[v]);
-      v = (int)row;
-    }
+  Mesh pair{{}, {{0, 1, 2}, {3, 4, 5}}};
+  for (int w : {t, u})
+    for (int v : s.mesh.tris[w]) pair.points.push_back(s.points[v]);
+  for (int i = 0; i < 9; ++i)
+    if (s.mesh.tris[t][i / 3] == s.mesh.tris[u][i % 3]) pair.tris[1][i % 3] = i / 3;
   return triangles_intersect(pair, 0, 1);
 }
 
