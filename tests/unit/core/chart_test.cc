@@ -65,7 +65,7 @@ TEST(Chart, VerticesAreLocatedExactly) {
 //  3---2
 //  | / |   a square in two parts; the diagonal is in both
 //  0---1
-static Surface square() {
+static Surface square_in_two() {
   Surface s;
   s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   s.tris = {{0, 1, 2}, {0, 2, 3}};
@@ -74,7 +74,7 @@ static Surface square() {
 }
 
 static Table rows(std::vector<std::pair<int, int>> part_vertex) {
-  Surface s = square();
+  Surface s = square_in_two();
   std::vector<int> part, vertex;
   std::vector<double> u, v;
   for (auto [p, i] : part_vertex) {
@@ -92,7 +92,7 @@ static Table rows(std::vector<std::pair<int, int>> part_vertex) {
 }
 
 TEST(Chart, MadeFromRowsInAnyOrder) {
-  auto charts = make_charts(square(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {0, 2}}), 2);
+  auto charts = make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {0, 2}}), 2);
   ASSERT_EQ(charts.size(), 2u);
   EXPECT_EQ(charts[0].mesh.vertex, (std::vector<int>{0, 2, 3}));
   EXPECT_EQ(charts[0].uv[2], (Vec2{0, 1}));
@@ -101,12 +101,16 @@ TEST(Chart, MadeFromRowsInAnyOrder) {
 }
 
 TEST(Chart, WrongRowsAreNamed) {
-  EXPECT_THROW(make_charts(square(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}}), 2), BadInput);
-  EXPECT_THROW(make_charts(square(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {0, 1}}), 2), BadInput);
-  EXPECT_THROW(make_charts(square(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {1, 1}}), 2), BadInput);
-  EXPECT_THROW(make_charts(square(), rows({{1, 2}, {0, 3}, {2, 0}, {0, 0}, {1, 1}, {0, 2}}), 2), BadInput);
-  EXPECT_THROW(make_charts(square(), rows({{1, 2}, {0, 3}, {1, 7}, {0, 0}, {1, 1}, {0, 2}}), 2), BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}}), 2), BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {0, 1}}), 2),
+               BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {1, 1}}), 2),
+               BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {2, 0}, {0, 0}, {1, 1}, {0, 2}}), 2),
+               BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), rows({{1, 2}, {0, 3}, {1, 7}, {0, 0}, {1, 1}, {0, 2}}), 2),
+               BadInput);
   Table mirrored = rows({{1, 2}, {0, 3}, {1, 0}, {0, 0}, {1, 1}, {0, 2}});
   for (double& x : mirrored.get<double>("u")) x = -x;
-  EXPECT_THROW(make_charts(square(), mirrored, 2), BadInput);
+  EXPECT_THROW(make_charts(square_in_two(), mirrored, 2), BadInput);
 }

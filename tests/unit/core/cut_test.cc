@@ -19,7 +19,7 @@ namespace {
 //  | / |
 //  |/0 |
 //  0---1
-Surface square() {
+Surface square_surface() {
   Surface s;
   s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   s.tris = {{0, 1, 2}, {0, 2, 3}};
@@ -27,7 +27,7 @@ Surface square() {
 }
 
 // n x n squares of two triangles over the unit square, lifted to a wavy surface
-Surface grid(int n) {
+Surface wavy_squares(int n) {
   Surface s;
   static_cast<Mesh&>(s) = unit_squares(n);
   for (Vec3& p : s.points) {
@@ -95,7 +95,7 @@ double smallest_angle(const Mesh& m) {
 //  |/: |
 //  0---1
 TEST(Cut, SplitsATriangleWithTwoCrossedEdgesIntoThree) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   EXPECT_EQ(cut_by_scalar_field(s, {-0.5, 0.5, 0.5, -0.5}, {}, side), 3);
   EXPECT_EQ(s.points.size(), 7u);
@@ -115,7 +115,7 @@ TEST(Cut, SplitsATriangleWithTwoCrossedEdgesIntoThree) {
 //  |/0.|
 //  0---1
 TEST(Cut, ALevelThroughACornerSplitsInTwo) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   EXPECT_EQ(cut_by_scalar_field(s, {0, -1, 1, 1}, {}, side), 1);
   EXPECT_EQ(s.tris[0], (Tri{1, 4, 0}));
@@ -125,7 +125,7 @@ TEST(Cut, ALevelThroughACornerSplitsInTwo) {
 }
 
 TEST(Cut, ALevelAlongAnEdgeOrNowhereCutsNothing) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   EXPECT_EQ(cut_by_scalar_field(s, {0, -1, 0, 1}, {}, side), 0);
   EXPECT_EQ(side, (std::vector<int>{0, 1}));
@@ -135,17 +135,17 @@ TEST(Cut, ALevelAlongAnEdgeOrNowhereCutsNothing) {
   EXPECT_EQ(side, (std::vector<int>{0, 0}));
   EXPECT_EQ(cut_by_scalar_field(s, {0, 0, 0, 0}, {}, side), 0);
   EXPECT_EQ(side, (std::vector<int>{1, 1}));  // field >= 0
-  EXPECT_EQ(s.tris, square().tris);
+  EXPECT_EQ(s.tris, square_surface().tris);
 }
 
 TEST(Cut, ACrossingCloseToAVertexIsMovedToIt) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   // the level passes 0 at 5 % of the edges 0-1 and 0-2, and 1 and 2 are on the same side
   EXPECT_EQ(cut_by_scalar_field(s, {-0.05, 0.95, 0.95, -1}, {}, side, 0.1), 1);
   EXPECT_EQ(side, (std::vector<int>{1, 1, 0}));
   // with less snap it stays where it is
-  s = square();
+  s = square_surface();
   EXPECT_EQ(cut_by_scalar_field(s, {-0.05, 0.95, 0.95, -1}, {}, side, 0.01), 3);
   EXPECT_NEAR(s.points[4].x, 0.05, 1e-15);
 }
@@ -167,7 +167,7 @@ TEST(Cut, DoesNotPinchTheInterface) {
 }
 
 TEST(Cut, NeverPutsAWholeTriangleOnTheLevel) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   // all of triangle 0 is close to the level, seen from 3
   cut_by_scalar_field(s, {-0.01, -0.01, 0.011, 1}, {}, side, 0.4);
@@ -178,7 +178,7 @@ TEST(Cut, NeverPutsAWholeTriangleOnTheLevel) {
 
 //  the inactive triangle 1 is split along with the edge 0-2 that it shares, and has no side
 TEST(Cut, SplitsInactiveNeighborsConformingly) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   EXPECT_EQ(cut_by_scalar_field(s, {-0.5, 0.5, 0.5, -0.5}, {1, 0}, side), 2);
   expect_oriented_manifold(s);
@@ -188,7 +188,7 @@ TEST(Cut, SplitsInactiveNeighborsConformingly) {
 }
 
 TEST(Cut, InterpolatesVertexColumnsAndCopiesFaceColumns) {
-  Surface s = square();
+  Surface s = square_surface();
   s.vertex.set<double>("size", {1, 2, 3, 4});
   s.vertex.set<int>("kind", {7, 7, 9, 9});
   s.face.set<int>("patch", {5, 6});
@@ -211,7 +211,7 @@ TEST(Cut, InterpolatesVertexColumnsAndCopiesFaceColumns) {
 }
 
 TEST(Cut, AddsTheOriginWhenItIsMissing) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   cut_by_scalar_field(s, {-0.5, 0.5, 0.5, -0.5}, {}, side);
   EXPECT_EQ(s.face.get<int>("origin"), (std::vector<int>{0, 1, 0, 0, 1, 1}));
@@ -224,7 +224,7 @@ TEST(Cut, ModelBitsFollowTheirEdges) {
                                     {0, -1, 1, 0},
                                     {-1, 1, 0, -1},
                                     {1, -2, 3, -4}}) {
-    Surface s = square();
+    Surface s = square_surface();
     s.face.set<std::uint8_t>("model", {0b101, 0b001});
     std::vector<int> side;
     cut_by_scalar_field(s, field, {}, side, 0.01);
@@ -239,7 +239,7 @@ TEST(Cut, ModelBitsFollowTheirEdges) {
 }
 
 TEST(Cut, RefusesColumnsOfTheWrongLength) {
-  Surface s = square();
+  Surface s = square_surface();
   std::vector<int> side;
   EXPECT_THROW(cut_by_scalar_field(s, {1, 2}, {}, side), std::logic_error);
   EXPECT_THROW(cut_by_scalar_field(s, {1, 2, 3, 4}, {1}, side), std::logic_error);
@@ -251,7 +251,7 @@ TEST(Cut, KeepsTheSurfaceAndMakesNoSlivers) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int round = 0; round < 60; ++round) {
-    Surface s = grid(8);
+    Surface s = wavy_squares(8);
     const Surface before = s;
     std::vector<double> field(s.points.size());
     for (std::size_t v = 0; v < field.size(); ++v) {
@@ -297,7 +297,7 @@ TEST(Cut, KeepsTheSurfaceAndMakesNoSlivers) {
 
 TEST(Cut, DoesNotDependOnTheFirstCorners) {
   // the same surface with rotated corners gives the same set of points
-  Surface a = grid(5), b = a;
+  Surface a = wavy_squares(5), b = a;
   for (Tri& t : b.tris) t = {t[1], t[2], t[0]};
   std::vector<double> field;
   for (Vec3 p : a.points) field.push_back(p.x + 0.37 * p.y - 0.61);

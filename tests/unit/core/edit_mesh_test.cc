@@ -37,7 +37,7 @@ void expect_sound(const EditMesh& m) {
 //  |\  |\  |
 //  | \ | \ |
 //  0---1---2
-EditMesh grid() {
+EditMesh two_by_two() {
   std::vector<Tri> t;
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 2; ++x) {
@@ -55,7 +55,7 @@ int half_edge(const EditMesh& m, int a, int b) {
 }
 
 TEST(EditMesh, StarsAndValences) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   expect_sound(m);
   EXPECT_EQ(m.valence(4), 6);
   EXPECT_EQ(m.valence(0), 2);
@@ -67,7 +67,7 @@ TEST(EditMesh, StarsAndValences) {
 }
 
 TEST(EditMesh, FlipTurnsTheEdge) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   m.flip(half_edge(m, 1, 3));
   expect_sound(m);
   EXPECT_TRUE(m.joined(0, 4));
@@ -79,7 +79,7 @@ TEST(EditMesh, FlipTurnsTheEdge) {
 }
 
 TEST(EditMesh, FlipKeepsHardEdgesInPlace) {
-  EditMesh m(grid().tris, 9, {0, 0b001, 0, 0, 0, 0, 0, 0});  // edge 1-4 of triangle 1
+  EditMesh m(two_by_two().tris, 9, {0, 0b001, 0, 0, 0, 0, 0, 0});  // edge 1-4 of triangle 1
   m.flip(half_edge(m, 1, 3));
   expect_sound(m);
   EXPECT_TRUE(m.hard[half_edge(m, 1, 4)]);
@@ -87,7 +87,7 @@ TEST(EditMesh, FlipKeepsHardEdgesInPlace) {
 }
 
 TEST(EditMesh, SplitAddsAVertexOfValenceFour) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   int v = m.split(half_edge(m, 1, 4));
   EXPECT_EQ(v, 9);
   expect_sound(m);
@@ -100,7 +100,7 @@ TEST(EditMesh, SplitAddsAVertexOfValenceFour) {
 }
 
 TEST(EditMesh, CollapseTakesAVertexOut) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   const int v = m.split(half_edge(m, 4, 3));
   const int h = half_edge(m, v, 4);
   ASSERT_TRUE(m.can_collapse(h, v));
@@ -131,7 +131,7 @@ TEST(EditMesh, VerticesOfValenceThreeCollapse) {
 }
 
 TEST(EditMesh, CollapseIntoTheBorder) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   const int h = half_edge(m, 4, 5);
   EXPECT_FALSE(m.can_collapse(h, 5)) << "the border does not leave its line";
   ASSERT_TRUE(m.can_collapse(h, 4));
@@ -142,7 +142,7 @@ TEST(EditMesh, CollapseIntoTheBorder) {
 
 TEST(EditMesh, CollapseAlongTheBorderEitherWay) {
   for (int gone : {1, 2}) {
-    EditMesh m = grid();
+    EditMesh m = two_by_two();
     const int h = half_edge(m, 1, 2);
     ASSERT_LT(m.opp[h], 0);
     ASSERT_TRUE(m.can_collapse(h, gone));
@@ -155,7 +155,7 @@ TEST(EditMesh, CollapseAlongTheBorderEitherWay) {
 
 // Vertex 0 has one triangle. Merged along the border it takes that with it.
 TEST(EditMesh, TheEarOfABorderMergesOnly) {
-  EditMesh m = grid();
+  EditMesh m = two_by_two();
   const int h = half_edge(m, 0, 1);
   EXPECT_FALSE(m.can_collapse(h, 0));
   ASSERT_TRUE(m.can_collapse(h, 0, true));
@@ -169,7 +169,7 @@ TEST(EditMesh, TheEarOfABorderMergesOnly) {
 
 TEST(EditMesh, CollapseAlongAModelEdge) {
   // the line 1-4-7 through the middle
-  EditMesh m(grid().tris, 9, {0, 0b001, 0, 0, 0, 0b001, 0, 0});
+  EditMesh m(two_by_two().tris, 9, {0, 0b001, 0, 0, 0, 0b001, 0, 0});
   EXPECT_TRUE(m.hard[half_edge(m, 4, 7)]);
   EXPECT_FALSE(m.can_collapse(half_edge(m, 4, 5), 4)) << "a vertex goes along its line only";
   ASSERT_TRUE(m.can_collapse(half_edge(m, 4, 7), 4));

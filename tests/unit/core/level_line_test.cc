@@ -19,7 +19,7 @@ using namespace meshpipe;
 namespace {
 
 // n x n unit squares of two triangles, y folded up by 90 degrees beyond `fold`
-Surface grid(int n, double fold = 1e9) {
+Surface folded_squares(int n, double fold = 1e9) {
   Surface s;
   static_cast<Mesh&>(s) = unit_squares(n);
   for (Vec3& p : s.points) p = {p.x, std::min(p.y, fold), std::max(0., p.y - fold)};
@@ -52,7 +52,7 @@ Surface cut_straight(const Surface& in, const std::vector<double>& field, int sw
 //    |  /\  /\  /       a wave of four edges, twice as long as high, through a plane: nothing is left of it,
 //    | /  \/  \/        and it has passed over vertices; its ends meet the border at right angles
 TEST(LevelLine, LosesItsTeeth) {
-  const Surface plane = grid(24);
+  const Surface plane = folded_squares(24);
   const auto wave = [](Vec3 p) { return p.x - 12.3 - 2 * std::sin(2 * 3.14159265 * p.y / 4); };
   const Interfaces before = measure_interfaces(cut_straight(plane, field_of(plane, wave), 0));
   const Surface after = cut_straight(plane, field_of(plane, wave), 100);
@@ -66,7 +66,7 @@ TEST(LevelLine, LosesItsTeeth) {
 
 // a circle shrinks a little where nothing holds it, and stays a circle
 TEST(LevelLine, KeepsItsShapeInTheLarge) {
-  const Surface plane = grid(40);
+  const Surface plane = folded_squares(40);
   const auto circle = [](Vec3 p) { return 12.2 - std::hypot(p.x - 20.1, p.y - 19.8); };
   const Surface after = cut_straight(plane, field_of(plane, circle), 30);
   const double length = measure_interfaces(after).length * diagonal(plane);
@@ -77,7 +77,7 @@ TEST(LevelLine, KeepsItsShapeInTheLarge) {
 
 // across a fold a line is straight on the surface, whatever it does in space
 TEST(LevelLine, IsStraightAcrossAFold) {
-  const Surface folded = grid(20, 10), flat = grid(20);
+  const Surface folded = folded_squares(20, 10), flat = folded_squares(20);
   auto slanted = [](Vec3 p) { return p.x - 4.37 - 0.5 * p.y; };
   const std::vector<double> field = field_of(flat, slanted);
   const Interfaces there = measure_interfaces(cut_straight(flat, field, 0, 0)),
@@ -88,7 +88,7 @@ TEST(LevelLine, IsStraightAcrossAFold) {
 
 //  2---3    no crossing comes closer to a vertex than the snap, and no triangle is inverted
 TEST(LevelLine, RunsThroughVerticesOrPassesWellOff) {
-  const Surface plane = grid(24);
+  const Surface plane = folded_squares(24);
   LevelLine line = zero_level(plane, field_of(plane, [](Vec3 p) { return p.x - 9.03 - 0.3 * p.y; }));
   const std::vector<LineVertex> hold(plane.points.size(), LineVertex::moves);
   pull_straight({plane, opposite_halfedges(plane.tris, (int)plane.points.size())}, line, hold, 0.1, 30);
@@ -104,7 +104,7 @@ TEST(LevelLine, RunsThroughVerticesOrPassesWellOff) {
 
 // vertices that stay keep the line where it is
 TEST(LevelLine, IsHeld) {
-  const Surface plane = grid(20);
+  const Surface plane = folded_squares(20);
   const std::vector<double> field = field_of(plane, [](Vec3 p) { return p.x - 9.6 - 0.8 * std::sin(p.y); });
   std::vector<LineVertex> hold(plane.points.size(), LineVertex::stays);
   Surface s = cut_straight(plane, field, 50, 0.1, hold);

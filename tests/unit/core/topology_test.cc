@@ -10,12 +10,12 @@
 
 using namespace meshpipe;
 
-//  6--7--8      grid(2, 2): two triangles a square, the diagonal from lower left to upper right
+//  6--7--8      plane_grid(2, 2): two triangles a square, the diagonal from lower left to upper right
 //  |/ |/ |
 //  3--4--5
 //  |/ |/ |
 //  0--1--2
-static Mesh grid(int nx, int ny) {
+static Mesh plane_grid(int nx, int ny) {
   Mesh m;
   for (int j = 0; j <= ny; ++j)
     for (int i = 0; i <= nx; ++i) m.points.push_back({(double)i, (double)j, 0});
@@ -128,7 +128,7 @@ TEST(Topology, LargeMeshesAreMatchedAsSmallOnesAre) {
 }
 
 TEST(Topology, PartsHaveOppositesOfTheirOwn) {
-  Mesh m = grid(2, 1);
+  Mesh m = plane_grid(2, 1);
   auto o = opposite_halfedges(m.tris, 6);
   std::vector<int> label{0, 0, 1, 1}, component;
   EXPECT_EQ(components(o, component), 1);
@@ -141,7 +141,7 @@ TEST(Topology, PartsHaveOppositesOfTheirOwn) {
 //  |/ |/ |
 //  0--1--2
 TEST(Topology, BoundaryLoopHasItsTrianglesOnTheLeft) {
-  Mesh m = grid(2, 1);
+  Mesh m = plane_grid(2, 1);
   auto loops = boundary_loops(opposite_halfedges(m.tris, 6));
   ASSERT_EQ(loops.size(), 1u);
   std::vector<int> v;
@@ -158,7 +158,7 @@ TEST(Topology, FindsThePinchedVertex) {
   Mesh m{{{0, 0, 0}, {-1, 1, 0}, {1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}, {{0, 2, 1}, {0, 3, 4}}};
   EXPECT_EQ(find_pinched_vertex(m.tris, opposite_halfedges(m.tris, 5), 5), 0);
   EXPECT_THROW(topology_of(m), NotAdmissible);
-  Mesh g = grid(3, 3);
+  Mesh g = plane_grid(3, 3);
   EXPECT_EQ(find_pinched_vertex(g.tris, opposite_halfedges(g.tris, 16), 16), -1);
 }
 
@@ -170,7 +170,7 @@ TEST(Topology, GenusAndLoopsOfKnownSurfaces) {
   EXPECT_EQ(t.eta_geo, 0);
   EXPECT_FALSE(admissible(t));
 
-  t = topology_of(grid(4, 4));
+  t = topology_of(plane_grid(4, 4));
   EXPECT_EQ(t.genus, 0);
   EXPECT_EQ(t.loops, 1);
   EXPECT_DOUBLE_EQ(t.area, 16);

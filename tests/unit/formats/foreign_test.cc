@@ -12,17 +12,9 @@
 #include "formats/formats.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
+#include "tests/unit/formats/failure.h"
 
 using namespace meshpipe;
-
-static std::string failure(std::string_view bytes) {
-  try {
-    read_any(bytes, "in");
-    return "";
-  } catch (const BadInput& e) {
-    return e.what();
-  }
-}
 
 static double area(const Stream& s) { return total_area(s.surface); }
 

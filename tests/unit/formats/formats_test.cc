@@ -12,6 +12,7 @@
 
 #include "formats/foreign/inria.h"
 #include "lib/core/error.h"
+#include "tests/unit/formats/failure.h"
 
 using namespace meshpipe;
 namespace fs = std::filesystem;
@@ -29,19 +30,6 @@ static std::vector<fs::path> examples(const char* folder) {
     all.push_back(entry.path());
   std::sort(all.begin(), all.end());
   return all;
-}
-
-/// The message of the BadInput that reading throws; empty if it succeeds. Any other exception fails the test.
-static std::string failure(std::string_view bytes,
-                           Stream (*read)(std::string_view, const std::string&) = read_any) {
-  try {
-    read(bytes, "in");
-    return "";
-  } catch (const BadInput& e) {
-    return e.what();
-  } catch (const UpstreamFailed& e) {
-    return "in:1: " + e.program + " failed";
-  }
 }
 
 /// One line that names a line or byte.
@@ -420,7 +408,7 @@ TEST(Ply, CountsAreNotTrusted) {
   EXPECT_PRED1(names_a_place, failure(text + "-3 0 0 0\n"));
 }
 
-static const char* const msh =
+static const char* const tagged_msh =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Comments\nanything $at all\n$EndComments\n"
     "$PhysicalNames\n3\n2 7 \"outer wall\"\n1 7 \"edge\"\n2 9 \"lid\"\n$EndPhysicalNames\n"
     "$Nodes\n4\n10 0 0 0\n2 1 0 0\n30 1 1 0\n4 0 1 0\n$EndNodes\n"
@@ -428,7 +416,7 @@ static const char* const msh =
     "4\n$EndElements\n";
 
 TEST(Msh, PhysicalTagsAreThePatchesAndElsewhereElementaryOnes) {
-  const Stream s = read_any(msh, "in");
+  const Stream s = read_any(tagged_msh, "in");
   EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{7, 9 + 5, 9, 9}));
   EXPECT_EQ(s.surface.tris[1], (Tri{0, 2, 3}));
   EXPECT_EQ(s.name_of(2, 7), "outer wall");
@@ -441,7 +429,7 @@ TEST(Msh, PhysicalTagsAreThePatchesAndElsewhereElementaryOnes) {
 
 TEST(Msh, OtherVersionsAndBadNodesAreRefused) {
   auto with = [](const char* from, const char* to) {
-    std::string bytes = msh;
+    std::string bytes = tagged_msh;
     return bytes.replace(bytes.find(from), std::strlen(from), to);
   };
   EXPECT_EQ(failure(with("2.2 0", "3 0")), "in:2: msh version 3, expected 1, 2, 4 or 4.1");
@@ -456,7 +444,7 @@ TEST(Msh, OtherVersionsAndBadNodesAreRefused) {
 }
 
 TEST(Msh, NamesWithoutDimensionBelongToTheElementsThatHaveTheirTag) {
-  std::string bytes = msh;
+  std::string bytes = tagged_msh;
   const std::string names = "3\n2 7 \"outer wall\"\n1 7 \"edge\"\n2 9 \"lid\"\n";
   bytes.replace(bytes.find(names), names.size(), "3\n7 \"wall\"\n9 \"lid\"\n8 \"fluid\"\n");
   const Stream s = read_any(bytes, "in");
@@ -640,7 +628,8 @@ TEST(Vtk, CellsThatAreNoSurfaceAreLeftOutWithTheirData) {
 
 TEST(Formats, EveryReaderSurvivesDamage) {
   std::vector<std::string> files = {
-      msh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", std::string("solid a\n") + facet + "endsolid a\n",
+      tagged_msh, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+      std::string("solid a\n") + facet + "endsolid a\n",
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 2 3\ng b\nf 1/2/3 2//4 -1 -2\n"};
   for (const Writer& w : writers())
     for (bool ascii : {true, false})

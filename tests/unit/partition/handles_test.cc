@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
@@ -13,13 +14,13 @@ using namespace meshpipe;
 
 namespace {
 
-constexpr double tau = 6.283185307179586;
+constexpr double full_turn = 2 * std::numbers::pi;
 
-Mesh torus(int n, int m) {
+Mesh ring(int n, int m) {
   Mesh s;
   for (int j = 0; j < m; ++j)
     for (int i = 0; i < n; ++i) {
-      const double x = tau * i / n, y = tau * j / m, r = 2 + 0.7 * std::cos(y);
+      const double x = full_turn * i / n, y = full_turn * j / m, r = 2 + 0.7 * std::cos(y);
       s.points.push_back({r * std::cos(x), r * std::sin(x), 0.7 * std::sin(y)});
     }
   for (int j = 0; j < m; ++j)
@@ -36,7 +37,7 @@ Mesh torus(int n, int m) {
 
 // The shortest loop that leaves a torus in one piece goes once round its tube; its two sides are rings.
 TEST(Handles, ATorusIsCutRoundItsTube) {
-  const Mesh m = torus(60, 24);
+  const Mesh m = ring(60, 24);
   const auto opposite = opposite_halfedges(m.tris, (int)m.points.size());
   const auto loops = handle_loops({m, opposite}, 1);
   ASSERT_EQ(loops.size(), 1u);
@@ -46,7 +47,7 @@ TEST(Handles, ATorusIsCutRoundItsTube) {
     EXPECT_EQ(target(m.tris, h), origin(m.tris, loops[0][(i + 1) % loops[0].size()]));
     length += norm(m.points[target(m.tris, h)] - m.points[origin(m.tris, h)]);
   }
-  EXPECT_LT(length, 1.1 * tau * 0.7);
+  EXPECT_LT(length, 1.1 * full_turn * 0.7);
   std::vector<int> label = label_by_sides({m, opposite}, loops);
   EXPECT_EQ(*std::min_element(label.begin(), label.end()), 0);
   EXPECT_EQ(*std::max_element(label.begin(), label.end()), 1);
@@ -56,7 +57,7 @@ TEST(Handles, ATorusIsCutRoundItsTube) {
 
 // No loop where there is no handle left, and none round a border.
 TEST(Handles, NoMoreLoopsThanHandles) {
-  Mesh m = torus(30, 12);
+  Mesh m = ring(30, 12);
   m.tris.erase(m.tris.begin() + 100, m.tris.begin() + 102);
   const auto opposite = opposite_halfedges(m.tris, (int)m.points.size());
   EXPECT_EQ(handle_loops({m, opposite}, 2).size(), 1u);

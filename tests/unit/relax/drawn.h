@@ -9,6 +9,14 @@
 
 namespace meshpipe {
 
+/// A mesh as a surface whose size asks for this number of triangles.
+inline Surface sized(const Mesh& mesh, double triangles) {
+  Surface s = surface_of(mesh);
+  const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
+  s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
+  return s;
+}
+
 /// A surface as the lifted mesh of itself: every vertex at its own place.
 inline LiftedMesh lifted_of(const Surface& s) {
   LiftedMesh m;

@@ -19,13 +19,6 @@ using namespace meshpipe;
 
 namespace {
 
-Surface sized(const Mesh& mesh, double triangles) {
-  Surface s = surface_of(mesh);
-  const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
-  s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
-  return s;
-}
-
 /// To be meshed with half as many triangles.
 Surface slivered_sphere(int triangles, double share, int seed) {
   Surface s = sized(sphere(triangles), triangles / 2);

@@ -17,13 +17,6 @@ using namespace meshpipe;
 
 namespace {
 
-Surface sized(const Mesh& mesh, double triangles) {
-  Surface s = surface_of(mesh);
-  const double h = std::sqrt(4 * total_area(mesh) / (std::sqrt(3.0) * triangles));
-  s.vertex.set("size", std::vector<double>(mesh.points.size(), h));
-  return s;
-}
-
 std::vector<int> all_triangles(const Mesh& mesh) {
   std::vector<int> all(mesh.tris.size());
   std::iota(all.begin(), all.end(), 0);

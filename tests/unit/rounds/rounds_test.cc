@@ -6,7 +6,7 @@
 namespace meshpipe {
 namespace {
 
-Outcome missed(const std::string& requirement, double value) {
+Outcome outcome_missing(const std::string& requirement, double value) {
   Outcome o;
   o.status = 6;
   o.program = "mcheck";
@@ -20,7 +20,7 @@ Outcome missed(const std::string& requirement, double value) {
 std::string verdict_of(const std::vector<std::pair<const char*, double>>& rounds, bool bounded = true) {
   std::string text;
   for (const auto& [requirement, value] : rounds) {
-    Outcome o = missed(requirement, value);
+    Outcome o = outcome_missing(requirement, value);
     o.bounded_distance = bounded;
     text += verdict_block(text, o);
   }
@@ -30,7 +30,7 @@ std::string verdict_of(const std::vector<std::pair<const char*, double>>& rounds
 bool asks_for_another(const std::string& verdict) { return verdict.ends_with("next=refine\n"); }
 
 TEST(rounds, a_block_has_one_line_per_fact) {
-  EXPECT_EQ(verdict_block("", missed("kappa", 0.03)),
+  EXPECT_EQ(verdict_block("", outcome_missing("kappa", 0.03)),
             "round=1\nstatus=6\nprogram=mcheck\nmessage=contract missed\nfailure=kappa 0.03 0.1 12 0 1 2\n"
             "score=kappa 0.03\ncount=kept\nnext=refine\n");
   EXPECT_EQ(verdict_block("", Outcome{}), "round=1\nstatus=0\nprogram=\nmessage=\ncount=kept\nnext=stop\n");
@@ -81,17 +81,17 @@ TEST(rounds, requirements_without_a_score_go_on_until_the_rounds_are_over) {
 }
 
 TEST(rounds, without_refined_sizes_there_is_no_other) {
-  Outcome o = missed("kappa", 0.01);
+  Outcome o = outcome_missing("kappa", 0.01);
   o.refined = 0;
   EXPECT_FALSE(is_repeated("", o));
 }
 
 TEST(rounds, the_count_is_given_up_after_two_rounds_or_for_a_distance) {
-  EXPECT_NE(verdict_block("", missed("kappa", 0.01)).find("count=kept"), std::string::npos);
+  EXPECT_NE(verdict_block("", outcome_missing("kappa", 0.01)).find("count=kept"), std::string::npos);
   const std::string one = verdict_of({{"kappa", 0.01}}, false);
   EXPECT_EQ(one.find("count=free"), std::string::npos);
-  EXPECT_NE(verdict_block(one, missed("kappa", 0.03)).find("count=free"), std::string::npos);
-  Outcome o = missed("hausdorff", 0.01);
+  EXPECT_NE(verdict_block(one, outcome_missing("kappa", 0.03)).find("count=free"), std::string::npos);
+  Outcome o = outcome_missing("hausdorff", 0.01);
   o.bounded_distance = true;
   EXPECT_NE(verdict_block("", o).find("count=free"), std::string::npos);
 }
@@ -110,7 +110,7 @@ TEST(Rounds, SizesAndTrianglesAreKnownLater) {
 
 TEST(Rounds, TrianglesMayNotMultiply) {
   auto round = [](double triangles) {
-    Outcome o = missed("kappa", 0.01);
+    Outcome o = outcome_missing("kappa", 0.01);
     o.triangles = triangles;
     return o;
   };
@@ -120,7 +120,7 @@ TEST(Rounds, TrianglesMayNotMultiply) {
   EXPECT_TRUE(has_outgrown(one, 4.1e4, 1));
   EXPECT_FALSE(is_repeated(one, round(4.1e4)));
   EXPECT_TRUE(has_outgrown("", 2e4, 9e4)) << "by the sizes of the next";
-  Outcome far = missed("hausdorff", 0.01);
+  Outcome far = outcome_missing("hausdorff", 0.01);
   far.bounded_distance = true, far.triangles = 1e5, far.refined = 9e5;
   EXPECT_TRUE(is_repeated("", far));
   far.refined = 1.1e6;
