@@ -77,7 +77,7 @@ class Adapter {
     int done = 0;
     for (const Missed& m : missed_vertices(m_, field_)) {
       const int t = cdt_.walk(m.p, m.triangle);
-      done += t >= 0 && insert_site(m_, m.p, field_.at(m.p, m.face), t, {0.5, 0.3});
+      done += t >= 0 && insert_site(m_, m.p, field_.at(m.p, m.face), t, least_spacing);
     }
     return done;
   }

@@ -68,7 +68,8 @@ class Refiner {
 
   bool insert_missed() {
     bool any = false;
-    for (const Missed& m : missed_vertices(m_, field_)) any |= insert(m.p, m.triangle, m.face, 0);
+    for (const Missed& m : missed_vertices(m_, field_))
+      any |= insert(m.p, m.triangle, m.face, 0, least_spacing);
     return any;
   }
 
@@ -129,7 +130,7 @@ class Refiner {
     // once more in the metric between the edge and there
     Site there = field_.at(p, a.place.face);
     if (!rebay_point(h, factor_of((1.0 / 3) * (a.metric + b.metric + there.metric)), p)) return false;
-    return insert(p, t, there.place.face, row(h) + 1);
+    return insert(p, t, there.place.face, row(h) + 1, rule_.spacing);
   }
 
   bool insert_at_center(int t) {
@@ -140,15 +141,15 @@ class Refiner {
     if (!(area2 > 0)) return false;
     Vec2 x = (0.5 / area2) * Vec2{c.y * dot(b, b) - b.y * dot(c, c), b.x * dot(c, c) - c.x * dot(b, b)};
     int rows = std::max({row_[v[0]], row_[v[1]], row_[v[2]]});
-    return insert(point(v[0]) + f.back(x), t, site(t, 0).place.face, rows + 1);
+    return insert(point(v[0]) + f.back(x), t, site(t, 0).place.face, rows + 1, rule_.spacing);
   }
 
-  bool insert(Vec2 p, int t, int hint, int row) {
+  bool insert(Vec2 p, int t, int hint, int row, const Spacing& spacing) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return false;
     int s = cdt_.walk(p, t);
     if (s < 0) return false;
     Site there = field_.at(p, hint);
-    if (!insert_site(m_, p, there, s, rule_.spacing)) return false;
+    if (!insert_site(m_, p, there, s, spacing)) return false;
     adopt(row);
     return true;
   }

@@ -21,10 +21,11 @@ double worst_shape(const SiteMesh& m, int v, Vec3 x) {
   return worst;
 }
 
-/// What a triangle covers of the chart: area, and the vertex farthest from it, both over the size.
+/// What a triangle covers of the chart: area over the squared size, and of the vertices that it misses the
+/// one that is farthest from its corners, over the size.
 struct Cover {
-  double area = 0, distance = 0;
-  Missed farthest{};
+  double area = 0, apart = 0;
+  Missed missed{};
 };
 
 /// Measures how far corner `corner` of the chart's triangle `face`, which triangle t covers, is from t.
@@ -38,8 +39,10 @@ void measure(const SiteMesh& m, const Chart& chart, int face, int corner, int t,
   const Site &s0 = m.site[v[0]], &s1 = m.site[v[1]], &s2 = m.site[v[2]];
   const Vec3 flat = b0 * s0.space + b1 * s1.space + (1 - b0 - b1) * s2.space;
   const double size = b0 * s0.size + b1 * s1.size + (1 - b0 - b1) * s2.size;
-  const double d = norm(chart.mesh.points[vertex] - flat) / size;
-  if (d > cover.distance) cover.distance = d, cover.farthest = {p, face, t};
+  const Vec3 x = chart.mesh.points[vertex];
+  if (!(norm(x - flat) > least_spacing.vertex * size)) return;
+  const double apart = std::min({norm(x - s0.space), norm(x - s1.space), norm(x - s2.space)}) / size;
+  if (apart > cover.apart) cover.apart = apart, cover.missed = {p, face, t};
 }
 
 /// Returns for each vertex of the chart the triangle that covers it, negative: none, and measures `cover` of
@@ -124,17 +127,16 @@ bool split_long_edge(SiteMesh& m, const SizeMetric& field, int h, double longest
     (to_a < to_b ? low : high) = t;
   }
   const int t = cdt.walk(p, h / 3);  // by rounding the point lies in either triangle of the edge
-  return t >= 0 && insert_site(m, p, middle, t, {0.5, 0.3});
+  return t >= 0 && insert_site(m, p, middle, t, least_spacing);
 }
 
 std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) {
-  constexpr double far = 0.5, many = 2;  // over the size, and over the area of a triangle of the size
+  constexpr double many = 2;  // over the area of a triangle of the size
   const Chart& chart = field.chart();
   std::vector<Cover> cover(m.cdt.tris.size());
   const std::vector<int> covered_by = cover_vertices(m, chart, cover);
   std::vector<Missed> missed;
-  if (std::none_of(cover.begin(), cover.end(), [](const Cover& c) { return c.distance > far; }))
-    return missed;
+  if (std::none_of(cover.begin(), cover.end(), [](const Cover& c) { return c.apart > 0; })) return missed;
   for (const Tri& v : chart.mesh.tris) {
     const double area =
         norm(area_vector(chart.mesh.points[v[0]], chart.mesh.points[v[1]], chart.mesh.points[v[2]])) / 2;
@@ -146,7 +148,7 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
     }
   }
   for (const Cover& c : cover)
-    if (c.distance > far && c.area > many * 0.25 * std::sqrt(3)) missed.push_back(c.farthest);
+    if (c.apart > 0 && c.area > many * 0.25 * std::sqrt(3)) missed.push_back(c.missed);
   return missed;
 }
 

@@ -22,6 +22,9 @@ struct Spacing {
   double line;    ///< no fixed edge that it sees is nearer
 };
 
+/// Of a vertex that is needed where an edge is much too long, or the mesh misses what is this far away.
+constexpr Spacing least_spacing{0.5, 0.3};
+
 /// Inserts a vertex at p, which lies in triangle t and on the surface at `there`, by Bowyer and Watson's
 /// cavity in the metric there. The new triangles are mesh.cavity.fan(). Returns false, and changes only
 /// `mesh.cavity`, if p is on a vertex or fixed edge, or too near to others. Throws: GoalMissed if the mesh
@@ -38,9 +41,10 @@ struct Missed {
   int face, triangle;
 };
 
-/// Returns vertices of the chart that the mesh misses, the farthest one per triangle: where a triangle covers
-/// a vertex in the plane that is half a size away from it in space, and covers more of the surface than two
-/// triangles of that size. Short edges prove nothing: a ball behind a narrow neck may lie in one triangle.
+/// Returns vertices of the chart that the mesh misses, per triangle the one farthest from its corners: where
+/// a triangle covers a vertex in the plane that is half a size away from it in space, and covers more of the
+/// surface than two triangles of that size. Short edges prove nothing: a ball behind a narrow neck may lie in
+/// one triangle.
 std::vector<Missed> missed_vertices(const SiteMesh& mesh, const SizeMetric& field);
 
 /// Flips free edges, starting with the half-edges in `todo` (emptied), until the two angles in space opposite

@@ -498,13 +498,14 @@ TEST(Mesh2d, FillsABallBehindANarrowBorder) {
   ASSERT_EQ(loops.size(), 1u);
   std::vector<int> loop;
   for (int e : loops[0]) loop.push_back(origin(chart.mesh.tris, e));
-  for (double h : {0.3, 1.0}) {
+  for (double h : {0.3, 1.0, 1.5}) {
     Lines lines;
     add_line(lines, chart, loop, border_line, true, h);
     for (Mesher mesher : all_meshers) {
+      if (h > 1 && mesher == Mesher::meshadapt) continue;  // it collapses short edges again, as at the neck
       SCOPED_TRACE((int)mesher);
       Figures f = examine(mesh_with(chart, lines, h, mesher), lines, lift);
-      EXPECT_GT(f.area, 0.5 * total_area(chart.mesh));
+      EXPECT_GT(f.area, (h <= 1 ? 0.5 : 0.25) * total_area(chart.mesh));
       EXPECT_GT(f.area, h < 0.5 ? 0.95 * total_area(chart.mesh) : 0);
       EXPECT_LT(f.edge_max, 2 * h);
     }
