@@ -40,6 +40,7 @@ constexpr double widest_band = 0.5;  ///< times `sliver`, to either side
 /// Times further across an edge, for each 1 - cosine of its angle. Creases of 12 CAD surfaces are the same
 /// from 30 to 120; below it two of them lack some.
 constexpr double far_turn = 30;
+constexpr double in_plane = 0.999;     ///< cosine of the angle between triangles in one plane, at least
 constexpr double rounding = 3e-6;      ///< of the diagonal: single-precision coordinates, with a margin
 constexpr double long_chain = 5;       ///< mean edges of the input
 constexpr double short_chain = 3;      ///< target lengths, or mean edges of the input
@@ -469,6 +470,17 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   };
   take_nearest(has_none);
   std::fill(has_none.begin(), has_none.end(), 0);
+  // a side of which a part is not thin faces as that does, however far it goes on in its plane
+  std::vector<int> wide, root = identity(n);
+  for (int t = 0; t < n; ++t)
+    if (!is_thin[t]) wide.push_back(t);
+  for (std::size_t i = 0; i < wide.size(); ++i)
+    for (int h = 3 * wide[i]; h < 3 * wide[i] + 3; ++h) {
+      const int t = surface.opposite[h] / 3, r = root[wide[i]];
+      if (surface.opposite[h] < 0 || !is_thin[t] || dot(normal[t], normal[r]) < in_plane) continue;
+      is_thin[t] = 0, root[t] = r;
+      wide.push_back(t);
+    }
   take_nearest(is_thin);
   return normal;
 }

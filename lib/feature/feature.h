@@ -39,9 +39,9 @@ FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
                             const std::vector<int>* given = nullptr);
 
 /// Returns a unit normal per triangle: its own, unless its height is below `thin` (a length) and a twentieth
-/// of its length, and it is in a band of such triangles whose centers are at most `thin` / 2 from the nearer
-/// side; or unless it is too thin for single-precision coordinates (`thin` 0: only these). Those get the
-/// normal of the nearest other triangle across them.
+/// of its length, no connected other one is in its plane, and it is in a band of such triangles whose centers
+/// are at most `thin` / 2 from the nearer side; or unless it is too thin for single-precision coordinates
+/// (`thin` 0: only these). Those get the normal of the nearest other triangle across them.
 std::vector<Vec3> side_normals(const Connectivity& surface, double thin);
 
 }  // namespace meshpipe

@@ -271,6 +271,36 @@ TEST(Feature, TheRimOfAThinPlateIsOneCrease) {
   EXPECT_EQ(r.crease_edges, 12);
 }
 
+//  the same with a side that is cut next to a corner: where its short piece shows which way it faces, so does
+//  the long one
+TEST(Feature, ASideInOnePlaneFacesOneWay) {
+  Surface s;
+  const std::pair<double, double> outline[] = {{0, 0}, {0.3, 0}, {10, 0}, {10, 10}, {0, 10}};
+  for (double z : {0.0, 0.2})
+    for (const auto& [x, y] : outline) s.points.push_back({x, y, z});
+  for (int i = 0; i < 5; ++i) {
+    const int j = (i + 1) % 5;
+    s.tris.push_back({i, j, 5 + j});
+    s.tris.push_back({i, 5 + j, 5 + i});
+    if (i != 3 && j != 3) s.tris.push_back({3, j, i}), s.tris.push_back({8, 5 + i, 5 + j});
+  }
+  s.face.rows = s.tris.size();
+  FeatureOptions options;
+  options.size = 5;
+  mark_features(s, options);
+  const auto& model = s.face.get<std::uint8_t>("model");
+  auto is_crease = [&](int a, int b) {
+    for (int h = 0; h < 3 * (int)s.tris.size(); ++h)
+      if (origin(s.tris, h) == a && target(s.tris, h) == b) return (model[h / 3] >> h % 3 & 1) != 0;
+    return false;
+  };
+  for (int i : {0, 1}) {
+    EXPECT_TRUE(is_crease(i, i + 1));          // the edge below
+    EXPECT_TRUE(is_crease(5 + i + 1, 5 + i));  // and that above
+    EXPECT_FALSE(is_crease(i, 5 + i + 1));     // not a diagonal between
+  }
+}
+
 //  the same with a rim of four rows, with and without a step: top and bottom meet in its middle
 TEST(Feature, TheRimOfSeveralRowsIsOneCrease) {
   for (double step : {0.0, 0.002}) {
