@@ -41,10 +41,10 @@ struct Findings {
   /// Mean kappa of triangles within one edge length of an interface line, and of all others, without those at
   /// borders and model edges; none where there are none. Equal where the result shows no trace of the cuts.
   std::optional<double> kappa_by_cuts, kappa_elsewhere;
-  std::vector<std::string> patch_faults;  ///< see compare_patches
-  std::vector<int> unmarked_borders;      ///< half-edges, where the reference's patches end at model edges
-  std::vector<int> reversed;              ///< a triangle of each component
-  std::optional<SheetFindings> sheets;    ///< where they meet; see compare_sheets
+  std::vector<PatchFault> patch_faults;  ///< see compare_patches
+  std::vector<int> unmarked_borders;     ///< half-edges, where the reference's patches end at model edges
+  std::vector<int> reversed;             ///< a triangle of each component
+  std::optional<SheetFindings> sheets;   ///< where they meet; see compare_sheets
 };
 
 /// The distance between the surfaces that is allowed, over the local size; the unit of Deviation::ratio. An
@@ -117,11 +117,12 @@ enum Offense {
   offends_folds = 4,
   offends_kappa = 8,
   offends_vertices = 16,
-  offends_deviation = 32
+  offends_deviation = 32,
+  offends_patches = 64
 };
 /// Returns the faces of the result at which the contract fails, with face columns int `triangle` (row in the
 /// result) and uchar `fault` (bits of Offense). Vertices stay, some unused.
-Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh);
+Surface offending_faces(const Contract& contract, const Findings& findings, const Surface& result);
 
 /// Returns the result's sizes per vertex, reduced where it is farther from the reference than the contract
 /// allows, and next to offending faces. Returns them unchanged if the reference has more pairs that properly

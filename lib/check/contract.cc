@@ -127,7 +127,7 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
   } else if (name == "regions") {
     judge_regions(f, facts);
   } else {
-    for (const std::string& fault : f.patch_faults) facts.push_back(fault);
+    for (const PatchFault& fault : f.patch_faults) facts.push_back(fault.fact, (double)f.patch_faults.size());
     if (!f.unmarked_borders.empty())
       facts.push_back(std::to_string(f.unmarked_borders.size()) +
                           " edges between patches are no model edges, the first in " +
@@ -173,7 +173,7 @@ void judge_limit(const Requirement& r, const Findings& f, const Mesh& mesh, Fact
 }
 
 /// Of every triangle, its faults.
-std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f, const Mesh& mesh) {
+std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f, const Surface& mesh) {
   std::vector<std::uint8_t> faults(mesh.tris.size(), 0);
   for (const Requirement& r : contract) {
     if (r.name == "topology")
@@ -184,6 +184,15 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
         faults[s] |= offends_intersections, faults[t] |= offends_intersections;
     if (r.name == "folds")
       for (int h : f.folds) faults[h / 3] |= offends_folds, faults[f.mesh.opposite[h] / 3] |= offends_folds;
+    if (r.name == "patches") {
+      std::vector<int> labels;
+      for (const PatchFault& fault : f.patch_faults)
+        labels.insert(labels.end(), fault.labels.begin(), fault.labels.end());
+      sort_unique(labels);
+      for (std::size_t t = 0; !labels.empty() && t < faults.size(); ++t)
+        if (std::binary_search(labels.begin(), labels.end(), mesh.face.get<int>("patch")[t]))
+          faults[t] |= offends_patches;
+    }
     for (std::size_t t = 0; t < faults.size(); ++t) {
       const Tri& v = mesh.tris[t];
       if (r.name == "kappa" && !(f.quality.kappas[t] > r.limit) && (f.forced.empty() || !f.forced[t]))
@@ -266,15 +275,15 @@ std::vector<Failure> judge(const Contract& contract, const Findings& findings, c
   return failures;
 }
 
-Surface offending_faces(const Contract& contract, const Findings& findings, const Mesh& mesh) {
-  const std::vector<std::uint8_t> faults = faults_of(contract, findings, mesh);
+Surface offending_faces(const Contract& contract, const Findings& findings, const Surface& result) {
+  const std::vector<std::uint8_t> faults = faults_of(contract, findings, result);
   Surface s;
-  s.points = mesh.points;
+  s.points = result.points;
   std::vector<int> number;
   std::vector<std::uint8_t> fault;
   for (std::size_t t = 0; t < faults.size(); ++t) {
     if (!faults[t]) continue;
-    s.tris.push_back(mesh.tris[t]);
+    s.tris.push_back(result.tris[t]);
     number.push_back((int)t);
     fault.push_back(faults[t]);
   }

@@ -35,10 +35,13 @@ std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& op
   for (int l : labels) number[name(l)];
   for (auto& [text, i] : number) {
     i = (int)patches.size();
-    patches.push_back({text});
+    patches.push_back({text, {}});
   }
   std::vector<int> patch_of_label;
-  for (int l : labels) patch_of_label.push_back(number[name(l)]);
+  for (int l : labels) {
+    patch_of_label.push_back(number[name(l)]);
+    patches[patch_of_label.back()].labels.push_back(l);
+  }
   for (int t = 0; t < (int)label.size(); ++t) {
     const auto at = std::lower_bound(labels.begin(), labels.end(), label[t]);
     Patch& p = patches[patch_of_label[at - labels.begin()]];
@@ -53,23 +56,25 @@ std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& op
   return patches;
 }
 
-std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
-                                         const std::vector<Patch>& result) {
+std::vector<PatchFault> compare_patches(const std::vector<Patch>& reference,
+                                        const std::vector<Patch>& result) {
   constexpr double rough = 0.5;  // of the area: steps of voxels have up to sqrt(3) times the smooth one
-  std::vector<std::string> faults;
+  std::vector<PatchFault> faults;
   auto before = [](const Patch& p, const std::string& name) { return p.name < name; };
   for (const Patch& p : reference) {
     const auto q = std::lower_bound(result.begin(), result.end(), p.name, before);
     if (q == result.end() || q->name != p.name) {
-      faults.push_back("patch " + p.name + " is lost");
+      faults.push_back({"patch " + p.name + " is lost"});
       continue;
     }
     if (const double d = apart(p.box, q->box); !(d <= q->edge))
-      faults.push_back("patch " + p.name + " ends " + shown(d) +
-                       " from where the reference's does, edges are " + shown(q->edge) + " at most");
+      faults.push_back({"patch " + p.name + " ends " + shown(d) +
+                            " from where the reference's does, edges are " + shown(q->edge) + " at most",
+                        q->labels});
     else if (!(std::abs(p.area - q->area) <= rough * p.area + 0.5 * q->edge * q->perimeter))
-      faults.push_back("patch " + p.name + " has area " + shown(q->area) + ", the reference's " +
-                       shown(p.area));
+      faults.push_back(
+          {"patch " + p.name + " has area " + shown(q->area) + ", the reference's " + shown(p.area),
+           q->labels});
   }
   return faults;
 }

@@ -13,6 +13,7 @@ namespace meshpipe {
 /// All triangles with patches of one name; lengths and areas in the units of the surface.
 struct Patch {
   std::string name;
+  std::vector<int> labels;  ///< that have it, ascending
   double area = 0;
   double perimeter = 0;  ///< 0 unless neighbors are known
   double edge = 0;       ///< the longest
@@ -25,11 +26,17 @@ struct Patch {
 std::vector<Patch> patches_of(const Surface& surface, const std::vector<int>& opposite,
                               const std::function<std::string(int)>& name);
 
-/// Returns a sentence for each patch of the reference that the result lacks or gives another extent: a
-/// bounding box off by more than the patch's longest edge in the result, or an area off by more than half of
-/// the reference's plus half that edge times the perimeter. Requires: both sorted by name.
-std::vector<std::string> compare_patches(const std::vector<Patch>& reference,
-                                         const std::vector<Patch>& result);
+/// A patch that the result lacks or gives another extent.
+struct PatchFault {
+  std::string fact;
+  std::vector<int> labels{};  ///< of the result
+};
+
+/// Returns the patches of the reference that the result lacks or whose extent is another: a bounding box off
+/// by more than the patch's longest edge in the result, or an area off by more than half of the reference's
+/// plus half that edge times the perimeter. Requires: both sorted by name.
+std::vector<PatchFault> compare_patches(const std::vector<Patch>& reference,
+                                        const std::vector<Patch>& result);
 
 /// Returns the smaller half-edge of each edge between patches (per triangle) that is no model edge.
 std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector<int>& patch);

@@ -14,14 +14,17 @@ constexpr double most_pairs = 1;
 /// Returns per triangle an error for refined_size with limit 1, at and next to offending faces, else 0.
 /// Deviation does not count.
 std::vector<double> errors_at_faults(const Surface& offending, const Mesh& mesh) {
-  constexpr double of_kappa = 2, of_others = 1.7;  // sizes of 0.3 and of 0.35
+  constexpr double of_kappa = 2, of_others = 1.7, of_patches = 1.2;  // sizes of 0.3, 0.35 and 0.5
   std::vector<double> at(mesh.points.size(), 0), error(mesh.tris.size(), 0);
   const auto& triangle = offending.face.get<int>("triangle");
   const auto& fault = offending.face.get<std::uint8_t>("fault");
   for (std::size_t i = 0; i < triangle.size(); ++i) {
-    if (fault[i] == offends_deviation) continue;  // its size follows from the distance
-    for (int v : mesh.tris[triangle[i]])
-      at[v] = std::max(at[v], fault[i] & offends_kappa ? of_kappa : of_others);
+    const int other = fault[i] & ~offends_deviation;  // its size follows from the distance
+    if (!other) continue;
+    const double fault_error = other & offends_kappa      ? of_kappa
+                               : other != offends_patches ? of_others
+                                                          : of_patches;
+    for (int v : mesh.tris[triangle[i]]) at[v] = std::max(at[v], fault_error);
   }
   // the next mesh has other triangles there: include the neighbors
   for (std::size_t t = 0; t < error.size(); ++t)

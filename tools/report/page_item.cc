@@ -143,7 +143,8 @@ std::string offenses(int bits) {
                                                    {offends_folds, "fold"},
                                                    {offends_kappa, "kappa"},
                                                    {offends_vertices, "vertices off the reference"},
-                                                   {offends_deviation, "distance"}};
+                                                   {offends_deviation, "distance"},
+                                                   {offends_patches, "extent of the patch"}};
   std::string text;
   for (auto [bit, name] : names)
     if (bits & bit) text += (text.empty() ? "" : ", ") + std::string(name);
@@ -162,7 +163,7 @@ int triangle_of(const Failure& failure, const Findings& findings, const Mesh& me
 }
 
 /// Lists the triangles at fault: those that failures name, then the others by kappa.
-void list_offending(PageItem& item, const Mesh& mesh, const std::vector<double>& kappas,
+void list_offending(PageItem& item, const Surface& mesh, const std::vector<double>& kappas,
                     const Judgment& judgment) {
   const Surface faulty = offending_faces(judgment.contract, judgment.findings, mesh);
   std::map<int, std::string> fault;
@@ -182,7 +183,7 @@ void list_offending(PageItem& item, const Mesh& mesh, const std::vector<double>&
     item.offending.push_back({t, kappas[t], centroid(mesh, t), fault[t]});
 }
 
-void list_triangles(PageItem& item, const Mesh& mesh, const std::vector<double>& kappas,
+void list_triangles(PageItem& item, const Surface& mesh, const std::vector<double>& kappas,
                     const Judgment* judgment) {
   std::vector<int> order = identity(kappas.size());
   const std::size_t n = std::min<std::size_t>(worst_count, order.size());

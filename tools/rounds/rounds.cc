@@ -28,7 +28,7 @@ std::optional<Score> score_of(const Failure& failure) {
   // rounded as shown: a difference that nobody sees is no progress
   const double value = std::strtod(shown(failure.value).c_str(), nullptr);
   if (failure.requirement == "kappa") return Score{failure.requirement, value};
-  for (const char* less : {"intersections", "folds", "hausdorff", "deviation"})
+  for (const char* less : {"intersections", "folds", "patches", "hausdorff", "deviation"})
     if (failure.requirement == less) return Score{failure.requirement, -value};
   return {};
 }

@@ -62,8 +62,8 @@ TEST(contract, lists_are_read_and_refused) {
 }
 
 TEST(contract, what_is_not_a_number_fails_and_what_there_is_not_does_not) {
-  const Mesh m = sphere(500);
-  Findings f = examine(surface_of(m), surface_of(m), nullptr, 1000);
+  const Surface m = surface_of(sphere(500));
+  Findings f = examine(m, m, nullptr, 1000);
   const Contract c = parse_contract("features=1,trace=1,mean=1,boundary=1,vertices=1,size=1");
   EXPECT_TRUE(judge(c, f, m).empty());
   const double nan = std::nan("");
@@ -226,21 +226,25 @@ TEST(contract, sizes_count_where_the_result_misses_the_reference) {
 }
 
 TEST(contract, a_crossing_and_a_lost_name) {
-  const Mesh good = sphere(500);
-  Findings f = examine(surface_of(good), surface_of(good), nullptr, 2000);
-  f.patch_faults = {"patch inlet is lost"};
+  Surface good = surface_of(sphere(500));
+  std::vector<int> patch(good.tris.size(), 1);
+  patch[20] = 2;
+  good.face.set("patch", std::move(patch));
+  Findings f = examine(good, good, nullptr, 2000);
+  f.patch_faults = {{"patch inlet is lost"}, {"patch 2 is short", {2}}};
   f.intersections = {{4, 9}, {5, 8}};
   f.new_intersections = {{4, 9}};
   f.reference_intersections = 1;
   const Contract contract = parse_contract(default_contract);
   const auto failures = judge(contract, f, good);
-  ASSERT_EQ(failures.size(), 2u);
+  ASSERT_EQ(failures.size(), 3u);
   EXPECT_EQ(failures[0].requirement, "intersections");
   EXPECT_NE(failures[0].fact.find("triangle 9 with triangle 4 at ("), std::string::npos);
   EXPECT_EQ(failures[1].fact, "patch inlet is lost");
   const Surface faulty = offending_faces(contract, f, good);
-  EXPECT_EQ(faulty.face.get<int>("triangle"), (std::vector<int>{4, 9}));
-  EXPECT_EQ(faulty.face.get<std::uint8_t>("fault")[0], offends_intersections);
+  EXPECT_EQ(faulty.face.get<int>("triangle"), (std::vector<int>{4, 9, 20}));
+  EXPECT_EQ(faulty.face.get<std::uint8_t>("fault"),
+            (std::vector<std::uint8_t>{offends_intersections, offends_intersections, offends_patches}));
 }
 
 TEST(contract, figures_by_the_cuts) {
