@@ -291,15 +291,17 @@ static void nearest_first(const Nodes& nodes, const float& most, Distances&& dis
 }
 
 Bvh::Hit Bvh::nearest(Vec3 p, double bound, double enough) const {
-  const Hit hit = search(p, bound, enough, nullptr);
-  return hit.place.face >= 0 ? hit : search(p, 1e300, enough, nullptr);  // the bound was too small after all
+  const Hit hit = search(p, bound, enough, nullptr, 0);
+  return hit.place.face >= 0 ? hit
+                             : search(p, 1e300, enough, nullptr, 0);  // the bound was too small after all
 }
 
-Bvh::Hit Bvh::nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const {
-  return search(p, bound, enough, left_out.empty() ? nullptr : left_out.data());
+Bvh::Hit Bvh::nearest_of(const std::vector<int>& label, int wanted, Vec3 p, double bound,
+                         double enough) const {
+  return search(p, bound, enough, label.data(), wanted);
 }
 
-Bvh::Hit Bvh::search(Vec3 p, double bound, double enough, const char* left_out) const {
+Bvh::Hit Bvh::search(Vec3 p, double bound, double enough, const int* label, int wanted) const {
   // the boxes are in single precision: what they say is taken with some slack
   constexpr double trust = 1 + 1e-5;
   const auto q = own_units(p);
@@ -318,7 +320,7 @@ Bvh::Hit Bvh::search(Vec3 p, double bound, double enough, const char* left_out) 
     return sum;
   };
   nearest_first(nodes_, most, distances, [&](int t) {
-    if (left_out && left_out[t]) return false;
+    if (label && label[t] != wanted) return false;
     const Tri& v = mesh_.tris[t];
     const Vec3 &x = mesh_.points[v[0]], &y = mesh_.points[v[1]], &z = mesh_.points[v[2]];
     const auto w = closest_on_triangle(p, x, y, z);

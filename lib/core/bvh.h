@@ -56,8 +56,12 @@ class Bvh {
   /// Returns the nearest point of the mesh, or the first found within the distance `enough`. `bound`: an
   /// upper bound on the distance, if one is known; too small a bound costs time only.
   Hit nearest(Vec3 p, double bound = 1e300, double enough = 0) const;
-  /// Returns the same among triangles with left_out[t] == 0 (empty: all); face -1 if none is within `bound`.
-  Hit nearest_but(const std::vector<char>& left_out, Vec3 p, double bound, double enough) const;
+  /// Returns the same; face -1 if none is within `bound`.
+  Hit nearest_within(Vec3 p, double bound, double enough) const {
+    return search(p, bound, enough, nullptr, 0);
+  }
+  /// Returns the same among triangles with label[t] == wanted.
+  Hit nearest_of(const std::vector<int>& label, int wanted, Vec3 p, double bound, double enough) const;
   struct RayHit {
     double distance = 0;  ///< in lengths of the direction
     int face = -1;        ///< -1: none
@@ -88,7 +92,7 @@ class Bvh {
   };
   struct Item;
   Box build(Item* items, int first, int count, int node);
-  Hit search(Vec3 p, double bound, double enough, const char* left_out) const;
+  Hit search(Vec3 p, double bound, double enough, const int* label, int wanted) const;
   void set_child(int node, int k, int child, const Box& box);
   std::array<float, 3> own_units(Vec3 p) const;
   static constexpr float slack = 1e-6f;

@@ -32,6 +32,8 @@ class SurfaceWalk {
   /// lies; the place itself if it lies on none.
   Place across(const Place& place) const;
   Vec3 point(const Place& place) const;
+  /// Returns opposite_halfedges of the mesh.
+  const std::vector<int>& opposite() const { return opposite_; }
   /// Returns the unit normal of the triangle at a place.
   Vec3 normal(const Place& place) const { return normals_[place.face]; }
 

@@ -52,7 +52,7 @@ double most_distance(const Surface& s, const std::vector<int>& triangles, double
     Piece& piece = fragment.emplace_back();
     for (int i = 0; i < 3; ++i) {
       piece.corner[i] = s.points[s.tris[t][i]];
-      const Bvh::Hit hit = rest.tree.nearest_but({}, piece.corner[i], tolerance, 0);
+      const Bvh::Hit hit = rest.tree.nearest_within(piece.corner[i], tolerance, 0);
       if (hit.place.face < 0) return infinity;
       piece.face[i] = hit.place.face, piece.distance[i] = hit.distance;
       width = std::max(width, hit.distance);

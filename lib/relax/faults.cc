@@ -119,6 +119,23 @@ void look_at_changed(const State& s, Known& known) {
   known.time = s.clocks.now;
 }
 
+/// The triangle by whose size the distance to this place of the mesh is judged: of those that meet there, if
+/// it is on an edge or a corner, the one with the smallest. mcheck may come upon any of them.
+int judged_at(const State& s, const Place& place, double mean) {
+  int judged = place.face;
+  double least = bearable_distance(s, judged, mean);
+  auto look = [&](int t) {
+    if (const double d = bearable_distance(s, t, mean); d < least) judged = t, least = d;
+  };
+  const double b[] = {place.b0, place.b1, place.b2};
+  for (int h = 3 * place.face; h < 3 * place.face + 3; ++h) {
+    if (b[prev(h) % 3] == 0 && s.mesh.opp[h] >= 0) look(s.mesh.opp[h] / 3);
+    if (b[h % 3] == 1)
+      for_copies(s, s.mesh.from(h), [&](int v) { s.mesh.star(v, [&](int g) { look(g / 3); }); });
+  }
+  return judged;
+}
+
 /// Adds samples at places inside triangles of the reference that are farther from the mesh than they may be;
 /// those on vertices and edges do not show these. Looks in triangle f, a `piece` with corners last measured
 /// at `time`, if may_miss(f, piece, time).
@@ -142,8 +159,12 @@ void add_missed_places(const State& s, Samples& samples, double share, MayMiss m
                       {x.distance, y.distance, z.distance}};
     if (!may_miss(f, whole, std::max({x.time, y.time, z.time})) || whole.within(share * mean, mesh)) continue;
     auto allowed = [&](int t) { return bearable_distance(s, t, mean, share); };
-    const auto [p, hit, complete, halvings] =
-        farthest(whole, mesh, allowed, [&](Vec3 q) { return samples.search.nearest(q, 1e300, 0); });
+    const int component = s.reference->component_of({f, 1, 0, 0});
+    const auto [p, hit, complete, halvings] = farthest(whole, mesh, allowed, [&](Vec3 q) {
+      Bvh::Hit nearest = samples.search.nearest(q, component, 1e300, 0);
+      nearest.place.face = judged_at(s, nearest.place, mean);
+      return nearest;
+    });
     if (hit.place.face < 0 || hit.distance <= allowed(hit.place.face)) continue;
 #pragma omp critical
     missed.push_back({closest_place(reference, f, p), hit.place.face, s.clocks.now, hit.distance});
@@ -166,28 +187,17 @@ Mesh changed_triangles(const State& s, int time) {
   return changed;
 }
 
-/// The triangle by whose size the distance of a sample at p is judged: of those that are as near to it, as
-/// they are if a corner is the nearest place, the one with the smallest. mcheck may come upon any of them.
-int judged_at(const State& s, Vec3 p, const Sample& x, double mean) {
-  int judged = x.near;
-  double least = bearable_distance(s, x.near, mean);
-  for (int t : triangles_around(s, x.near, 1)) {
-    const double bearable = bearable_distance(s, t, mean);
-    if (bearable < least && norm(nearest_point(s, t, p) - p) <= (1 + rules::as_near) * x.distance)
-      judged = t, least = bearable;
-  }
-  return judged;
-}
-
 /// The triangle with which the mesh may come nearer to sample x, at p: t, the nearest, or if that is of a
 /// sheet that faces another way, the nearest of those that face as the reference does.
 int triangle_to_refine(const State& s, const MeshTree& search, const Sample& x, Vec3 p, int t) {
   const Vec3 normal = s.reference->normal(x.place);
   if (dot(normal, s.face_normal(t)) >= 0) return t;
+  const int component = s.reference->component_of(x.place);
   double least = rules::own_sheet * x.distance;
   const Vec3 reach{least, least, least};
   search.overlapping({p - reach, p + reach}, [&](int u) {
     if (s.mesh.dead(u) || dot(normal, s.face_normal(u)) < 0) return;
+    if (component_of(s, u) != component) return;
     if (const double d = norm(nearest_point(s, u, p) - p); d < least) least = d, t = u;
   });
   return t;
@@ -203,7 +213,9 @@ void find_far(const State& s, Known& known, Fault& found) {
     for (const Sample& x : known.samples.list) {
       if (!(x.distance > least)) continue;
       const Vec3 p = s.reference->walk.point(x.place);
-      const int judged = judged_at(s, p, x, mean);
+      const Tri& v = s.mesh.tris[x.near];
+      const auto b = closest_on_triangle(p, s.points[v[0]], s.points[v[1]], s.points[v[2]]);
+      const int judged = judged_at(s, {x.near, b[0], b[1], b[2]}, mean);
       const double bearable = bearable_distance(s, judged, mean, share);
       if (x.distance <= bearable) continue;
       const int t = triangle_to_refine(s, known.samples.search, x, p, judged);

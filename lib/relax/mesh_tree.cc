@@ -8,10 +8,13 @@ namespace meshpipe {
 void MeshTree::Part::build(const State& s, std::vector<int> triangles) {
   tree.reset();
   number = std::move(triangles);
-  mesh.tris.clear();
+  mesh.tris.clear(), component.clear();
   if (number.empty()) return;
   mesh.points = s.points;
-  for (int t : number) mesh.tris.push_back(s.mesh.tris[t]);
+  for (int t : number) {
+    mesh.tris.push_back(s.mesh.tris[t]);
+    component.push_back(component_of(s, t));
+  }
   tree.emplace(mesh);
 }
 
@@ -20,16 +23,17 @@ void MeshTree::build(const State& s) {
   triangles_ = (int)s.mesh.tris.size();
   for (int t = 0; t < triangles_; ++t)
     if (!s.mesh.dead(t)) all.push_back(t);
-  gone_.assign(all.size(), 0);
   built_.build(s, std::move(all));
 }
 
 /// Moves the first tree along, as far as its triangles are left.
 void MeshTree::follow(const State& s) {
   built_.mesh.points = s.points;
-  for (std::size_t i = 0; i < gone_.size(); ++i) {
-    gone_[i] = s.mesh.dead(built_.number[i]);
-    if (!gone_[i]) built_.mesh.tris[i] = s.mesh.tris[built_.number[i]];
+  for (std::size_t i = 0; i < built_.number.size(); ++i) {
+    if (s.mesh.dead(built_.number[i]))
+      built_.component[i] = gone;
+    else
+      built_.mesh.tris[i] = s.mesh.tris[built_.number[i]];
   }
   built_.tree->refit();
 }
@@ -49,26 +53,23 @@ void MeshTree::renew(const State& s) {
   added_.build(s, std::move(added));
 }
 
-Bvh::Hit MeshTree::nearest(Vec3 p, double bound, double enough) const {
-  Bvh::Hit hit = built_.tree->nearest_but(gone_, p, bound, enough);
-  if (hit.place.face >= 0) {
-    hit.place.face = built_.number[hit.place.face];
-    if (hit.distance <= enough) return hit;
-    bound = hit.distance;
+Bvh::Hit MeshTree::nearest(Vec3 p, int component, double bound, double enough) const {
+  Bvh::Hit hit;
+  for (const Part* part : {&built_, &added_}) {
+    if (!part->tree || (hit.place.face >= 0 && hit.distance <= enough)) continue;
+    Bvh::Hit other = part->tree->nearest_of(part->component, component, p, bound, enough);
+    if (other.place.face < 0 || (hit.place.face >= 0 && !(other.distance < hit.distance))) continue;
+    other.place.face = part->number[other.place.face];
+    hit = other, bound = hit.distance;
   }
-  if (added_.tree) {
-    Bvh::Hit other = added_.tree->nearest_but({}, p, bound, enough);
-    if (other.place.face >= 0 && (hit.place.face < 0 || other.distance < hit.distance)) {
-      other.place.face = added_.number[other.place.face];
-      return other;
-    }
-  }
-  return hit.place.face >= 0 || bound >= 1e300 ? hit : nearest(p, 1e300, enough);
+  return hit.place.face >= 0 || bound >= 1e300 ? hit : nearest(p, component, 1e300, enough);
 }
 
 std::vector<std::pair<int, int>> MeshTree::intersections() const {
   std::vector<std::pair<int, int>> pairs = self_intersections(built_.mesh, *built_.tree);
-  std::erase_if(pairs, [&](const auto& p) { return gone_[p.first] || gone_[p.second]; });
+  std::erase_if(pairs, [&](const auto& p) {
+    return built_.component[p.first] == gone || built_.component[p.second] == gone;
+  });
   for (auto& [a, b] : pairs) a = built_.number[a], b = built_.number[b];
   return pairs;
 }

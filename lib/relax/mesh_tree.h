@@ -24,13 +24,14 @@ class MeshTree {
   MeshTree(const MeshTree&) = delete;  // the trees have references to the meshes
   /// Brings the tree up to date. Searches refer to the mesh as it was at the last call.
   void renew(const State& s);
-  /// Returns the nearest point as Bvh::nearest_but does; `face` is a triangle of the state.
-  Bvh::Hit nearest(Vec3 p, double bound, double enough) const;
+  /// Returns the nearest point of the triangles on this component of the reference, as Bvh::nearest does.
+  /// Requires: it has some. `face` is a triangle of the state.
+  Bvh::Hit nearest(Vec3 p, int component, double bound, double enough) const;
   /// Calls visit(t) as Bvh::overlapping does, with t a triangle of the state.
   template <class Visit>
   void overlapping(const Box& box, Visit&& visit) const {
     built_.tree->overlapping(box, [&](int i) {
-      if (!gone_[i]) visit(built_.number[i]);
+      if (built_.component[i] != gone) visit(built_.number[i]);
     });
     if (added_.tree) added_.tree->overlapping(box, [&](int i) { visit(added_.number[i]); });
   }
@@ -44,15 +45,16 @@ class MeshTree {
  private:
   struct Part {
     Mesh mesh;
-    std::vector<int> number;  ///< its triangles in the state
+    std::vector<int> number;     ///< its triangles in the state
+    std::vector<int> component;  ///< of the reference, or `gone`: not to be searched
     std::optional<Bvh> tree;
     void build(const State& s, std::vector<int> triangles);
   };
   void build(const State& s);
   void follow(const State& s);
 
+  static constexpr int gone = -1;
   Part built_, added_;
-  std::vector<char> gone_;          ///< per triangle of the first, whether it is not searched
   int triangles_ = -1, time_ = -1;  ///< of the state, when the first was built; and that of the last renewal
 };
 

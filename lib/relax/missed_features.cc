@@ -37,7 +37,9 @@ void measure(const State& s, Samples& samples, std::vector<double>& distance, do
       // most are as they were, or still near to the same triangle, or to that of the sample before
       if (x.near < 0 && !guess.empty()) x.near = guess[x.place.face];
       const bool lost = x.near < 0 || s.mesh.dead(x.near);
-      if (lost && i > first) x.near = list[i - 1].near;
+      if (lost && i > first &&
+          s.reference->component_of(x.place) == s.reference->component_of(list[i - 1].place))
+        x.near = list[i - 1].near;
       if (x.near < 0 || s.mesh.dead(x.near)) continue;
       if (lost || !(x.distance <= enough) || changed_since(s, x.near, x.time)) {
         x.distance =
@@ -54,7 +56,8 @@ void measure(const State& s, Samples& samples, std::vector<double>& distance, do
 #pragma omp parallel for schedule(dynamic, chunk) if (far.size() > chunk)
   for (int i : far) {
     Sample& x = list[i];
-    const Bvh::Hit hit = samples.search.nearest(s.reference->walk.point(x.place), distance[i], enough);
+    const Bvh::Hit hit = samples.search.nearest(s.reference->walk.point(x.place),
+                                                s.reference->component_of(x.place), distance[i], enough);
     x.near = hit.place.face;
     x.time = now;
     distance[i] = x.distance = hit.distance;
@@ -208,7 +211,14 @@ bool reach_features(State& s, Samples& samples, double least, int most) {
   if (s.mesh.live == 0 || samples.list.empty()) return false;
   double wanted = 0;
   std::vector<int> guess;
-  const auto farthest = farthest_samples(s, samples, least, wanted);
+  auto farthest = farthest_samples(s, samples, least, wanted);
+  if (const std::size_t looked_at = (std::size_t)rules::places_per_feature * most;
+      farthest.size() > looked_at) {
+    std::vector<char> seen(s.mesh.tris.size());  // one place per triangle, so that no long edge takes all
+    std::erase_if(farthest,
+                  [&](const auto& f) { return std::exchange(seen[samples.list[f.second].near], 1); });
+    farthest.resize(std::min(farthest.size(), looked_at));
+  }
   using Item = std::pair<double, int>;
   auto around = [&](const Item& item, std::vector<int> before) -> std::vector<int> {
     if (!before.empty()) return before;

@@ -243,6 +243,20 @@ SpatialOrder rearrange_lifted(LiftedMesh& mesh) {
   return order;
 }
 
+/// The component of each triangle of the reference; none unless each has a part of the mesh for itself, as it
+/// has in the chain.
+std::vector<int> components_below(const LiftedMesh& mesh, const Reference& reference) {
+  std::vector<int> component;
+  std::vector<char> has(components(reference.walk.opposite(), component));
+  for (const auto& [a, b, c] : mesh.tris) {
+    auto of = [&](int v) { return component[mesh.place[v].face]; };
+    if (of(a) != of(b) || of(a) != of(c)) return {};
+    has[of(a)] = 1;
+  }
+  if (std::count(has.begin(), has.end(), 0)) return {};
+  return component;
+}
+
 /// A mesh and its reference in an order by place: else most of the time would be spent waiting for memory.
 struct Ordered {
   SpatialOrder mesh, reference;
@@ -278,7 +292,8 @@ void set_quality(RelaxReport& report, const Mesh& mesh) {
 
 RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::vector<int>& line_kind,
                         const std::vector<char>& corners, const RelaxOptions& options) {
-  const Ordered ordered(mesh, original);
+  Ordered ordered(mesh, original);
+  if (!options.sheets_meet) ordered.on->component = components_below(mesh, *ordered.on);
   const std::vector<char> corner = ordered.of_points(corners);
   State s = start_state(mesh, *ordered.on, line_kind, corner, options.sheets_meet);
   s.keep_border = options.keep_border;
@@ -325,7 +340,7 @@ void keep_own(const State& s, const Mesh& others, double size, Samples& samples)
     if (!(distance[i] <= enough)) {
       if (!tree) tree.emplace(others);
       const Vec3 p = s.reference->walk.point(x.place);
-      if (tree->nearest_but({}, p, distance[i], distance[i]).place.face >= 0) continue;
+      if (tree->nearest_within(p, distance[i], distance[i]).place.face >= 0) continue;
     }
     samples.list[n++] = x;
   }

@@ -56,8 +56,8 @@ struct Samples {
 std::vector<Sample> feature_samples(const Reference& reference, double h);
 
 /// Puts vertices of the mesh on missed features: maxima of the distance of the samples from the mesh that
-/// exceed `least` times the size, the farthest first, at most `most` of them. The vertices stay there.
-/// Returns whether one was reached.
+/// exceed `least` times the size, the farthest first, at most `most` of them, of a hundred times as many that
+/// are looked at. The vertices stay there. Returns whether one was reached.
 bool reach_features(State& s, Samples& samples, double least, int most);
 
 /// Returns the distances of the samples from the mesh: exact where above `enough`, else upper bounds. Sets

@@ -146,12 +146,13 @@ constexpr double larger_size = 1.2;     // over the mean: from here the distance
 constexpr double retry = 1.2;           // of the wanted distance: from where half way is worth it
 constexpr double along_border = 0.1;    // of the distance: a sample that slides less is on no border
 constexpr int features = 4, triangles_per_feature = 800;  // the larger: more cost the mesh its regularity
-constexpr double spoils = 1.8e-3;      // of the objective: one triangle with 0.9 of the quality wanted
-constexpr double spoils_farther = 5;   // of `missed`: up to where distance excuses more
-constexpr double spoils_if_lost = 3;   // of the objective: five triangles of kappa 0.3
-constexpr int tries_per_feature = 20;  // places tried for each that may be reached; real surfaces take 8
-constexpr int promising_features = 3;  // trials that go on, of 6
-constexpr double reached = 1e-6;       // length
+constexpr double spoils = 1.8e-3;        // of the objective: one triangle with 0.9 of the quality wanted
+constexpr double spoils_farther = 5;     // of `missed`: up to where distance excuses more
+constexpr double spoils_if_lost = 3;     // of the objective: five triangles of kappa 0.3
+constexpr int tries_per_feature = 20;    // places tried for each that may be reached; real surfaces take 8
+constexpr int places_per_feature = 100;  // looked at; coarse meshes of assemblies miss thousands for good
+constexpr int promising_features = 3;    // trials that go on, of 6
+constexpr double reached = 1e-6;         // length
 
 // schedule (relax.cc)
 constexpr int coarse_rounds = 3;    // of splits and collapses before the first sweep

@@ -42,12 +42,16 @@ struct Reference {
   Vec3 normal(const Place& p) const;
   /// Returns the size at a place. Requires: `sizes`.
   double size(const Place& p) const;
+  int component_of(const Place& p) const { return component.empty() ? 0 : component[p.face]; }
 
   const Surface& surface;
   const std::vector<double>* sizes;  ///< null if the surface has none
   const std::vector<int>* patches;   ///< the same
   const SurfaceWalk walk;
   std::vector<Vec3> normals;  ///< at the vertices, not of unit length
+  /// Per triangle; empty: all are one. What the mesh misses of a component is measured by the mesh on it, not
+  /// by that of another in which it may lie. Tiles, and meshes of sheets that meet, have none.
+  std::vector<int> component;
 };
 
 /// A change of connectivity: of the edge of half-edge h.
@@ -132,6 +136,11 @@ struct State {
 
 /// Returns whether v has copies.
 inline bool is_shared(const State& s, int v) { return !s.copy.empty() && s.copy[v] != v; }
+
+/// Returns the component of the reference on which triangle t lies.
+inline int component_of(const State& s, int t) {
+  return s.reference->component_of(s.place[s.mesh.tris[t][0]]);
+}
 
 /// Calls f for v and its copies.
 template <class F>

@@ -58,6 +58,25 @@ TEST(MeshTree, IntersectionsAreThoseOfASearchFromScratch) {
   expect(true);
 }
 
+TEST(MeshTree, FindsTheNearestPointOfAComponent) {
+  Drawn m(two_strips());
+  const Vec3 p{4.6, 0.4, 0.9};  // next to the strip above
+  MeshTree search;
+  search.renew(m.s);
+  EXPECT_NEAR(search.nearest(p, 0, 1e300, 0).distance, 0.1, 1e-12);
+  m.reference.component = std::vector<int>(40, 0);
+  std::fill(m.reference.component.begin() + 20, m.reference.component.end(), 1);
+  search.forget();
+  search.renew(m.s);
+  EXPECT_NEAR(search.nearest(p, 1, 1e300, 0).distance, 0.1, 1e-12);
+  const Bvh::Hit hit = search.nearest(p, 0, 1e-3, 0);  // too small a bound
+  EXPECT_NEAR(hit.distance, 0.9, 1e-12);
+  EXPECT_LT(hit.place.face, 20);
+  ASSERT_TRUE(split_edge(m.s, 3 * hit.place.face));  // what is added is found, too
+  search.renew(m.s);
+  EXPECT_NEAR(search.nearest(p, 0, 1e300, 0).distance, 0.9, 1e-12);
+}
+
 TEST(MeshTree, KnowsWhatHasChanged) {
   Drawn m(two_strips());
   const int before = m.s.clocks.now;
