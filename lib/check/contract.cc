@@ -189,9 +189,10 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
       for (const PatchFault& fault : f.patch_faults)
         labels.insert(labels.end(), fault.labels.begin(), fault.labels.end());
       sort_unique(labels);
-      for (std::size_t t = 0; !labels.empty() && t < faults.size(); ++t)
-        if (std::binary_search(labels.begin(), labels.end(), mesh.face.get<int>("patch")[t]))
-          faults[t] |= offends_patches;
+      if (labels.empty()) continue;
+      const std::vector<int>& patch = mesh.face.get<int>("patch");
+      for (std::size_t t = 0; t < faults.size(); ++t)
+        if (std::binary_search(labels.begin(), labels.end(), patch[t])) faults[t] |= offends_patches;
     }
     for (std::size_t t = 0; t < faults.size(); ++t) {
       const Tri& v = mesh.tris[t];

@@ -21,10 +21,8 @@ std::vector<double> errors_at_faults(const Surface& offending, const Mesh& mesh)
   for (std::size_t i = 0; i < triangle.size(); ++i) {
     const int other = fault[i] & ~offends_deviation;  // its size follows from the distance
     if (!other) continue;
-    const double fault_error = other & offends_kappa      ? of_kappa
-                               : other != offends_patches ? of_others
-                                                          : of_patches;
-    for (int v : mesh.tris[triangle[i]]) at[v] = std::max(at[v], fault_error);
+    const double most = other & offends_kappa ? of_kappa : other == offends_patches ? of_patches : of_others;
+    for (int v : mesh.tris[triangle[i]]) at[v] = std::max(at[v], most);
   }
   // the next mesh has other triangles there: include the neighbors
   for (std::size_t t = 0; t < error.size(); ++t)

@@ -245,6 +245,11 @@ TEST(contract, a_crossing_and_a_lost_name) {
   EXPECT_EQ(faulty.face.get<int>("triangle"), (std::vector<int>{4, 9, 20}));
   EXPECT_EQ(faulty.face.get<std::uint8_t>("fault"),
             (std::vector<std::uint8_t>{offends_intersections, offends_intersections, offends_patches}));
+  good.vertex.set("size", std::vector<double>(good.points.size(), 1));
+  f.new_intersections.clear();
+  const std::vector<double> size = smaller_sizes(contract, f, good, good);
+  for (int v : good.tris[20]) EXPECT_NEAR(size[v], 0.5, 1e-12);
+  EXPECT_GT(std::count(size.begin(), size.end(), 1), (int)size.size() / 2);
 }
 
 TEST(contract, figures_by_the_cuts) {

@@ -77,6 +77,22 @@ TEST(MeshTree, FindsTheNearestPointOfAComponent) {
   EXPECT_NEAR(search.nearest(p, 0, 1e300, 0).distance, 0.9, 1e-12);
 }
 
+// the mesh of the strip above has gone up by two: what it misses is as near to the mesh of the strip below
+TEST(MeshTree, SamplesAreMeasuredByTheMeshOfTheirComponent) {
+  for (const bool apart : {false, true}) {
+    Drawn m(two_strips());
+    if (apart) {
+      m.reference.component = std::vector<int>(40, 0);
+      std::fill(m.reference.component.begin() + 20, m.reference.component.end(), 1);
+    }
+    for (int v = 22; v < 44; ++v) m.s.points[v].z = 3, mark_changed(m.s, v);
+    Samples samples{feature_samples(m.reference, 100), {}};
+    const std::vector<double> distance = sample_distances(m.s, samples, 0);
+    for (std::size_t i = 0; i < distance.size(); ++i)
+      EXPECT_NEAR(distance[i], samples.list[i].place.face < 20 ? 0 : apart ? 2 : 1, 1e-12);
+  }
+}
+
 TEST(MeshTree, KnowsWhatHasChanged) {
   Drawn m(two_strips());
   const int before = m.s.clocks.now;

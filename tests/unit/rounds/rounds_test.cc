@@ -131,4 +131,12 @@ TEST(Rounds, TrianglesMayNotMultiply) {
   EXPECT_FALSE(has_outgrown(verdict_block("", round(100)), 2 * small_result, 1)) << "cheap in any case";
 }
 
+TEST(Rounds, FewerPatchesOfAnotherExtentAreProgress) {
+  auto score = [](double patches) {
+    return score_of(outcome_missing("patches", patches).failures[0]).value();
+  };
+  EXPECT_TRUE(another_round({score(2), score(1), score(1)}, 9));
+  EXPECT_FALSE(another_round({score(2), score(2), score(2)}, 9));
+}
+
 }  // namespace meshpipe
