@@ -21,12 +21,6 @@
 namespace meshpipe {
 namespace {
 
-/// Returns the reference as it was before cuts, or the cut one if it has no origins.
-Mesh before_cuts(const Surface& reference) {
-  return reference.face.has("origin") ? recover_triangles(reference, reference.face.get<int>("origin"))
-                                      : Mesh(reference);
-}
-
 /// The mean length of the edges at each vertex; 0 if it is unused.
 std::vector<double> mean_edges(const Mesh& mesh) {
   std::vector<double> length(mesh.points.size(), 0);
@@ -201,7 +195,7 @@ void measure_curves(Findings& f, const Connectivity& result, const Mesh& referen
 
 /// The reference as the result is compared with it: before cuts, if that is sound.
 Mesh compared_reference(const Surface& given, Soundness& soundness) {
-  Mesh reference = before_cuts(given);
+  Mesh reference = original_mesh(given);
   soundness = soundness_of(reference);
   if (soundness.sound()) return reference;
   soundness = soundness_of(given);

@@ -81,4 +81,9 @@ Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin, std::ve
   return whole;
 }
 
+Mesh original_mesh(const Surface& reference) {
+  return reference.face.has("origin") ? recover_triangles(reference, reference.face.get<int>("origin"))
+                                      : Mesh(reference);
+}
+
 }  // namespace meshpipe

@@ -13,4 +13,8 @@ namespace meshpipe {
 Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin,
                        std::vector<int>* whole_of = nullptr);
 
+/// Returns a reference as it was before cuts, or as it is if it has no origins: rounding where it was cut may
+/// bring sheets together that were not.
+Mesh original_mesh(const Surface& reference);
+
 }  // namespace meshpipe

@@ -6,6 +6,7 @@
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
+#include "lib/core/original_triangles.h"
 
 namespace meshpipe {
 
@@ -89,7 +90,7 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   sort_unique(found.pairs);
   if (found.pairs.empty()) return;
   if (!known.contacts) {
-    Mesh joined = known.reference;
+    Mesh joined = original_mesh(known.reference);
     if (!s.copy.empty()) join_borders(joined);
     known.contacts = contacts(joined, self_intersections(joined));
     if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);

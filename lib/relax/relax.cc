@@ -5,6 +5,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/original_triangles.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/shortest_paths.h"
@@ -227,7 +228,8 @@ Surface rearranged_surface(const Surface& surface, const SpatialOrder& order) {
     s.vertex.set("size", rearranged(surface.vertex.get<double>("size"), order.vertices));
   if (surface.face.has("model"))
     s.face.set("model", rearranged(surface.face.get<std::uint8_t>("model"), order.tris));
-  if (surface.face.has("patch")) s.face.set("patch", rearranged(surface.face.get<int>("patch"), order.tris));
+  for (const char* column : {"patch", "origin"})
+    if (surface.face.has(column)) s.face.set(column, rearranged(surface.face.get<int>(column), order.tris));
   return s;
 }
 
@@ -423,7 +425,10 @@ Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& co
     const auto boxes = split_into_boxes(whole.mesh, identity(whole.mesh.tris.size()), by.options.tile);
     Intersections found{tile_intersections(whole.mesh, boxes, rules::around_seams)};
     if (found.pairs.empty()) return found;
-    if (!known) known = contacts(by.reference, self_intersections(by.reference));
+    if (!known) {
+      const Mesh before = original_mesh(by.reference);
+      known = contacts(before, self_intersections(before));
+    }
     const int all = (int)found.pairs.size();
     found.pairs = new_intersections(whole.mesh, found.pairs, *known);
     found.of_reference = all - (int)found.pairs.size();
