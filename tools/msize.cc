@@ -148,7 +148,7 @@ int main(int argc, char** argv) {
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {
         double h = std::numeric_limits<double>::infinity();
-        if (tree) h = size_near(sizes, *tree, p);
+        if (tree) h = size_near(sizes, *tree, p, o.gradation);
         if (!expression) return h;
         const double e = (*expression)({p.x, p.y, p.z, curvature});
         return e < h || std::isnan(e) ? e : h;

@@ -258,7 +258,7 @@ std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,
     std::vector<Vec3> places = contact(mesh, s, t);
     places.push_back(lerp(places[0], places[places.size() / 2], 0.5));
     const double near = 2 * longest;
-    const auto is_known = [&](Vec3 p) { return known.nearest(p, 1e300, near).distance <= near; };
+    const auto is_known = [&](Vec3 p) { return known.nearest_within(p, near, near).place.face >= 0; };
     if (std::none_of(places.begin(), places.end(), is_known)) found.push_back({s, t});
   }
   return found;

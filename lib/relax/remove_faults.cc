@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <bit>
 #include <memory>
+#include <mutex>
+#include <unordered_set>
 
 #include "lib/core/intersect.h"
 #include "lib/core/triangle_count.h"
@@ -58,45 +61,34 @@ struct Before {
   }
 };
 
-/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
-/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
-/// is asked for becomes `before`.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
-                  Before& before) {
+/// 1/kappa of needles over what is bearable.
+double needles(const State& s, Known& known) {
   double sum = 0;
+  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = s.mesh.tris[t];
+    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
+        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
+      sum += std::min(rules::worst_needle, rules::bearable_kappa / k) - 1;
+  }
+  return sum;
+}
+
+/// The pairs of triangles of the patch that intersect, and chords, where the reference has neither. Those of
+/// triangles that are the `same` as before are known.
+std::vector<std::pair<int, int>> new_pairs(const State& s, const Mesh& mesh, const std::vector<char>& same,
+                                           const Known& known, const Before& before) {
   std::vector<std::pair<int, int>> pairs;
-  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0);
-  const Mesh mesh{s.points, s.mesh.tris};
   std::vector<Box> box(mesh.tris.size());
-  std::vector<char> same(mesh.tris.size(), 0);
   std::vector<int> seen, changed;  // triangles before t
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
     if (s.mesh.dead(t)) continue;
-    const auto [a, b, c] = mesh.tris[t];
-    same[t] = before.has(mesh, t);
-    const double most = bearable_distance(s, t, mean);
-    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
-    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
-    sum += rules::far_weight * std::max(0.0, there / most - 1);
-    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
-        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
-      sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
     for (int u : same[t] ? changed : seen)
       if (overlap(box[t], box[u]) && triangles_intersect(mesh, u, t)) pairs.push_back({u, t});
     seen.push_back(t);
     if (!same[t]) changed.push_back(t);
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
-      if (!overlap(box[t], {missed[i] - reach, missed[i] + reach})) continue;
-      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
-      if (d > (1 + rules::as_near) * distance[i]) continue;
-      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
-      distance[i] = std::min(d, distance[i]);
-    }
   }
-  for (std::size_t i = 0; i < missed.size(); ++i)
-    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
   for (auto [t, u] : chords_of(s))
     if (!(same[t] && same[u])) pairs.push_back({t, u});
@@ -104,9 +96,62 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
   for (auto [t, u] : before.pairs)
     if (same[t] && same[u]) pairs.push_back({t, u});
-  if (before.deviation.empty()) before = {mesh, far, pairs};
-  return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
+  return pairs;
 }
+
+/// Distances over what is bearable, of triangles and from places of the reference. Sets `far` to the former.
+double distances(const State& s, const Mesh& mesh, const std::vector<char>& same,
+                 const std::vector<Vec3>& missed, double mean, const Before& before,
+                 std::vector<double>& far) {
+  double sum = 0;
+  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = mesh.tris[t];
+    const double most = bearable_distance(s, t, mean);
+    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
+    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
+    sum += std::max(0.0, there / most - 1);
+    if (missed.empty()) continue;
+    const Box box = box_of(mesh, t);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
+      if (!overlap(box, {missed[i] - reach, missed[i] + reach})) continue;
+      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
+      if (d > (1 + rules::as_near) * distance[i]) continue;
+      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
+      distance[i] = std::min(d, distance[i]);
+    }
+  }
+  for (std::size_t i = 0; i < missed.size(); ++i) sum += std::max(0.0, distance[i] / bearable[i] - 1);
+  return sum;
+}
+
+/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
+/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
+/// is asked for becomes `before`. What takes long is left out where the sum exceeds `most` without it.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known, Before& before,
+                  double most) {
+  const Mesh mesh{s.points, s.mesh.tris};
+  std::vector<char> same(mesh.tris.size(), 0);
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) same[t] = !s.mesh.dead(t) && before.has(mesh, t);
+  double sum =
+      rules::far_weight * needles(s, known) + rules::pair_weight * (double)folded_edges(s, known).size();
+  if (sum > most) return sum;
+  const std::vector<std::pair<int, int>> pairs = new_pairs(s, mesh, same, known, before);
+  sum += rules::pair_weight * (double)pairs.size();
+  if (sum > most) return sum;
+  std::vector<double> far(mesh.tris.size(), 0);
+  sum += rules::far_weight * distances(s, mesh, same, missed, mean, before, far);
+  if (before.deviation.empty()) before = {mesh, far, pairs};
+  return sum;
+}
+
+/// The neighborhoods that repair has tried in vain, by their fingerprints, at this mean size.
+struct InVain {
+  double mean = 0;
+  std::unordered_set<std::uint64_t> tried{};
+};
 
 /// As triangles_intersect, without a copy of the mesh.
 bool intersect(const State& s, int t, int u) {
@@ -118,10 +163,30 @@ bool intersect(const State& s, int t, int u) {
   return triangles_intersect(pair, 0, 1);
 }
 
+/// What an attempt to repair depends on, except the mean size: a number from the triangles, the places of
+/// the reference near to them, and `thorough`.
+std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, const std::vector<Vec3>& missed,
+                          bool thorough) {
+  std::uint64_t sum = thorough;
+  auto add = [&](std::uint64_t bits) { sum = (std::rotl(sum, 23) ^ bits) * 0x9e3779b97f4a7c15u; };
+  auto add_place = [&](Vec3 p) {
+    for (double x : {p.x, p.y, p.z}) add(std::bit_cast<std::uint64_t>(x));
+  };
+  for (int h : triangles)
+    for (int g = 3 * h; g < 3 * h + 3; ++g) {
+      const int v = s.mesh.from(g);
+      add_place(s.points[v]);
+      add(std::bit_cast<std::uint64_t>(s.refinement[v]));
+      add((std::uint64_t)s.hold[v] << 2 | (std::uint64_t)(s.mesh.opp[g] < 0) << 1 | (s.mesh.hard[g] != 0));
+    }
+  for (Vec3 p : missed) add_place(p);
+  return sum;
+}
+
 /// Tries all edits where refinement did not help, and takes the best of each place. Of many pairs first
 /// single edits. Pairs that the repair of others has removed are left out, except chords, which need not
-/// intersect.
-void repair_at(State& s, const Fault& fault, Known& known) {
+/// intersect, and so are neighborhoods tried before `in_vain`.
+void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   struct Item {
     int t, other;
     bool intersects;
@@ -134,6 +199,7 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     for (const auto& [t, p] : fault.missed)
       if (t == i.t || t == i.other) i.missed.push_back(p);
   const double mean = mean_size(s);
+  if (!(std::min(mean, in_vain.mean) > rules::same_mean * std::max(mean, in_vain.mean))) in_vain = {mean, {}};
   const int begun = s.clocks.now;
   bool thorough = (int)fault.pairs.size() <= rules::many_pairs;
   known.tree(), known.needle_corners();  // before threads ask for them
@@ -146,16 +212,26 @@ void repair_at(State& s, const Fault& fault, Known& known) {
     if (item.other >= 0 && !s.mesh.dead(item.other))
       for (int t : triangles_around(s, item.other, rules::rings))
         if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
-    if ((int)found.size() > rules::largest_patch) found.clear();
+    if ((int)found.size() > rules::largest_patch ||
+        in_vain.tried.count(fingerprint(s, found, item.missed, thorough)))
+      found.clear();
     return found;
   };
+  std::mutex one_at_a_time;
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
     Before before;
-    return repaired(s, triangles, thorough,
-                    {[&](const State& patch) {
-                       return objective(patch) + faultiness(patch, item.missed, mean, known, before);
-                     },
-                     true});
+    auto better =
+        repaired(s, triangles, thorough,
+                 {[&](const State& patch, double most) {
+                    const double shape = objective(patch);
+                    return shape + faultiness(patch, item.missed, mean, known, before, most - shape);
+                  },
+                  true});
+    if (!better) {
+      const std::lock_guard lock(one_at_a_time);
+      in_vain.tried.insert(fingerprint(s, triangles, item.missed, thorough));
+    }
+    return better;
   };
   auto repair = [&](const std::vector<Item>& at) {
     change_neighborhoods(s, at, INT_MAX, INT_MAX, around, attempt, [](const std::vector<int>&) {});
@@ -176,6 +252,7 @@ struct Seen {
 /// `best`.
 struct Search {
   Known known;
+  InVain in_vain{};
   std::shared_ptr<const Seen> best{}, lowest{}, accepted{}, last{};
   Fault now{};
   int rounds = 0;
@@ -220,7 +297,7 @@ void refine(State& s, Search& search, double most) {
     if (repair_helps && !search.now.pairs.empty() && (int)search.now.pairs.size() <= rules::few_faults) {
       Fault pairs;
       pairs.pairs = search.now.pairs, pairs.missed = search.now.missed;
-      repair_at(s, pairs, search.known);
+      repair_at(s, pairs, search.known, search.in_vain);
       search.look(s);
       if (search.now.none()) return;
       helps = repair_helps = search.better || search.lower;
@@ -251,7 +328,7 @@ void repair(State& s, Search& search) {
       continue;
     search.go_to(s, start), tried = start;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
-      repair_at(s, search.now, search.known);
+      repair_at(s, search.now, search.known, search.in_vain);
       search.look(s);
       if (search.now.none() || !(from_best ? search.better : search.lower)) break;
       tried = from_best ? search.best : search.lowest;
@@ -263,7 +340,7 @@ void repair(State& s, Search& search) {
 void repair_mild(State& s, Search& search) {
   search.go_on(s, {search.known.limits.distance, rules::bearable_kappa});
   if (!search.accepted) return;
-  repair_at(s, search.now, search.known);
+  repair_at(s, search.now, search.known, search.in_vain);
   search.look(s);
 }
 

@@ -445,6 +445,22 @@ TEST(Size, RefusesSheetsThatAskForManyTimesAsManyTriangles) {
   EXPECT_NO_THROW(set_size(apart, nullptr, options));
 }
 
+TEST(SizeField, GrowsAwayFromItsTriangles) {
+  // a flake of size 0.01 at 0 0 0 next to a plate of size 1 below, and a lone point far away
+  SizeField f;
+  f.points = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {-9, -9, -2}, {9, -9, -2}, {0, 9, -2}, {0, 0, 90}};
+  f.tris = {{0, 1, 2}, {3, 4, 5}};
+  f.size = {0.01, 0.01, 0.01, 1, 1, 1, 0.1};
+  add_lone_points(f);
+  const Bvh tree(f);
+  auto at = [&](double z) { return size_near(f, tree, {0, 0, z}, 0.5); };
+  EXPECT_NEAR(at(0), 0.01, 1e-12);
+  EXPECT_NEAR(at(0.41), 0.01 + 0.5 * 0.4, 1e-12);
+  EXPECT_NEAR(at(-1.04), 0.01 + 0.5 * 1.03, 1e-12);  // the plate is nearer, but almost equally near
+  EXPECT_NEAR(at(-1.99), 1, 1e-12);
+  EXPECT_NEAR(at(99), 0.1, 1e-12);
+}
+
 TEST(SizeField, Tables) {
   EXPECT_TRUE(is_size_table("# sizes\n0 0 0 1\n"));
   EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
