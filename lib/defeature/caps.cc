@@ -14,7 +14,8 @@ namespace {
 
 constexpr double rounding = 3e-6;     ///< of the diagonal: single-precision coordinates, with a margin
 constexpr double nearest_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
-constexpr double flat = 0.05;         ///< of the longest edge: a higher triangle is only small
+constexpr double flat = 0.05;         ///< of the longest edge: a higher triangle has a normal of its own
+constexpr double same_side = 0.5;     ///< cosine between normals: what is bent more has an edge there
 constexpr int most_rows = 20;         ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
@@ -30,15 +31,18 @@ int longest_edge(const Mesh& mesh, int t) {
   return h;
 }
 
-/// Whether the triangle of h, its longest edge, is flat and lower than `least`, and the edge may be flipped.
+/// Whether the triangle of h, its longest edge, is lower than `least`, and the edge may be flipped. One that
+/// is only small is not flipped across a crease.
 bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double least) {
   if (m.hard[h]) return false;
   const Vec3 a = points[m.from(h)], b = points[m.to(h)], c = points[m.apex(h)], d = points[m.apex(m.opp[h])];
   const double low = height(a, b, c), at = dot(c - a, b - a) / dot(b - a, b - a);
   const Vec3 up = area_vector(b, a, d);
-  return low < std::min(least, flat * norm(b - a)) && std::min(at, 1 - at) > nearest_end &&
-         dot(area_vector(c, a, d), up) > 0 && dot(area_vector(d, b, c), up) > 0 &&
-         std::min(height(c, a, d), height(d, b, c)) > low && !m.joined(m.apex(h), m.apex(m.opp[h]));
+  const bool bent =
+      low > flat * norm(b - a) && dot(normalized(area_vector(a, b, c)), normalized(up)) < same_side;
+  return low < least && !bent && std::min(at, 1 - at) > nearest_end && dot(area_vector(c, a, d), up) > 0 &&
+         dot(area_vector(d, b, c), up) > 0 && std::min(height(c, a, d), height(d, b, c)) > low &&
+         !m.joined(m.apex(h), m.apex(m.opp[h]));
 }
 
 double distance(const std::vector<Vec3>& points, const Tri& t, int v) {

@@ -197,15 +197,7 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
 }
 
 void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge) {
-  std::vector<double> least;  // the `most` least objectives so far, a heap
-  for (Trial& t : trials) {
-    t.objective = judge.of(t.state, least.size() < most ? infinity : least.front());
-    least.push_back(t.objective);
-    std::push_heap(least.begin(), least.end());
-    if (least.size() <= most) continue;
-    std::pop_heap(least.begin(), least.end());
-    least.pop_back();
-  }
+  for (Trial& t : trials) t.objective = judge.of(t.state);
   std::stable_sort(trials.begin(), trials.end(),
                    [](const Trial& a, const Trial& b) { return a.objective < b.objective; });
   if (trials.size() > most) trials.erase(trials.begin() + (std::ptrdiff_t)most, trials.end());

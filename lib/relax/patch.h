@@ -50,10 +50,9 @@ void settle(State& s, int times);
 void rest(State& s);
 /// Repeats in s the edits of the patch extracted from these triangles, then moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
-/// The objective that trials minimize, or any value above `most` if it is above that, and whether splits may
-/// fold what smoothing may unfold.
+/// The objective that trials minimize, and whether splits may fold what smoothing may unfold.
 struct Judge {
-  std::function<double(const State&, double most)> of = [](const State& s, double) { return objective(s); };
+  std::function<double(const State&)> of = objective;
   bool may_fold = false;
 };
 /// Evaluates the trials by the judge and keeps the `most` best, the best first.

@@ -61,34 +61,45 @@ struct Before {
   }
 };
 
-/// 1/kappa of needles over what is bearable.
-double needles(const State& s, Known& known) {
+/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
+/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
+/// is asked for becomes `before`.
+double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
+                  Before& before) {
   double sum = 0;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t)) continue;
-    const auto [a, b, c] = s.mesh.tris[t];
-    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
-        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
-      sum += std::min(rules::worst_needle, rules::bearable_kappa / k) - 1;
-  }
-  return sum;
-}
-
-/// The pairs of triangles of the patch that intersect, and chords, where the reference has neither. Those of
-/// triangles that are the `same` as before are known.
-std::vector<std::pair<int, int>> new_pairs(const State& s, const Mesh& mesh, const std::vector<char>& same,
-                                           const Known& known, const Before& before) {
   std::vector<std::pair<int, int>> pairs;
+  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0);
+  const Mesh mesh{s.points, s.mesh.tris};
   std::vector<Box> box(mesh.tris.size());
+  std::vector<char> same(mesh.tris.size(), 0);
   std::vector<int> seen, changed;  // triangles before t
   for (int t = 0; t < (int)mesh.tris.size(); ++t) {
     if (s.mesh.dead(t)) continue;
+    const auto [a, b, c] = mesh.tris[t];
+    same[t] = before.has(mesh, t);
+    const double most = bearable_distance(s, t, mean);
+    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
+    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
+    sum += rules::far_weight * std::max(0.0, there / most - 1);
+    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
+        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
+      sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
     box[t] = box_of(mesh, t);
     for (int u : same[t] ? changed : seen)
       if (overlap(box[t], box[u]) && triangles_intersect(mesh, u, t)) pairs.push_back({u, t});
     seen.push_back(t);
     if (!same[t]) changed.push_back(t);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
+      if (!overlap(box[t], {missed[i] - reach, missed[i] + reach})) continue;
+      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
+      if (d > (1 + rules::as_near) * distance[i]) continue;
+      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
+      distance[i] = std::min(d, distance[i]);
+    }
   }
+  for (std::size_t i = 0; i < missed.size(); ++i)
+    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
   for (auto [t, u] : chords_of(s))
     if (!(same[t] && same[u])) pairs.push_back({t, u});
@@ -96,62 +107,9 @@ std::vector<std::pair<int, int>> new_pairs(const State& s, const Mesh& mesh, con
   if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
   for (auto [t, u] : before.pairs)
     if (same[t] && same[u]) pairs.push_back({t, u});
-  return pairs;
-}
-
-/// Distances over what is bearable, of triangles and from places of the reference. Sets `far` to the former.
-double distances(const State& s, const Mesh& mesh, const std::vector<char>& same,
-                 const std::vector<Vec3>& missed, double mean, const Before& before,
-                 std::vector<double>& far) {
-  double sum = 0;
-  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1);
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t)) continue;
-    const auto [a, b, c] = mesh.tris[t];
-    const double most = bearable_distance(s, t, mean);
-    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
-    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
-    sum += std::max(0.0, there / most - 1);
-    if (missed.empty()) continue;
-    const Box box = box_of(mesh, t);
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
-      if (!overlap(box, {missed[i] - reach, missed[i] + reach})) continue;
-      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
-      if (d > (1 + rules::as_near) * distance[i]) continue;
-      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
-      distance[i] = std::min(d, distance[i]);
-    }
-  }
-  for (std::size_t i = 0; i < missed.size(); ++i) sum += std::max(0.0, distance[i] / bearable[i] - 1);
-  return sum;
-}
-
-/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
-/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
-/// is asked for becomes `before`. What takes long is left out where the sum exceeds `most` without it.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known, Before& before,
-                  double most) {
-  const Mesh mesh{s.points, s.mesh.tris};
-  std::vector<char> same(mesh.tris.size(), 0);
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) same[t] = !s.mesh.dead(t) && before.has(mesh, t);
-  double sum =
-      rules::far_weight * needles(s, known) + rules::pair_weight * (double)folded_edges(s, known).size();
-  if (sum > most) return sum;
-  const std::vector<std::pair<int, int>> pairs = new_pairs(s, mesh, same, known, before);
-  sum += rules::pair_weight * (double)pairs.size();
-  if (sum > most) return sum;
-  std::vector<double> far(mesh.tris.size(), 0);
-  sum += rules::far_weight * distances(s, mesh, same, missed, mean, before, far);
   if (before.deviation.empty()) before = {mesh, far, pairs};
-  return sum;
+  return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
 }
-
-/// The neighborhoods that repair has tried in vain, by their fingerprints, at this mean size.
-struct InVain {
-  double mean = 0;
-  std::unordered_set<std::uint64_t> tried{};
-};
 
 /// As triangles_intersect, without a copy of the mesh.
 bool intersect(const State& s, int t, int u) {
@@ -163,29 +121,34 @@ bool intersect(const State& s, int t, int u) {
   return triangles_intersect(pair, 0, 1);
 }
 
-/// What an attempt to repair depends on, except the mean size: a number from the triangles, the places of
-/// the reference near to them, and `thorough`.
+/// The neighborhoods that repair has tried in vain, by their fingerprints, at this mean size.
+struct InVain {
+  double mean = 0;
+  std::unordered_set<std::uint64_t> tried{};
+};
+
+/// A number from what an attempt to repair depends on: triangles, places of the reference near to them, and
+/// `thorough`; not from the mean size.
 std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, const std::vector<Vec3>& missed,
                           bool thorough) {
   std::uint64_t sum = thorough;
-  auto add = [&](std::uint64_t bits) { sum = (std::rotl(sum, 23) ^ bits) * 0x9e3779b97f4a7c15u; };
-  auto add_place = [&](Vec3 p) {
-    for (double x : {p.x, p.y, p.z}) add(std::bit_cast<std::uint64_t>(x));
+  auto add = [&](auto x) {
+    sum = (std::rotl(sum, 23) ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
   };
-  for (int h : triangles)
-    for (int g = 3 * h; g < 3 * h + 3; ++g) {
-      const int v = s.mesh.from(g);
-      add_place(s.points[v]);
-      add(std::bit_cast<std::uint64_t>(s.refinement[v]));
-      add((std::uint64_t)s.hold[v] << 2 | (std::uint64_t)(s.mesh.opp[g] < 0) << 1 | (s.mesh.hard[g] != 0));
+  auto add_point = [&](Vec3 p) { add(p.x), add(p.y), add(p.z); };
+  for (int t : triangles)
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      const int v = s.mesh.from(h);
+      add_point(s.points[v]), add(s.refinement[v]);
+      add((std::uint64_t)s.hold[v] << 2 | (std::uint64_t)(s.mesh.opp[h] < 0) << 1 | (s.mesh.hard[h] != 0));
     }
-  for (Vec3 p : missed) add_place(p);
+  for (Vec3 p : missed) add_point(p);
   return sum;
 }
 
 /// Tries all edits where refinement did not help, and takes the best of each place. Of many pairs first
 /// single edits. Pairs that the repair of others has removed are left out, except chords, which need not
-/// intersect, and so are neighborhoods tried before `in_vain`.
+/// intersect, and so are neighborhoods tried `in_vain` before.
 void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   struct Item {
     int t, other;
@@ -220,13 +183,11 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   std::mutex one_at_a_time;
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
     Before before;
-    auto better =
-        repaired(s, triangles, thorough,
-                 {[&](const State& patch, double most) {
-                    const double shape = objective(patch);
-                    return shape + faultiness(patch, item.missed, mean, known, before, most - shape);
-                  },
-                  true});
+    auto better = repaired(s, triangles, thorough,
+                           {[&](const State& patch) {
+                              return objective(patch) + faultiness(patch, item.missed, mean, known, before);
+                            },
+                            true});
     if (!better) {
       const std::lock_guard lock(one_at_a_time);
       in_vain.tried.insert(fingerprint(s, triangles, item.missed, thorough));

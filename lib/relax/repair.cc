@@ -202,11 +202,8 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   const State before = extract(s, triangles);
   Judge judge = given;
   if (s.acute && !given.may_fold)
-    judge.of = [&](const State& patch, double most) {
-      return stays_near(before, patch) ? given.of(patch, most) : infinity;
-    };
-  const double bad = judge.of(before, infinity),
-               good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
+    judge.of = [&](const State& patch) { return stays_near(before, patch) ? given.of(patch) : 1e300; };
+  const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
   const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough, judge), judge);
   if (trials.empty()) return {};
   Trial best = trials.front();

@@ -57,18 +57,21 @@ TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
   EXPECT_EQ(flip_caps_and_folds(patches, no_lines, 0).count, 0);
 }
 
-TEST(Caps, StayWhereTheyAreOnlySmall) {
-  Surface s = with_cap(0.1);
-  for (Vec3& p : s.points) p = 1e-6 * p;
-  s.points.push_back({2, 2, 0});  // the rest of the surface
-  s.points.push_back({2, 3, 0});
-  s.points.push_back({3, 2, 0});
-  s.tris.push_back({5, 7, 6});
-  s.face = {"face", s.tris.size(), {}};
-  const std::vector<int> none(15, -1);
-  EXPECT_EQ(flip_caps_and_folds(s, none, 0).count, 0);
-  s.points[2].y *= 0.1;
-  EXPECT_EQ(flip_caps_and_folds(s, none, 0).count, 1);
+TEST(Caps, StayWhereTheyAreOnlySmallAndTheEdgeIsACrease) {
+  auto flips = [](double cap, double down) {
+    Surface s = with_cap(cap);
+    s.points[4] = {0.5, -0.1, down};
+    for (Vec3& p : s.points) p = 1e-6 * p;
+    s.points.push_back({2, 2, 0});  // the rest of the surface
+    s.points.push_back({2, 3, 0});
+    s.points.push_back({3, 2, 0});
+    s.tris.push_back({5, 7, 6});
+    s.face = {"face", s.tris.size(), {}};
+    return flip_caps_and_folds(s, std::vector<int>(15, -1), 0).count;
+  };
+  EXPECT_EQ(flips(0.1, -1), 0);
+  EXPECT_EQ(flips(0.01, -1), 1);
+  EXPECT_EQ(flips(0.1, 0), 1);
 }
 
 TEST(Caps, StayWhereTheirCornerIsNextToAnEndOfTheEdge) {

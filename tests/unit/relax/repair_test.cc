@@ -74,7 +74,7 @@ TEST(Repair, EndsOfLinesAtASharpCornerBecomeAsFarFromIt) {
   Drawn m(surface);
   for (int v = 0; v < 5; ++v) m.s.hold[v] = v == 2 ? slides : fixed;
   // what is split is not wanted here
-  auto by_corner = [](const State& s, double) {
+  auto by_corner = [](const State& s) {
     return s.mesh.live == 3 ? 1 / kappa(s.points[0], s.points[1], s.points[2]) : 1e3;
   };
   const std::optional<State> best = repaired(m.s, {0, 1, 2}, true, {by_corner, true});
