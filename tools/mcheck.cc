@@ -5,7 +5,6 @@
 
 #include "formats/stream/check_tables.h"
 #include "lib/check/check.h"
-#include "lib/core/triangle_count.h"
 #include "tools/check_shards.h"
 #include "tools/common.h"
 #include "tools/compare.h"
@@ -73,7 +72,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.refine.empty() && !failures.empty()) {
     std::vector<double> size = smaller_sizes(contract, f, stream.surface, reference);
     if (size != stream.surface.vertex.get<double>("size")) {
-      if (!o.verdict.empty()) verdict.outcome.refined = count_for_size(stream.surface, size);
+      if (!o.verdict.empty()) verdict.outcome.refined = triangles_asked_for(stream.surface, size, reference);
       write_refined(io, stream.surface, o.refine, std::move(size));
     }
   }

@@ -191,6 +191,7 @@ TileJob take_tile(Stream stream) {
   static_cast<Mesh&>(tile.slice) = mesh_from(vertex, face);
   if (vertex.has("size")) tile.slice.vertex.set("size", vertex.get<double>("size"));
   if (face.has("model")) tile.slice.face.set("model", face.get<std::uint8_t>("model"));
+  if (face.has("origin")) tile.slice.face.set("origin", face.get<int>("origin"));
   tile.faces = face.get<int>("row");
   if (vertex.has("corner"))
     for (std::uint8_t c : vertex.get<std::uint8_t>("corner")) tile.corner.push_back(c != 0);

@@ -130,4 +130,8 @@ Surface offending_faces(const Contract& contract, const Findings& findings, cons
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference);
 
+/// Returns how many triangles these sizes ask for: on the result, and on the triangles of the reference that
+/// are farther from it than the size at the nearest place, which is what msize --field gives them.
+double triangles_asked_for(const Mesh& result, const std::vector<double>& size, const Mesh& reference);
+
 }  // namespace meshpipe

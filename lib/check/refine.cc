@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/check/check.h"
+#include "lib/core/triangle_count.h"
 
 namespace meshpipe {
 namespace {
@@ -47,6 +48,23 @@ std::vector<double> smaller_sizes(const Contract& contract, const Findings& find
     size = refined_size(result, size, deviation, r.limit);
   }
   return refined_size(result, size, errors_at_faults(offending_faces(contract, findings, result), result), 1);
+}
+
+double triangles_asked_for(const Mesh& result, const std::vector<double>& size, const Mesh& reference) {
+  const Bvh tree(result);
+  const int n = (int)reference.points.size();
+  std::vector<double> there(n);
+  std::vector<char> missed(n);
+#pragma omp parallel for schedule(dynamic, 256)
+  for (int v = 0; v < n; ++v) {
+    const Bvh::Hit hit = tree.nearest(reference.points[v]);
+    there[v] = value_at(hit.place, size, result.tris);
+    missed[v] = hit.distance > there[v];
+  }
+  Mesh rest{reference.points, {}};
+  for (const Tri& t : reference.tris)
+    if (missed[t[0]] && missed[t[1]] && missed[t[2]]) rest.tris.push_back(t);
+  return count_for_size(result, size) + count_for_size(rest, there);
 }
 
 }  // namespace meshpipe

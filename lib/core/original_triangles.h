@@ -13,8 +13,8 @@ namespace meshpipe {
 Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin,
                        std::vector<int>* whole_of = nullptr);
 
-/// Returns a reference as it was before cuts, or as it is if it has no origins: rounding where it was cut may
-/// bring sheets together that were not.
+/// Returns a reference before its triangles were cut, or a copy if it has no column `origin`. Look for its
+/// intersections there: new vertices are rounded, so sheets may cross in the cut one only.
 Mesh original_mesh(const Surface& reference);
 
 }  // namespace meshpipe

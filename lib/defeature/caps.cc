@@ -32,7 +32,7 @@ int longest_edge(const Mesh& mesh, int t) {
 }
 
 /// Whether the triangle of h, its longest edge, is lower than `least`, and the edge may be flipped. One that
-/// is only small is not flipped across a crease.
+/// is small, but not flat, is not flipped across a crease.
 bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double least) {
   if (m.hard[h]) return false;
   const Vec3 a = points[m.from(h)], b = points[m.to(h)], c = points[m.apex(h)], d = points[m.apex(m.opp[h])];

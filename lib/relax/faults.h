@@ -26,7 +26,7 @@ struct Known {
   int time = -1;
   int looked = -1;                    ///< when long triangles of the reference were looked at
   double mean = 0;                    ///< the largest mean size of all looks at this mesh
-  std::optional<Mesh> contacts{};     ///< where the reference intersects itself
+  std::optional<Mesh> contacts{};     ///< where the reference before cuts intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
   std::vector<char> corners{};

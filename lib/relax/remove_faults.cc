@@ -128,10 +128,10 @@ struct InVain {
 };
 
 /// A number from what an attempt to repair depends on: triangles, places of the reference near to them, and
-/// `thorough`; not from the mean size.
+/// the bits of `how`; not from the mean size, see InVain.
 std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, const std::vector<Vec3>& missed,
-                          bool thorough) {
-  std::uint64_t sum = thorough;
+                          unsigned how) {
+  std::uint64_t sum = how;
   auto add = [&](auto x) {
     sum = (std::rotl(sum, 23) ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
   };
@@ -166,6 +166,11 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   const int begun = s.clocks.now;
   bool thorough = (int)fault.pairs.size() <= rules::many_pairs;
   known.tree(), known.needle_corners();  // before threads ask for them
+  auto print_of = [&](const Item& item, const std::vector<int>& triangles) {
+    const unsigned contacts = known.contact_tree.has_value();
+    return fingerprint(s, triangles, item.missed,
+                       (unsigned)thorough | (unsigned)s.acute << 1 | contacts << 2);
+  };
   auto around = [&](const Item& item, std::vector<int> before) {
     if (!before.empty() || s.mesh.dead(item.t)) return before;
     if (item.intersects && (changed_since(s, item.t, begun) || changed_since(s, item.other, begun)) &&
@@ -175,9 +180,7 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
     if (item.other >= 0 && !s.mesh.dead(item.other))
       for (int t : triangles_around(s, item.other, rules::rings))
         if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
-    if ((int)found.size() > rules::largest_patch ||
-        in_vain.tried.count(fingerprint(s, found, item.missed, thorough)))
-      found.clear();
+    if ((int)found.size() > rules::largest_patch || in_vain.tried.count(print_of(item, found))) found.clear();
     return found;
   };
   std::mutex one_at_a_time;
@@ -190,7 +193,7 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
                             true});
     if (!better) {
       const std::lock_guard lock(one_at_a_time);
-      in_vain.tried.insert(fingerprint(s, triangles, item.missed, thorough));
+      in_vain.tried.insert(print_of(item, triangles));
     }
     return better;
   };

@@ -75,6 +75,8 @@ void take_slice(Tile& tile, const Surface& reference, const std::vector<char>& c
     slice.vertex.set("size", rearranged(reference.vertex.get<double>("size"), vertices));
   if (reference.face.has("model"))
     slice.face.set("model", rearranged(reference.face.get<std::uint8_t>("model"), tile.faces));
+  if (reference.face.has("origin"))
+    slice.face.set("origin", rearranged(reference.face.get<int>("origin"), tile.faces));
   if (!corner.empty()) tile.corner = rearranged(corner, vertices);
 }
 

@@ -17,19 +17,16 @@ double size_near(const SizeField& field, const Bvh& tree, Vec3 p, double gradati
   // distances that differ by less than this share of the size are almost equal: sheets that a mesh of that
   // size cannot tell apart
   constexpr double almost_equal = 0.1;
-  auto grown = [&](const Place& place, double distance) {
-    const double h = value_at(place, field.size, field.tris);
-    const Tri& t = field.tris[place.face];
-    const bool lone = t[0] == t[1] && t[0] == t[2];
-    return lone ? h : h + gradation * std::max(0.0, distance - h);
-  };
   const Bvh::Hit hit = tree.nearest(p);
-  double least = grown(hit.place, hit.distance);
-  const double reach = hit.distance + almost_equal * value_at(hit.place, field.size, field.tris);
+  const double nearest = value_at(hit.place, field.size, field.tris);
+  double least = nearest;
+  const double reach = hit.distance + almost_equal * nearest;
   tree.overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}}, [&](int t) {
     const Place place = closest_place(field, t, p);
     const double distance = norm(value_at(place, field.points, field.tris) - p);
-    if (distance <= reach) least = std::min(least, grown(place, distance));
+    if (distance > reach) return;
+    const double h = value_at(place, field.size, field.tris);
+    least = std::min(least, h + gradation * std::max(0.0, distance - hit.distance - almost_equal * h));
   });
   return least;
 }

@@ -18,8 +18,8 @@ struct SizeField : Mesh {
 void add_lone_points(SizeField& field);
 
 /// Returns the size at the point of the field nearest to p; where several sheets are almost equally near, the
-/// smallest. Farther than that from the nearest triangle, which so has no sizes for this place, the size
-/// grows by `gradation` per length. `tree`: of the field.
+/// smallest. Distances that differ by a tenth of the larger size are almost equal; by what they differ more
+/// than by a tenth of the smaller size, that grows, by `gradation` per length. `tree`: of the field.
 double size_near(const SizeField& field, const Bvh& tree, Vec3 p, double gradation);
 
 /// Throws NotAdmissible, with the names of the existing columns, unless the vertices have column `name`.

@@ -213,6 +213,18 @@ TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
   EXPECT_EQ(smaller_sizes(contract, f, result, spiked), result.vertex.get<double>("size")) << "a tangle";
 }
 
+TEST(contract, sizes_count_where_the_result_misses_the_reference) {
+  const Mesh result = sphere(500);
+  std::vector<double> size(result.points.size(), 0.2);
+  size[0] = 0.01;
+  EXPECT_DOUBLE_EQ(triangles_asked_for(result, size, sphere(60)), count_for_size(result, size));
+  Mesh limb{{2 * result.points[0]}, {{0, 1, 2}}};  // that small size is nearest to all of it
+  limb.points.push_back(limb.points[0] + Vec3{0, 0.1, 0});
+  limb.points.push_back(limb.points[0] + Vec3{0, 0, 0.1});
+  EXPECT_NEAR(triangles_asked_for(result, size, limb) - count_for_size(result, size),
+              0.005 / (0.25 * std::sqrt(3.0) * 1e-4), 1);
+}
+
 TEST(contract, a_crossing_and_a_lost_name) {
   Surface good = surface_of(sphere(500));
   std::vector<int> patch(good.tris.size(), 1);

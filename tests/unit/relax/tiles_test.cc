@@ -96,7 +96,8 @@ TEST(Tiles, RimsKnowTheirValenceInTheWhole) {
 }
 
 TEST(Tiles, EachHasTheReferenceAndTheOthersAroundIt) {
-  const Surface reference = sized(torus(0.4, 8000), 2000);
+  Surface reference = sized(torus(0.4, 8000), 2000);
+  reference.face.set("origin", identity(reference.tris.size()));
   TiledMesh whole;
   whole.mesh = place_on(sized(torus(0.4, 2000), 2000), reference);
   whole.hold.resize(whole.mesh.points.size()), whole.refinement.resize(whole.mesh.points.size(), 1);
@@ -111,6 +112,7 @@ TEST(Tiles, EachHasTheReferenceAndTheOthersAroundIt) {
     }
     faces.insert(tile.faces.begin(), tile.faces.end());
     EXPECT_EQ(tile.faces.size(), tile.slice.tris.size());
+    EXPECT_EQ(tile.slice.face.get<int>("origin"), tile.faces);
     EXPECT_LT(tile.faces.size(), 3 * reference.tris.size() / 4);
     // vertices of the rim have triangles on both sides
     std::set<std::array<double, 3>> beyond;

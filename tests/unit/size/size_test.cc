@@ -445,20 +445,19 @@ TEST(Size, RefusesSheetsThatAskForManyTimesAsManyTriangles) {
   EXPECT_NO_THROW(set_size(apart, nullptr, options));
 }
 
-TEST(SizeField, GrowsAwayFromItsTriangles) {
-  // a flake of size 0.01 at 0 0 0 next to a plate of size 1 below, and a lone point far away
+TEST(SizeField, SmallSizesOfOtherSheetsGrowOnTheWay) {
+  // a flake of size 0.01 at 0 0 0, and a plate of size 2 below
   SizeField f;
-  f.points = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {-9, -9, -2}, {9, -9, -2}, {0, 9, -2}, {0, 0, 90}};
+  f.points = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {-9, -9, -2}, {9, -9, -2}, {0, 9, -2}};
   f.tris = {{0, 1, 2}, {3, 4, 5}};
-  f.size = {0.01, 0.01, 0.01, 1, 1, 1, 0.1};
-  add_lone_points(f);
+  f.size = {0.01, 0.01, 0.01, 2, 2, 2};
   const Bvh tree(f);
   auto at = [&](double z) { return size_near(f, tree, {0, 0, z}, 0.5); };
   EXPECT_NEAR(at(0), 0.01, 1e-12);
-  EXPECT_NEAR(at(0.41), 0.01 + 0.5 * 0.4, 1e-12);
-  EXPECT_NEAR(at(-1.04), 0.01 + 0.5 * 1.03, 1e-12);  // the plate is nearer, but almost equally near
-  EXPECT_NEAR(at(-1.99), 1, 1e-12);
-  EXPECT_NEAR(at(99), 0.1, 1e-12);
+  EXPECT_NEAR(at(9), 0.01, 1e-12);                             // nothing else is near
+  EXPECT_NEAR(at(-1.0004), 0.01, 1e-12);                       // 0.0008 farther than the plate
+  EXPECT_NEAR(at(-1.09), 0.01 + 0.5 * (0.18 - 0.001), 1e-12);  // 0.18 farther, less than a tenth of 2
+  EXPECT_NEAR(at(-1.2), 2, 1e-12);
 }
 
 TEST(SizeField, Tables) {
