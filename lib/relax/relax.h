@@ -42,10 +42,10 @@ struct RelaxReport : RelaxCounts {
 /// Flips, collapses, splits and moves until the mesh is regular, judged in space. Vertices stay on the
 /// reference; borders, model edges and corners stay; vertices of interface lines (line_kind[line] ==
 /// interface_line) are free.
-/// reference: read are vertex column `size` (without: the mesh's own sizes), face columns `model` (without:
-/// no edges) and `origin` (without: the triangles are not cut) corner: per vertex of the reference, 1 where a
-/// line has a corner that stays, unless another is much nearer than the size; empty: only ends and junctions
-/// of lines stay Returns the same bytes at any number of threads.
+/// reference: read are vertex column `size` (else the mesh's own sizes), face columns `model` and `origin`
+/// corner: per vertex of the reference, 1 where a line has a corner that stays, unless another is much nearer
+/// than the size; empty: only ends and junctions of lines stay
+/// Returns the same bytes at any number of threads.
 RelaxReport relax(LiftedMesh& mesh, const Surface& reference, const std::vector<int>& line_kind,
                   const std::vector<char>& corner = {}, const RelaxOptions& options = {});
 
