@@ -22,11 +22,12 @@ bool is_copy(const State& s, int v, int w) {
   return found;
 }
 
-/// The border half-edges along the edge of h, that of h first.
+/// The border half-edges along the edge of h, that of h first. The vertex where sheets cease to meet has no
+/// copies: both half-edges there are its own.
 std::vector<int> edges_along(const State& s, int h) {
   const EditMesh& m = s.mesh;
   std::vector<int> edges{h};
-  if (m.opp[h] >= 0 || !is_shared(s, m.from(h)) || !is_shared(s, m.to(h))) return edges;
+  if (m.opp[h] >= 0 || s.copy.empty()) return edges;
   for_copies(s, m.from(h), [&](int v) {
     if (!m.on_border(v)) return;
     int last = 0;

@@ -110,11 +110,12 @@ TEST(Copies, AnEdgeIsSplitAndCollapsedInAllSheets) {
 //   +--b--c--d--+
 //   |  | below  |
 //   +--+--+--+--+
-TEST(Copies, ASlitKeepsAVertexBetweenItsEnds) {
+constexpr int below = 7, above = 15;  // c
+
+Surface with_slit(bool has_fin) {
   Surface s;
   for (int j = -1; j <= 1; ++j)
     for (int i = 0; i <= 4; ++i) s.points.push_back({(double)i, (double)j, 0});
-  constexpr int below = 7, above = 15;  // c
   s.points.push_back(s.points[below]);
   auto square = [&](int a, int b, int c, int d) {
     s.tris.push_back({a, b, c});
@@ -125,20 +126,38 @@ TEST(Copies, ASlitKeepsAVertexBetweenItsEnds) {
     square(i, i + 1, i + 6, i + 5);
     square(upper(i + 5), upper(i + 6), i + 11, i + 10);
   }
-  const int fin = (int)s.points.size();
-  for (int k : {0, 1})
+  const int fin = above + 1;
+  for (int k = 0; k < 2 && has_fin; ++k)
     for (int i = 1; i <= 3; ++i) s.points.push_back({(double)i, 0, (double)k});
-  for (int i = fin; i < fin + 2; ++i) square(i, i + 1, i + 4, i + 3);
+  for (int i = fin; i < fin + 2 && has_fin; ++i) square(i, i + 1, i + 4, i + 3);
   s.vertex.rows = s.points.size();
   s.vertex.set("size", std::vector<double>(s.points.size(), 2));
   s.face.set("patch", std::vector<int>(s.tris.size(), 1));
-  Strips m(std::move(s));
+  return s;
+}
+
+TEST(Copies, ASlitKeepsAVertexBetweenItsEnds) {
+  constexpr int fin = above + 1;
+  Strips m(with_slit(true));
   ASSERT_EQ(m.copies(below), 3);
   for (int c : {below, above, fin + 1}) m.s.hold[c] = slides;
   EXPECT_FALSE(collapse_edge(m.s, m.edge(below, below - 1), below, {1e9, 9}));
   ASSERT_TRUE(split_edge(m.s, m.edge(below + 1, below)));
   EXPECT_TRUE(collapse_edge(m.s, m.edge(fin + 6, below), fin + 6, {1e9, 9}));
   EXPECT_EQ(m.copies(below), 3);
+}
+
+TEST(Copies, ASlitIsSplitOnBothSidesAlsoAtItsEnds) {
+  Strips m(with_slit(false));
+  const int n = (int)m.s.points.size();
+  ASSERT_FALSE(is_shared(m.s, below + 1));
+  ASSERT_TRUE(split_edge(m.s, m.edge(below + 1, below)));
+  ASSERT_EQ((int)m.s.points.size(), n + 2);
+  EXPECT_EQ(m.copies(n), 2);
+  for (int c : {below, above}) m.s.hold[c] = slides;
+  EXPECT_TRUE(collapse_edge(m.s, m.edge(n, below), n, {1e9, 9}));
+  EXPECT_EQ(m.s.mesh.live, 16);
+  EXPECT_FALSE(collapse_edge(m.s, m.edge(below, below - 1), below - 1, {1e9, 9}));
 }
 
 /// Edges inside a sheet that another one has, too.
