@@ -83,8 +83,8 @@ namespace {
 
 /// Pairs that intersect, and chords, where the reference has neither.
 void find_intersections(const State& s, Known& known, Fault& found) {
-  renew(known.intersections, s, known.samples.search);
-  found.pairs = known.intersections.pairs;
+  renew(known.of_mesh.intersections, s, known.samples.search);
+  found.pairs = known.of_mesh.intersections.pairs;
   if (!s.copy.empty()) drop_contacts_of_sheets(s, found.pairs);
   for (const auto& pair : chords_of(s)) found.pairs.push_back(pair);
   sort_unique(found.pairs);
@@ -104,20 +104,20 @@ void find_intersections(const State& s, Known& known, Fault& found) {
 /// Walks from the corners of triangles that have changed, except where no edge between their normals sags. A
 /// border or model edge cuts bends of its line, however flat the surface is.
 void look_at_changed(const State& s, Known& known) {
-  const int n = (int)s.mesh.tris.size(), before = (int)known.walked.size();
-  known.walked.resize(n), known.searched.resize(n);
+  const int n = (int)s.mesh.tris.size(), before = (int)known.of_mesh.walked.size();
+  known.of_mesh.walked.resize(n), known.of_mesh.searched.resize(n);
 #pragma omp parallel for schedule(dynamic, 256) if (n > 10000)
   for (int t = 0; t < n; ++t) {
-    if (s.mesh.dead(t) || (t < before && !changed_since(s, t, known.time))) continue;
+    if (s.mesh.dead(t) || (t < before && !changed_since(s, t, known.of_mesh.time))) continue;
     const auto [a, b, c] = s.mesh.tris[t];
     const Vec3 normal = s.face_normal(t);
     const bool on_line = s.mesh.hard[3 * t] || s.mesh.hard[3 * t + 1] || s.mesh.hard[3 * t + 2];
     const bool flat = !on_line && std::min({dot(normal, s.normal[a]), dot(normal, s.normal[b]),
                                             dot(normal, s.normal[c])}) > rules::parallel;
-    known.walked[t] = flat ? 0 : deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
-    known.searched[t] = -1;
+    known.of_mesh.walked[t] = flat ? 0 : deviation(s, t) * std::max({s.target(a), s.target(b), s.target(c)});
+    known.of_mesh.searched[t] = -1;
   }
-  known.time = s.clocks.now;
+  known.of_mesh.time = s.clocks.now;
 }
 
 /// The triangle by whose size the distance to this place of the mesh is judged: of those that meet there, if
@@ -223,12 +223,12 @@ void find_far(const State& s, Known& known, Fault& found) {
       far.push_back({t, -x.distance / bearable}), found.missed.push_back({t, p});
     }
   };
-  int since = known.time;
-  if (mean < rules::same_mean * known.mean) {  // what was near enough may not be now
-    since = known.looked = -1, known.mean = 0;
-    std::fill(known.searched.begin(), known.searched.end(), -1);
+  int since = known.of_mesh.time;
+  if (mean < rules::same_mean * known.of_mesh.mean) {  // what was near enough may not be now
+    since = known.of_mesh.looked = -1, known.of_mesh.mean = 0;
+    std::fill(known.of_mesh.searched.begin(), known.of_mesh.searched.end(), -1);
   }
-  known.mean = std::max(known.mean, mean);
+  known.of_mesh.mean = std::max(known.of_mesh.mean, mean);
   sample_distances(s, known.samples, least);
   add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int time) {
     if (time <= since) return false;
@@ -239,11 +239,11 @@ void find_far(const State& s, Known& known, Fault& found) {
   look_at_samples();
   look_at_changed(s, known);
   for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t) || known.walked[t] <= rules::doubtful * least) continue;
-    if (known.searched[t] < 0)
-      known.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, share));
+    if (s.mesh.dead(t) || known.of_mesh.walked[t] <= rules::doubtful * least) continue;
+    if (known.of_mesh.searched[t] < 0)
+      known.of_mesh.searched[t] = distance_of(s, t, known.tree(), bearable_distance(s, t, mean, share));
     const double bearable = bearable_distance(s, t, mean, share);
-    if (known.searched[t] > bearable) far.push_back({t, -known.searched[t] / bearable});
+    if (known.of_mesh.searched[t] > bearable) far.push_back({t, -known.of_mesh.searched[t] / bearable});
   }
   // of triangles much longer than the size corners do not show enough: there may be a whole fold between
   // them. A look at all takes long, so it waits until little else is wrong
@@ -251,19 +251,19 @@ void find_far(const State& s, Known& known, Fault& found) {
   for (const auto& [t, ratio] : far) triangles.push_back(t);
   sort_unique(triangles);
   if ((int)(triangles.size() + found.pairs.size()) <= rules::few_to_look_on) {
-    const Mesh changed = known.looked < 0 ? Mesh{} : changed_triangles(s, known.looked);
+    const Mesh changed = known.of_mesh.looked < 0 ? Mesh{} : changed_triangles(s, known.of_mesh.looked);
     const double most = std::max(mean, *std::max_element(s.size.begin(), s.size.end()));
     std::optional<Bvh> tree;
     if (!changed.tris.empty()) tree.emplace(changed);
     add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
       if (!(whole.side(whole.longest()) > rules::long_side * mean)) return false;
-      bool near = known.looked < 0;
+      bool near = known.of_mesh.looked < 0;
       const Vec3 reach{most, most, most};
       const Box box = box_of(known.reference, f);
       if (tree) tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
       return near;
     });
-    known.looked = s.clocks.now;
+    known.of_mesh.looked = s.clocks.now;
     look_at_samples();
   } else {
     found.acceptable = false;

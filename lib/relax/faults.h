@@ -15,28 +15,27 @@ struct Limits {
 constexpr Limits needed{rules::too_far, rules::failing_kappa},
     refused{rules::within_limit, rules::failing_kappa};  // by mcheck, which `needed` has a margin over
 
-/// What is asked of the reference more than once, computed when it is needed.
-struct Known {
-  const Surface& reference;
-  Samples& samples;
-  Limits limits = needed;
+/// What was found of a mesh.
+struct MeasuredMesh {
   IntersectingPairs intersections{};
   std::vector<double> walked{};    ///< per triangle, `deviation` as a length, at `time`
   std::vector<double> searched{};  ///< `distance_of` then, or -1
   int time = -1;
-  int looked = -1;                    ///< when long triangles of the reference were looked at
-  double mean = 0;                    ///< the largest mean size of all looks at this mesh
+  int looked = -1;  ///< when long triangles of the reference were looked at
+  double mean = 0;  ///< the largest mean size of all looks at this mesh
+};
+
+/// What is asked of mesh and reference more than once, computed when it is needed.
+struct Known {
+  const Surface& reference;
+  Samples& samples;
+  Limits limits = needed;
+  MeasuredMesh of_mesh{};
   std::optional<Mesh> contacts{};     ///< where the reference before cuts intersects itself
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
   std::vector<char> corners{};
 
-  /// Forgets the mesh: call it before it becomes another.
-  void forget() {
-    samples.forget();
-    intersections = {}, time = looked = -1, mean = 0;
-    walked.clear(), searched.clear();
-  }
   const Bvh& tree() { return built ? *built : built.emplace(reference); }
   /// Returns per vertex of the reference whether feature edges or its surface are so sharp there that no
   /// triangle has kappa 0.1.

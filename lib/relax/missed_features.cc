@@ -167,6 +167,21 @@ std::optional<State> reached(const State& s, const Place& sample, double wanted,
 
 }  // namespace
 
+void Samples::go_back(std::vector<Sample> earlier) {
+  auto is_inside = [](const Sample& x) { return std::min({x.place.b0, x.place.b1, x.place.b2}) > 0; };
+  std::vector<int> faces;  // with a place inside
+  for (const Sample& x : earlier)
+    if (is_inside(x)) faces.push_back(x.place.face);
+  sort_unique(faces);
+  std::swap(list, earlier);
+  for (Sample& x : earlier)
+    if (is_inside(x) && !std::binary_search(faces.begin(), faces.end(), x.place.face)) {
+      x.near = x.time = -1;
+      list.push_back(x);
+    }
+  search.forget();
+}
+
 std::vector<Sample> feature_samples(const Reference& reference, double h) {
   const Surface& surface = reference.surface;
   const std::vector<Vec3>& p = surface.points;

@@ -205,10 +205,12 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   repair(items);
 }
 
-/// A mesh and its faults.
+/// A mesh, its faults, and what they were found by.
 struct Seen {
   State mesh;
   Fault fault;
+  MeasuredMesh measured;
+  std::vector<Sample> samples;
 };
 
 /// The meshes seen while faults are removed. Repair begins with the one with the lowest sum, since a few
@@ -229,7 +231,7 @@ struct Search {
     const bool best_accepted = now.acceptable && (!accepted || now.less_than(accepted->fault));
     last = nullptr;
     if (!better && !lower && !best_accepted) return;
-    last = std::make_shared<const Seen>(Seen{s, now});
+    last = std::make_shared<const Seen>(Seen{s, now, known.of_mesh, known.samples.list});
     if (better) best = last;
     if (lower) lowest = last;
     if (best_accepted) accepted = last;
@@ -237,13 +239,13 @@ struct Search {
   void go_to(State& s, std::shared_ptr<const Seen> seen) {
     now = seen->fault;
     if (seen == last && s.clocks.now == seen->mesh.clocks.now) return;  // s is as it was seen
-    s = seen->mesh, last = std::move(seen);
-    known.forget();
+    s = seen->mesh, known.of_mesh = seen->measured;
+    known.samples.go_back(seen->samples);
+    last = std::move(seen);
   }
-  /// Goes on from the result by other limits: what was seen before counts no more.
+  /// Goes on from the result by limits that allow no less distance: what was seen before counts no more.
   void go_on(State& s, Limits limits) {
     go_to(s, accepted ? accepted : best);
-    if (limits.distance != known.limits.distance) known.forget();
     known.limits = limits;
     best = lowest = accepted = nullptr;
     look(s);
@@ -349,7 +351,9 @@ Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
   search.look(s);
+  const bool too_many = search.now.pairs.size() > rules::most_pairs;
   auto remove = [&] {
+    if (too_many) return;
     if (!search.best->fault.none()) refine(s, search, most);
     if (!search.best->fault.none()) repair(s, search);
   };
@@ -358,7 +362,7 @@ Faults remove_faults(State& s, Samples& samples) {
     const int mild = search.accepted->fault.mild;
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
-  if (!search.accepted) search.go_on(s, refused), remove();
+  if (!search.accepted && !too_many) search.go_on(s, refused), remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

@@ -49,6 +49,9 @@ struct Samples {
     for (Sample& s : list) s.near = s.time = -1;
     search.forget();
   }
+  /// Goes back to an earlier mesh, for which the list was this; places inside triangles that were added since
+  /// stay.
+  void go_back(std::vector<Sample> earlier);
 };
 
 /// Returns the places of the reference that a mesh with edges of length h may miss: its vertices, and points

@@ -471,25 +471,33 @@ void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Se
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
 void drop_intersecting(const Measure& measure, const Connectivity& surface, std::vector<SizeBound>& bounds) {
   const Mesh& mesh = surface.mesh;
-  enum : char { unknown, no, yes };
-  std::vector<char> known(bounds.empty() ? 0 : surface.n_tris(), unknown);
-  auto intersects = [&](int t) {
-    if (known[t] != unknown) return known[t] == yes;
-    known[t] = no;
+  std::vector<int> row(bounds.empty() ? 0 : surface.n_tris(), -1);
+  std::vector<Mesh> places;  // by row, where a triangle meets others
+  auto places_of = [&](int t) -> const Mesh& {
+    if (row[t] >= 0) return places[row[t]];
+    std::vector<std::pair<int, int>> pairs;
     const Box box = box_of(mesh, t);
-    measure.tree().overlapping(box, [&](int u) {
-      if (u != t && known[t] == no && overlap(box, box_of(mesh, u)) &&
-          triangles_intersect(mesh, std::min(t, u), std::max(t, u)) && has_area(mesh, t) && has_area(mesh, u))
-        known[t] = yes;
-    });
-    return known[t] == yes;
+    if (has_area(mesh, t))
+      measure.tree().overlapping(box, [&](int u) {
+        if (u != t && overlap(box, box_of(mesh, u)) &&
+            triangles_intersect(mesh, std::min(t, u), std::max(t, u)) && has_area(mesh, u))
+          pairs.push_back({std::min(t, u), std::max(t, u)});
+      });
+    row[t] = (int)places.size();
+    return places.emplace_back(contacts(mesh, pairs));
   };
   Search search(surface);
   std::erase_if(bounds, [&](const SizeBound& x) {
-    return !measure.is_line(x.half_edge) &&
-           measure.joins(
-               x.half_edge, x.place, 0.5 * measure.asked(x.half_edge, x.place), [](int) { return true; },
-               intersects, search);
+    if (measure.is_line(x.half_edge)) return false;
+    const double size = measure.asked(x.half_edge, x.place);
+    auto meets = [&](int t) {
+      const Mesh& near = places_of(t);
+      for (int k = 0; k < (int)near.tris.size(); ++k)
+        if (norm(closest_point(near, k, x.place) - x.place) < size) return true;
+      return false;
+    };
+    return measure.joins(
+        x.half_edge, x.place, 0.5 * size, [](int) { return true; }, meets, search);
   });
 }
 

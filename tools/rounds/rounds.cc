@@ -68,8 +68,7 @@ bool has_outgrown(std::string_view verdict, double triangles, double next) {
 
 bool another_round(const std::vector<Score>& rounds, int most) {
   const Score& last = rounds.back();
-  if ((int)rounds.size() >= most || (last.requirement == "intersections" &&
-                                     -last.value > (rounds.size() == 1 ? 10 : 1) * many_intersections))
+  if ((int)rounds.size() >= most || (last.requirement == "intersections" && -last.value > many_intersections))
     return false;
   std::map<std::string, double> best;
   int vain = 0;

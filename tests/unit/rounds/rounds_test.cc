@@ -60,8 +60,8 @@ TEST(rounds, fewer_pairs_are_progress_and_requirements_are_compared_with_themsel
 TEST(Rounds, ManyCrossingsAreTheLast) {
   EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 1}, {"intersections", 90}})));
   EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 60}, {"intersections", 110}})));
-  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 900}})));
-  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 1100}})));
+  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 90}})));
+  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 110}})));
   EXPECT_FALSE(asks_for_another(verdict_of({{"kappa", 0.01}, {"intersections", 110}})));
 }
 

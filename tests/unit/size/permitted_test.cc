@@ -124,23 +124,43 @@ TEST(Permitted, EdgesAcrossAGrooveTurnByAQuarter) {
   EXPECT_TRUE(bounds_of(groove(1, 40), 1.3).empty()) << "shorter edges follow it anyway";
 }
 
-TEST(Permitted, ChordsOfAGrooveStayOffARidgeInIt) {
-  Mesh mesh = groove(1, 8);
+/// A groove along z, and a ridge that ends half its radius above its bottom.
+Mesh groove_with_ridge(double length) {
+  Mesh mesh = groove(1, length);
   const int ridge = (int)mesh.points.size();
-  for (double z : {0.0, 8.0})
+  for (double z : {0.0, length})
     for (Vec3 p : {Vec3{-0.1, 1.5, z}, Vec3{0, -0.5, z}, Vec3{0.1, 1.5, z}}) mesh.points.push_back(p);
   for (int i : {ridge, ridge + 1}) {
     mesh.tris.push_back({i, i + 3, i + 4});
     mesh.tris.push_back({i, i + 4, i + 1});
   }
-  int bottom = 0;
-  for (const SizeBound& b : bounds_of(mesh, 4))
-    if (std::abs(b.place.x) < 1e-9 && std::abs(b.place.y + 1) < 1e-9 && b.place.z > 0 && b.place.z < 8) {
+  return mesh;
+}
+
+/// Bounds along the bottom of such a groove, between two heights.
+int bounds_at_bottom(const std::vector<SizeBound>& bounds, double low, double high) {
+  int n = 0;
+  for (const SizeBound& b : bounds)
+    if (std::abs(b.place.x) < 1e-9 && std::abs(b.place.y + 1) < 1e-9 && b.place.z > low && b.place.z < high) {
       EXPECT_NEAR(b.gap, 0.5, 1e-9);
       EXPECT_LT(b.size, 1.5);
-      ++bottom;
+      ++n;
     }
-  EXPECT_GT(bottom, 0);
+  return n;
+}
+
+TEST(Permitted, ChordsOfAGrooveStayOffARidgeInIt) {
+  EXPECT_GT(bounds_at_bottom(bounds_of(groove_with_ridge(8), 4), 0, 8), 0);
+}
+
+TEST(Permitted, SheetsThatCrossElsewhereAreStillNear) {
+  Mesh mesh = groove_with_ridge(40);
+  const int crossing = (int)mesh.points.size();
+  for (Vec3 p : {Vec3{0, -0.9, 1}, Vec3{0.1, -1.1, 1}, Vec3{-0.1, -1.1, 1}}) mesh.points.push_back(p);
+  mesh.tris.push_back({crossing, crossing + 1, crossing + 2});
+  const auto bounds = bounds_of(mesh, 4);
+  EXPECT_EQ(bounds_at_bottom(bounds, 0, 4), 0);
+  EXPECT_GT(bounds_at_bottom(bounds, 6, 40), 10);
 }
 
 /// An open cone around the z axis without vertices between its ends, its radius growing by `slope`.
