@@ -240,28 +240,19 @@ void label_caps(Surface& surface, const std::vector<int>& cap, CleanReport& repo
     if (cap[t] >= 0) patch[t] = report.holes.patches[cap[t]];
 }
 
-/// Whether all but bits of a surface is one sheet, when sheets are paired.
-bool is_one_sheet(const Repair& paired) {
-  constexpr double most = 0.97;  // of the triangles: a decimated mesh has 0.975, a car of sheets 0.958
-  std::vector<int> component;
-  std::vector<int> size(components(paired.opposite, component), 0);
-  for (int c : component) ++size[c];
-  return *std::max_element(size.begin(), size.end()) >= most * (double)component.size();
-}
-
 /// Repairs a copy of the surface where sheets are kept, into `r`. Returns whether they are better kept than
 /// paired: if pairs leave borders, or if sheets divide space into regions, which is only known where they do
-/// not intersect. A single sheet that intersects itself has debris rather than sheets that meet.
+/// not intersect.
 bool keep_sheets(const Surface& surface, const std::vector<int>& same, const CleanOptions& options,
-                 bool pairs_leave_borders, bool one_sheet, Repair& r, CleanReport& report) {
+                 bool pairs_leave_borders, Repair& r, CleanReport& report) {
   r = start(surface, same, report);
   repair(r, surface.points, options, report);
-  if (pairs_leave_borders && !one_sheet) return true;
+  if (pairs_leave_borders) return true;
   Repair whole = r;
   unite(whole);
   Mesh mesh{{}, std::move(whole.tris)};
   for (int v : whole.vertex) mesh.points.push_back(surface.points[v]);
-  return (pairs_leave_borders || divides_space(find_solids(mesh))) && self_intersections(mesh).empty();
+  return divides_space(find_solids(mesh)) && self_intersections(mesh).empty();
 }
 
 void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
@@ -279,8 +270,7 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
     keep.sheets = CleanOptions::keep;
     CleanReport kept = restart;
     const bool open = report.opened_edges + report.sheets.flips.edges > 0;
-    if (Repair whole;
-        keep_sheets(surface, same, keep, open, !report.sheets.flips.edges && is_one_sheet(r), whole, kept)) {
+    if (Repair whole; keep_sheets(surface, same, keep, open, whole, kept)) {
       r = std::move(whole);
       report = std::move(kept);
       options = keep;
