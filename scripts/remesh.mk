@@ -26,10 +26,15 @@ numbered = $(filter %-$(1),$(stages))
 mapped := $(call numbered,param)
 last := $(lastword $(filter-out %-check,$(stages)))
 
+# without a size that holds everywhere there is no share of it, as for mremesh
+varying := $(foreach o,--data --field --expression --around --across --gap,$(findstring $(o),$(SIZE_ARGS)))
+tolerance := $(if $(strip $(varying)),$(if $(findstring --tolerance,$(FEATURE_ARGS)),,--tolerance 0))
 goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
 args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
-  $(if $(filter RELAX,$(1)),--accept))
+  $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
+# make -n shows what it would do, and runs nothing
+dry := $(findstring n,$(firstword -$(MAKEFLAGS)))
 
 # programs of this build first
 this := $(abspath $(lastword $(MAKEFILE_LIST)))
@@ -94,7 +99,7 @@ check = mcheck $(FLAGS) $(call args,CHECK) --json $(1).stages/$(call numbered,ch
 define result
 %.mesh.$(1): %.stages/$(last).ply %.stages/$(call numbered,check).options
 	@rm -f $$*.stages/verdict
-	+$$(call check,$$*,$$<,$$@)
+	$(if $(dry),,+)$$(call check,$$*,$$<,$$@)
 endef
 $(foreach e,$(outputs),$(eval $(call result,$(e))))
 
@@ -115,4 +120,4 @@ again:
 	  grep -qx count=free || echo --triangles $(TRIANGLES))) $(BOUNDS) --field $(dir)/again/field.ply:size \
 	  $(dir)/$(mapped).ply -o $(dir)/again/$(call numbered,size).ply
 	$(eval previous := $(call numbered,size))$(foreach n,$(later),$(call repeat,$(call numbered,$(n))))
-	+$(call check,$(STEM),$(dir)/again/$(last).ply,$(RESULT))
+	$(if $(dry),,+)$(call check,$(STEM),$(dir)/again/$(last).ply,$(RESULT))

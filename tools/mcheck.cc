@@ -28,10 +28,14 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   for (const std::string& line : figure_table(figures(f))) io.say(line);
   for (const std::string& line : warnings_of(io.stream, f)) io.say(line);
   for (const Failure& x : failures) io.say("failed: " + x.requirement + ": " + x.fact);
+  const auto& history = io.stream.history;
+  const bool resolved = std::any_of(history.begin(), history.end(), [](const Provenance& p) {
+    return p.program == "mclean" && p.arguments.find("--resolve") != std::string::npos;
+  });
   if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
-    io.say(std::to_string(n) +
-           " pairs of triangles intersect, as in the input: --resolve outer resolves those of closed "
-           "components, mwrap all of them");
+    io.say(std::to_string(n) + " pairs of triangles intersect, as in the input: " +
+           (resolved ? "" : "--resolve outer resolves those of closed components, ") + "mwrap " +
+           (resolved ? "resolves them" : "all of them"));
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);
 }

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
         ->check(CLI::IsMember({"plain", "part", "patch", "kappa"}))
         ->type_name("BY");
     app.add_option("--beside", others, "more meshes, drawn to the right at the same scale")
+        ->allow_extra_args(false)
         ->type_name("FILE");
     app.add_option("--clip", plane,
                    "cut away the part beyond this share of the bounding box along x, y or z (default 0.5)")

@@ -382,6 +382,9 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     clean_once(s, first, report);
     resolved = resolve(s, how);
   }
+  if (s.tris.empty())
+    throw NotAdmissible("none of " + std::to_string(report.input_triangles) +
+                        " triangles bounds a solid, so that no outer surface is left: mwrap makes one");
   if (resolved.nothing) {
     clean_once(surface, options, report);
   } else {

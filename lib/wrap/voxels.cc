@@ -5,6 +5,7 @@
 
 #include "lib/core/error.h"
 #include "lib/core/lists.h"
+#include "lib/core/number.h"
 
 namespace meshpipe {
 namespace {
@@ -21,6 +22,8 @@ constexpr double spare_voxels = 4;
 /// Bytes for a stored block, counted from the arrays: 9 kB in the grid, and up to 700 for each of the about
 /// 30 quadrilaterals that come from it.
 constexpr double bytes_per_block = 30000;
+/// Of voxels, in spacings of doubles: points are fitted within voxels.
+constexpr double least_spacing = 10;
 /// The least descent of the distance per length on the way into a concave edge: slots whose sides are nearly
 /// parallel (below 2 asin 0.25 = 29 degrees) are entered as far as they are wider than alpha.
 constexpr double least_descent = 0.25;
@@ -252,6 +255,11 @@ void make_manifold(Voxels& v) {
 
 Voxels outside_voxels(const Mesh& soup, const Bvh& tree, const WrapOptions& o, WrapReport& report) {
   const double spacing = std::max(o.alpha, o.offset) / voxels_per_alpha;
+  double far = 0;
+  for (const Vec3& p : soup.points) far = std::max({far, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  if (const double apart = std::nextafter(far, infinity) - far; spacing < least_spacing * apart)
+    throw NotAdmissible("voxels are " + shown(spacing) + " wide, but coordinates are " + shown(apart) +
+                        " apart: try mconvert --center (they are closer together near the origin)");
   // a path between centers this far away from the soup stays clear of a ball of diameter alpha in between
   const double clear = o.offset + 0.5 * o.alpha + 0.5 * spacing, solid = o.offset + half_diagonal * spacing;
   report.spacing = spacing;
