@@ -36,6 +36,17 @@ Surface reference_from(const Stream& file, std::size_t triangles) {
   return s;
 }
 
+/// The number of triangles that the last msize was given; 0 if none.
+int count_given(const Stream& stream) {
+  const std::string option = "--triangles=";
+  for (auto p = stream.history.rbegin(); p != stream.history.rend(); ++p) {
+    if (p->program != "msize") continue;
+    const std::size_t at = p->arguments.find(option);
+    return at == std::string::npos ? 0 : std::atoi(p->arguments.c_str() + at + option.size());
+  }
+  return 0;
+}
+
 /// What is optimized: see relax.
 struct Task {
   LiftedMesh mesh;
@@ -59,6 +70,7 @@ Task read_task(Io& io, Options& o) {
       o.relax.keep_border = o.relax.keep_border || l.kept;
     }
     o.relax.target_triangles = stream.asked_triangles;
+    o.relax.keep_count = count_given(stream) > 0;
     o.relax.sheets_meet = has_sheets(stream);
     if (!reference.face.has("curved")) o.relax.sheets = read_sheets(stream);
     if (o.shards.count > 0) stream.tables = {};  // frees its memory now
@@ -124,7 +136,9 @@ int main(int argc, char** argv) {
     const std::string exceptions = write_on_reference(stream, std::move(task.mesh), reference, second_order);
     if (!exceptions.empty()) io.say(exceptions);
     const std::size_t triangles = stream.surface.tris.size();
-    for (const std::string& line : relax_lines(r, triangles, stream.asked_triangles)) io.say(line);
+    for (const std::string& line :
+         relax_lines(r, triangles, std::max(stream.asked_triangles, count_given(stream))))
+      io.say(line);
     io.report.update(relax_record(r, triangles));
     const std::string missed = left_over(r, stream.surface);
     if (!missed.empty() && !o.accept) throw GoalMissed(missed);

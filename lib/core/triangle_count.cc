@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "lib/core/sectors.h"
+
 namespace meshpipe {
 namespace {
 
@@ -20,6 +22,12 @@ double mean_inverse_square(std::array<double, 3> h) {
   return 2 * (slope(a, b) - slope(b, c)) / (c - a);
 }
 
+/// The same of triangle t alone as count_for_size.
+double count_in(const Mesh& mesh, const std::vector<double>& size, int t) {
+  const auto [a, b, c] = mesh.tris[t];
+  return 2 / std::sqrt(3.0) * norm(area_vector(mesh, t)) * mean_inverse_square({size[a], size[b], size[c]});
+}
+
 }  // namespace
 
 double size_for_count(double area, double n) {
@@ -29,11 +37,36 @@ double size_for_count(double area, double n) {
 
 double count_for_size(const Mesh& mesh, const std::vector<double>& size) {
   double n = 0;
-  for (const Tri& t : mesh.tris) {
-    n += norm(area_vector(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])) *
-         mean_inverse_square({size[t[0]], size[t[1]], size[t[2]]});
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) n += count_in(mesh, size, t);
+  return n;
+}
+
+double count_with_borders(const Connectivity& surface, const std::vector<int>& part,
+                          const std::vector<double>& size) {
+  const int n = surface.n_half_edges();
+  auto is_line = [&](int h) {
+    return is_feature(surface, h) || surface.is_model(surface.opposite[h]) ||
+           part[h / 3] != part[surface.opposite[h] / 3];
+  };
+  std::vector<int> lines_at(surface.n_vertices(), 0);
+  for (int h = 0; h < n; ++h) {
+    if (is_line(h)) ++lines_at[surface.from(h)];
+    if (surface.is_border(h)) ++lines_at[surface.to(h)];
   }
-  return 2 / std::sqrt(3.0) * n;
+  struct Count {
+    double inside = 0, segments = 0, corners = 0;
+  };
+  std::vector<Count> of(part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end()));
+  for (int h = 0; h < n; ++h) {
+    Count& c = of[part[h / 3]];
+    if (h % 3 == 0) c.inside += count_in(surface.mesh, size, h / 3);
+    if (!is_line(h)) continue;
+    c.segments += 2 * surface.length(h) / (size[surface.from(h)] + size[surface.to(h)]);
+    c.corners += lines_at[surface.from(h)] > 2;
+  }
+  double sum = 0;
+  for (const Count& c : of) sum += std::max(c.inside, std::max(c.segments, c.corners) - 2);
+  return sum;
 }
 
 }  // namespace meshpipe

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "lib/core/mesh.h"
+#include "lib/core/connectivity.h"
 
 namespace meshpipe {
 
@@ -19,5 +19,9 @@ constexpr double size_over_longest = 1.5;
 /// for: the integral of dA / (sqrt(3)/4 h^2), with the mean of the corners for h where they differ by less
 /// than a factor of 2.
 double count_for_size(const Mesh& mesh, const std::vector<double>& size);
+/// Returns the same with at least as many triangles in each part (per triangle, 0 to n - 1) as a polygon has
+/// whose corners are those of the part's border and the model edges in it, and the vertices along these.
+double count_with_borders(const Connectivity& surface, const std::vector<int>& part,
+                          const std::vector<double>& size);
 
 }  // namespace meshpipe

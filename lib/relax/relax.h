@@ -14,6 +14,7 @@ struct RelaxOptions {
   /// Triangle count of the result; refinement in narrow places is taken from the rest. 0: as the size field
   /// asks, and narrow places have more.
   double target_triangles = 0;
+  bool keep_count = false;   ///< repair of shapes adds few triangles: kappa at narrow places is 0.25, not 0.4
   bool keep_border = false;  ///< no new vertex on the border
   bool sheets_meet = false;  ///< border vertices at the same place, to the last bit, are copies of one
   /// Meshes of more than four times this number of triangles are optimized in tiles of at most as many, in

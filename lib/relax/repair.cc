@@ -156,9 +156,16 @@ bool failed_before(const State& s, const std::vector<int>& failed, const std::ve
   return then > 0 && std::all_of(triangles.begin(), triangles.end(), unedited);
 }
 
-/// Repairs at each of these triangles, as long as it is wanted; returns the number of changes.
+bool is_needle(const State& s, int t) {
+  const auto [a, b, c] = s.mesh.tris[t];
+  return kappa(s.points[a], s.points[b], s.points[c]) <= rules::bearable_kappa;
+}
+
+/// Repairs at each of these triangles, as long as it is wanted; returns the number of changes. With `most`
+/// triangles no more are added, except where one is a needle.
 template <class Wanted>
-int repair_each(State& s, std::vector<int> triangles, bool thorough, Repairs& memory, Wanted wanted) {
+int repair_each(State& s, std::vector<int> triangles, bool thorough, Repairs& memory, int most,
+                Wanted wanted) {
   std::vector<int>& failed = memory.failed[thorough];
   auto around = [&](int t, std::vector<int> found) -> std::vector<int> {
     if (s.mesh.dead(t) || !wanted(t)) return {};
@@ -166,7 +173,12 @@ int repair_each(State& s, std::vector<int> triangles, bool thorough, Repairs& me
     if ((int)found.size() > rules::largest_patch || failed_before(s, failed, found)) return {};
     return found;
   };
-  auto attempt = [&](int, const std::vector<int>& patch) { return repaired(s, patch, thorough); };
+  auto attempt = [&](int t, const std::vector<int>& patch) {
+    auto better = repaired(s, patch, thorough);
+    if (better && s.mesh.live >= most && better->mesh.live > (int)patch.size() && !is_needle(s, t))
+      better.reset();
+    return better;
+  };
   auto remember = [&](const std::vector<int>& patch) {
     failed.resize(s.mesh.tris.size());
     failed[patch.front()] = s.clocks.now;
@@ -217,7 +229,7 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   return std::move(best.state);
 }
 
-void repair_worst(State& s, Repairs& memory, int since) {
+void repair_worst(State& s, Repairs& memory, int since, int most_live) {
   const int most = rules::repairs + s.mesh.live / rules::triangles_per_repair;
   int before = 0, first = 0;
   if (memory.time < 0) {
@@ -241,12 +253,12 @@ void repair_worst(State& s, Repairs& memory, int since) {
                        0, few);
     if (count > few) triangles.resize(few);
     const bool done = triangles.empty();
-    int changes =
-        repair_each(s, std::move(triangles), round > 0, memory, [&](int t) { return quality(s, t) < 1; });
+    int changes = repair_each(s, std::move(triangles), round > 0, memory, most_live,
+                              [&](int t) { return quality(s, t) < 1; });
     for (int v = 0; v < (int)s.mesh.out.size() && (int)irregular.size() < most; ++v)
       if (s.clocks.changed[v] > since && irregularity(s, v)) irregular.push_back(s.mesh.out[v] / 3);
     if (done && irregular.empty()) return;
-    changes += repair_each(s, std::move(irregular), false, memory, [&](int t) {
+    changes += repair_each(s, std::move(irregular), false, memory, most_live, [&](int t) {
       const Tri& v = s.mesh.tris[t];
       return irregularity(s, v[0]) + irregularity(s, v[1]) + irregularity(s, v[2]) > 0;
     });

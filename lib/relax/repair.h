@@ -26,8 +26,9 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
 
 /// Repairs the triangles that are not good enough, the worst first, then vertices of a valence other than 5,
 /// 6, 7: in each of 4 rounds at most 200 + n/100 of n triangles, since more mean that sizes are at fault.
-/// Only where something has changed after `since`, on the clock of `s`.
-void repair_worst(State& s, Repairs& memory, int since = -1);
+/// Only where something has changed after `since`, on the clock of `s`. From `most` triangles on none are
+/// added, except for needles.
+void repair_worst(State& s, Repairs& memory, int since = -1, int most = INT_MAX);
 
 // --- missed_features.cc ---
 

@@ -88,6 +88,8 @@ constexpr double least_piece = 0.02;  // of a segment: shorter pieces are needle
 constexpr int rings = 2, thorough_rings = 3;  // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
 constexpr int sweeps_to_settle = 3;
+constexpr double repair_growth =
+    1.1;  // of the triangles: what the repair of shapes may add to a count that was asked for
 constexpr int repair_rounds = 4;
 constexpr int repairs = 200,
               triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles

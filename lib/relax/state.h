@@ -127,6 +127,7 @@ struct State {
   Clocks clocks;
   Schedule schedule;
   RelaxCounts counts;
+  bool keep_count = false;   ///< repair of shapes adds few triangles
   bool keep_border = false;  ///< no new vertex on the border
   bool acute = false;  ///< are so few triangles bad that those at borders and anchors are to be acute, too?
   OfWhole whole;

@@ -610,6 +610,12 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     size = make_field(surface, chart, options, may_split, report);
   }
   report.triangles = count_for_size(surface, size) + report.strips;
+  report.least = report.triangles;
+  if (surface.face.has("part")) {
+    const std::vector<int> opposite = opposite_halfedges(surface);
+    report.least = std::max(report.least, count_with_borders({surface, opposite, model_of(surface)},
+                                                             surface.face.get<int>("part"), size));
+  }
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   report.smallest = *least, report.largest = *most;
   refuse_more_triangles(surface, size, options.most_triangles);

@@ -52,9 +52,11 @@ std::vector<std::string> size_lines(const SizeReport& r, const SizeOptions& o, b
                     std::to_string(r.narrow.places) + " places: at " + shown(r.narrow.at) + ", " +
                     shown(r.narrow.gap) + " apart, it is lowered from " + shown(r.narrow.from) + " to " +
                     shown(r.narrow.to));
-  if (o.triangles > 0 && r.narrow.places > 0 && r.triangles > (1 + more) * o.triangles)
-    lines.push_back("no fewer than about " + std::to_string(std::llround(r.triangles)) +
-                    " triangles are good there, instead of " + std::to_string(std::llround(o.triangles)));
+  const bool narrow = r.narrow.places + r.lowered.places > 0 || r.least > (1 + more) * r.triangles;
+  if (o.triangles > 0 && narrow && r.least > (1 + more) * o.triangles)
+    lines.push_back("no fewer than about " + std::to_string(std::llround(r.least)) +
+                    " triangles are good in narrow places, instead of " +
+                    std::to_string(std::llround(o.triangles)));
   else if (counted && !within(r, o, much))
     lines.push_back("the sizes are bounded: about " + std::to_string(std::llround(r.triangles)) +
                     " triangles instead of the requested " + std::to_string(std::llround(o.triangles)));
