@@ -85,7 +85,7 @@ void sweep(State& s, int sweeps, double target) {
 void attend_to_places(State& s, Samples& samples, bool at_rest) {
   Repairs memory;
   const int most = std::max(rules::features, s.mesh.live / rules::triangles_per_feature);
-  const int most_live = s.keep_count ? (int)(rules::repair_growth * s.mesh.live) : INT_MAX;
+  const int most_live = s.whole.keep_count ? (int)(rules::repair_growth * s.mesh.live) : INT_MAX;
   for (int round = 0; round < rules::feature_rounds; ++round) {
     if (reach_features(s, samples, rules::missed, most) || (round == 0 && !at_rest)) even_out(s);
     repair_worst(s, memory, -1, most_live);
@@ -299,7 +299,7 @@ RelaxReport relax_whole(LiftedMesh& mesh, const Surface& original, const std::ve
   if (!options.sheets_meet) ordered.on->component = components_below(mesh, *ordered.on);
   const std::vector<char> corner = ordered.of_points(corners);
   State s = start_state(mesh, *ordered.on, line_kind, corner, options.sheets_meet);
-  s.keep_border = options.keep_border, s.keep_count = options.keep_count;
+  s.keep_border = options.keep_border, s.whole.keep_count = options.keep_count;
   expect_single_fans(s);
   part_double_edges(s);
   std::vector<char> on_border(s.points.size());

@@ -88,9 +88,10 @@ struct Labels {
 /// What a tile of a mesh knows of all of it.
 struct OfWhole {
   std::vector<int>
-      rim_excess;        ///< of frozen vertices: see excess, less the valence in the tile; empty: no tile
-  double mean_size = 0;  ///< see mean_size; 0: that of this mesh
-  double share = 1;      ///< of the work that is shown
+      rim_excess;           ///< of frozen vertices: see excess, less the valence in the tile; empty: no tile
+  double mean_size = 0;     ///< see mean_size; 0: that of this mesh
+  double share = 1;         ///< of the work that is shown
+  bool keep_count = false;  ///< repair of shapes adds few triangles
 };
 
 /// A mesh on its reference, while it is optimized.
@@ -127,7 +128,6 @@ struct State {
   Clocks clocks;
   Schedule schedule;
   RelaxCounts counts;
-  bool keep_count = false;   ///< repair of shapes adds few triangles
   bool keep_border = false;  ///< no new vertex on the border
   bool acute = false;  ///< are so few triangles bad that those at borders and anchors are to be acute, too?
   OfWhole whole;
