@@ -22,11 +22,12 @@ double mean_inverse_square(std::array<double, 3> h) {
   return 2 * (slope(a, b) - slope(b, c)) / (c - a);
 }
 
-/// The same of triangle t alone as count_for_size.
-double count_in(const Mesh& mesh, const std::vector<double>& size, int t) {
+/// Twice the integral of dA / h^2 over triangle t.
+double asked_in(const Mesh& mesh, const std::vector<double>& size, int t) {
   const auto [a, b, c] = mesh.tris[t];
-  return 2 / std::sqrt(3.0) * norm(area_vector(mesh, t)) * mean_inverse_square({size[a], size[b], size[c]});
+  return norm(area_vector(mesh, t)) * mean_inverse_square({size[a], size[b], size[c]});
 }
+const double per_asked = 2 / std::sqrt(3.0);  ///< triangles
 
 }  // namespace
 
@@ -37,8 +38,8 @@ double size_for_count(double area, double n) {
 
 double count_for_size(const Mesh& mesh, const std::vector<double>& size) {
   double n = 0;
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) n += count_in(mesh, size, t);
-  return n;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) n += asked_in(mesh, size, t);
+  return per_asked * n;
 }
 
 double count_with_borders(const Connectivity& surface, const std::vector<int>& part,
@@ -59,7 +60,7 @@ double count_with_borders(const Connectivity& surface, const std::vector<int>& p
   std::vector<Count> of(part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end()));
   for (int h = 0; h < n; ++h) {
     Count& c = of[part[h / 3]];
-    if (h % 3 == 0) c.inside += count_in(surface.mesh, size, h / 3);
+    if (h % 3 == 0) c.inside += per_asked * asked_in(surface.mesh, size, h / 3);
     if (!is_line(h)) continue;
     c.segments += 2 * surface.length(h) / (size[surface.from(h)] + size[surface.to(h)]);
     c.corners += lines_at[surface.from(h)] > 2;

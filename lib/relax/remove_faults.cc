@@ -243,9 +243,11 @@ struct Search {
     known.samples.go_back(seen->samples);
     last = std::move(seen);
   }
-  /// Goes on from the result by limits that allow no less distance: what was seen before counts no more.
+  /// Goes on from the result by other limits: what was seen before counts no more.
   void go_on(State& s, Limits limits) {
     go_to(s, accepted ? accepted : best);
+    // another look at all: of changed places only samples that are near to what has changed were looked at
+    if (limits.distance != known.limits.distance) known.samples.forget(), known.of_mesh = {};
     known.limits = limits;
     best = lowest = accepted = nullptr;
     look(s);

@@ -330,9 +330,11 @@ void refuse_costly_field(Field& f, double limit, double triangles, const SizeRep
   const double count = count_for_size(f.s, f.size) + strip_triangles(f, infinity);
   if (count <= limit && (double)(f.s.points.size() - f.given.points.size()) <= limit) return;
   f.s = std::move(f.given);
-  throw GoalMissed("lines and sheets near each other ask for about " + shown(std::round(count)) +
-                   " triangles instead of " + shown(std::round(triangles)) + ": the nearest are " +
-                   shown(r.narrow.gap) + " apart at " + shown(r.narrow.at));
+  throw Informed<GoalMissed>("lines and sheets near each other ask for about " + shown(std::round(count)) +
+                                 " triangles instead of " + shown(std::round(triangles)) +
+                                 ": the nearest are " + shown(r.narrow.gap) + " apart at " +
+                                 shown(r.narrow.at),
+                             {.narrow_width = r.narrow.gap});
 }
 
 /// Throws: GoalMissed if closed components so slender that the size is more than their circumference, in the
@@ -363,7 +365,7 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
                                  shown(std::round(triangles)) + ": the size is " + shown(size) +
                                  ", and the mean way around one is " + shown(narrowest) + ", its middle at " +
                                  shown(place),
-                             {.tube_width = narrowest});
+                             {.narrow_width = narrowest});
 }
 
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number

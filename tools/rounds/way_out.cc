@@ -98,7 +98,7 @@ const Row table[] = {
        return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "the distance that was reached"};
      }},
     {[](const Case& c) {
-       return c.status >= goal_missed && c.found.weld > c.facts.tube_width && !c.used("mclean", "--weld");
+       return c.status >= goal_missed && c.found.weld > c.facts.narrow_width && !c.used("mclean", "--weld");
      },
      [](const Case& c) {
        return WayOut{"mclean --weld " + at_least(c.found.weld),

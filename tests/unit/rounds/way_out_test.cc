@@ -40,7 +40,7 @@ TEST(WayOut, NamesWhatHelpsWhereSizesFailed) {
   Diagnosis found;
   found.weld = 1e-7;
   FailureFacts facts;
-  facts.tube_width = 3;  // what is to be welded is not what is slender
+  facts.narrow_width = 3;  // what is to be welded is not what is slender
   EXPECT_EQ(named(unreached, facts, found), "mwrap");
   facts = sizes_from(4);
   EXPECT_EQ(named(unreached, facts, found), "--min 4");
