@@ -49,24 +49,29 @@ double count_with_borders(const Connectivity& surface, const std::vector<int>& p
     return is_feature(surface, h) || surface.is_model(surface.opposite[h]) ||
            part[h / 3] != part[surface.opposite[h] / 3];
   };
+  constexpr int counted = -1;  // a vertex inside of a part
   std::vector<int> lines_at(surface.n_vertices(), 0);
   for (int h = 0; h < n; ++h) {
     if (is_line(h)) ++lines_at[surface.from(h)];
     if (surface.is_border(h)) ++lines_at[surface.to(h)];
   }
   struct Count {
-    double inside = 0, segments = 0, corners = 0;
+    double asked = 0, segments = 0, corners = 0;  // of borders: of lines inside both sides
+    double euler = 0;                             // characteristic
   };
   std::vector<Count> of(part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end()));
   for (int h = 0; h < n; ++h) {
     Count& c = of[part[h / 3]];
-    if (h % 3 == 0) c.inside += per_asked * asked_in(surface.mesh, size, h / 3);
+    int& lines = lines_at[surface.from(h)];
+    if (h % 3 == 0) c.asked += per_asked * asked_in(surface.mesh, size, h / 3), c.euler -= 0.5;
+    if (lines == 0) lines = counted, c.euler += 1;
     if (!is_line(h)) continue;
     c.segments += 2 * surface.length(h) / (size[surface.from(h)] + size[surface.to(h)]);
-    c.corners += lines_at[surface.from(h)] > 2;
+    c.corners += lines > 2;
+    c.euler += 0.5;
   }
   double sum = 0;
-  for (const Count& c : of) sum += std::max(c.inside, std::max(c.segments, c.corners) - 2);
+  for (const Count& c : of) sum += std::max(c.asked, std::max(c.segments, c.corners) - 2 * c.euler);
   return sum;
 }
 
