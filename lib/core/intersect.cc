@@ -229,8 +229,7 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
   return all;
 }
 
-Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
-  Mesh places;
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places) {
   for (auto [s, t] : pairs) {
     const std::vector<Vec3> ring = contact(mesh, s, t);
     const int first = (int)places.points.size(), n = (int)ring.size();

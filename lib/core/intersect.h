@@ -24,9 +24,9 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh,
                                                     int own = std::numeric_limits<int>::max());
 
-/// Returns where the triangles of each pair meet, as triangles: a segment is (first, last, last); for two
-/// triangles in one plane, the polygon that they share.
-Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs);
+/// Returns where the triangles of each pair meet, as triangles after `places`: a segment is (first, last,
+/// last); for two triangles in one plane, the polygon that they share.
+Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places = {});
 
 /// Returns those of the intersecting pairs whose contact is, all along, farther than twice their longest edge
 /// from `known`, the contacts of another mesh of the same surface: that mesh does not intersect there.

@@ -2,6 +2,7 @@
 // Chords: edges that join two vertices of the rim of a plane patch from outside of it.
 #include <gtest/gtest.h>
 
+#include "lib/relax/faults.h"
 #include "lib/relax/operations.h"
 #include "tests/unit/relax/drawn.h"
 
@@ -22,6 +23,21 @@ Surface capped(Vec3 e = {3, 0, -2}) {
   bits[0] = 1 | 4, bits[1] = 1 | 2, bits[2] = 1, bits[3] = 1, bits[7] = 4, bits[8] = 4;
   s.face.set("model", bits);
   return s;
+}
+
+TEST(Chord, OfTheReferenceIsNoFault) {
+  Surface s = capped();
+  s.tris[2] = {'a' - 'a', 'e' - 'a', 'c' - 'a'};
+  s.tris[3] = {'c' - 'a', 'b' - 'a', 'a' - 'a'};  // on the cap, with a chord
+  auto& bits = s.face.get<std::uint8_t>("model");
+  bits[2] = 0, bits[3] = 1 | 2;
+  Drawn m(s);
+  ASSERT_FALSE(chords_of(m.s).empty());
+  Samples samples{feature_samples(m.reference, 3), {}};
+  Known known{m.reference.surface, samples};
+  const Fault found = find_faults(m.s, known);
+  EXPECT_TRUE(found.pairs.empty());
+  EXPECT_GT(found.of_reference, 0);
 }
 
 TEST(Chord, IsNotFlippedTo) {
