@@ -24,6 +24,17 @@ int turn(const std::vector<Vec2>& polygon) {
   return orient2d(polygon[(low + n - 1) % n], polygon[low], polygon[(low + 1) % n]);
 }
 
+/// Is the area of a polygon so small that points of its edges, which are rounded, may lie beyond others?
+bool is_flat(const std::vector<Vec2>& polygon) {
+  constexpr double rounding = 1e-12;
+  double area = 0, length = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 p = polygon[i] - polygon[0], q = polygon[(i + 1) % polygon.size()] - polygon[0];
+    area += 0.5 * cross(p, q), length += norm(q - p);
+  }
+  return !(std::abs(area) > rounding * length * length);
+}
+
 /// The kernel of a star-shaped polygon: the polygon's box clipped by the half-plane of each edge.
 std::vector<Vec2> kernel(const std::vector<Vec2>& polygon) {
   Vec2 low = polygon[0], high = polygon[0];
@@ -64,10 +75,13 @@ int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv) {
 
 namespace {
 
-/// The border edges in the order of its loops, and the number of loops that turn counter-clockwise.
-std::vector<Segment> border(const Connectivity& c, const std::vector<Vec2>& uv, int& counter_clockwise) {
+struct Loops {
+  int counter_clockwise = 0, flat = 0;
+};
+
+/// The border edges in the order of its loops.
+std::vector<Segment> border(const Connectivity& c, const std::vector<Vec2>& uv, Loops& loops) {
   std::vector<Segment> segments;
-  counter_clockwise = 0;
   for (const auto& loop : boundary_loops(c.opposite)) {
     std::vector<Vec2> polygon;
     for (int h : loop) {
@@ -75,7 +89,7 @@ std::vector<Segment> border(const Connectivity& c, const std::vector<Vec2>& uv, 
       segments.push_back({uv[a], uv[b], a, b});
       polygon.push_back(uv[a]);
     }
-    counter_clockwise += turn(polygon) > 0;
+    loops.counter_clockwise += turn(polygon) > 0, loops.flat += is_flat(polygon);
   }
   return segments;
 }
@@ -83,9 +97,9 @@ std::vector<Segment> border(const Connectivity& c, const std::vector<Vec2>& uv, 
 }  // namespace
 
 bool border_is_simple(const Connectivity& c, const std::vector<Vec2>& uv) {
-  int counter_clockwise;
-  std::vector<Segment> segments = border(c, uv, counter_clockwise);
-  return counter_clockwise == 1 && SegmentTree(segments).crossings().empty();
+  Loops loops;
+  const std::vector<Segment> segments = border(c, uv, loops);
+  return loops.counter_clockwise == 1 && loops.flat == 0 && SegmentTree(segments).crossings().empty();
 }
 
 bool polygon_is_simple(const std::vector<Vec2>& polygon) {
@@ -96,8 +110,8 @@ bool polygon_is_simple(const std::vector<Vec2>& polygon) {
 }
 
 std::vector<std::array<int, 2>> border_crossings(const Connectivity& c, const std::vector<Vec2>& uv) {
-  int counter_clockwise;
-  std::vector<Segment> segments = border(c, uv, counter_clockwise);
+  Loops loops;
+  const std::vector<Segment> segments = border(c, uv, loops);
   std::vector<std::array<int, 2>> pairs = SegmentTree(segments).crossings();
   for (auto& [s, t] : pairs) {
     s = segments[s].from;

@@ -12,9 +12,10 @@ namespace meshpipe {
 int count_inverted(const std::vector<Tri>& tris, const std::vector<Vec2>& uv);
 
 /// Returns whether the images of the border loops are simple polygons that do not touch each other, one of
-/// them counter-clockwise and all others clockwise (the chart on the left of each). With count_inverted = 0
-/// on a connected part this proves the map one-to-one: a point has as many images as the loops' winding
-/// numbers around it sum up to, which is then at most 1.
+/// them counter-clockwise and all others clockwise (the chart on the left of each), and none flat to
+/// rounding, since points of their edges are rounded, too. With count_inverted = 0 on a connected part this
+/// proves the map one-to-one: a point has as many images as the loops' winding numbers around it sum up to,
+/// which is then at most 1.
 bool border_is_simple(const Connectivity& c, const std::vector<Vec2>& uv);
 
 /// Returns whether a closed polygon is not empty, meets itself nowhere and runs counter-clockwise.

@@ -70,6 +70,17 @@ TEST(Injective, BordersOfARing) {
   EXPECT_GT(count_inverted(tris, moved), 0);
 }
 
+TEST(Injective, AFlatHoleIsNotSimple) {
+  const auto tris = ring(4);
+  const auto opposite = opposite_halfedges(tris, 8);
+  for (double height : {1e-3, 1e-16}) {
+    const std::vector<Vec2> uv{{0.5, 0}, {0, height}, {-0.5, 0}, {0, -height},
+                               {10, 0},  {0, 10},     {-10, 0},  {0, -10}};
+    EXPECT_EQ(count_inverted(tris, uv), 0);
+    EXPECT_EQ(border_is_simple({Mesh{{}, tris}, opposite}, uv), height == 1e-3);
+  }
+}
+
 TEST(Injective, TouchingBordersAreNotSimple) {
   auto tris = ring(12);
   auto uv = ring_uv(12, 1, 2, 1);
