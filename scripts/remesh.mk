@@ -26,7 +26,7 @@ numbered = $(filter %-$(1),$(stages))
 mapped := $(call numbered,param)
 last := $(lastword $(filter-out %-check,$(stages)))
 
-# without a size that holds everywhere there is no share of it, as for mremesh
+# sizes that vary have no share for the tolerance of mfeature, as in mremesh
 varying := $(foreach o,--data --field --expression --around --across --gap,$(findstring $(o),$(SIZE_ARGS)))
 tolerance := $(if $(strip $(varying)),$(if $(findstring --tolerance,$(FEATURE_ARGS)),,--tolerance 0))
 goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))

@@ -36,13 +36,14 @@ Surface reference_from(const Stream& file, std::size_t triangles) {
   return s;
 }
 
-/// The number of triangles that the last msize was given; 0 if none.
+/// The number of triangles that the last msize was given; 0 if none, or if bounds of sizes may forbid it.
 int count_given(const Stream& stream) {
-  const std::string option = "--triangles=";
   for (auto p = stream.history.rbegin(); p != stream.history.rend(); ++p) {
     if (p->program != "msize") continue;
-    const std::size_t at = p->arguments.find(option);
-    return at == std::string::npos ? 0 : std::atoi(p->arguments.c_str() + at + option.size());
+    const std::string all = ' ' + p->arguments, option = " --triangles=";
+    const std::size_t at = all.find(option);
+    if (at == all.npos || all.find(" --max=") != all.npos || all.find(" --min=") != all.npos) return 0;
+    return (int)std::clamp(std::strtod(all.c_str() + at + option.size(), nullptr), 0.0, 1e9);
   }
   return 0;
 }

@@ -46,6 +46,7 @@ Table pass_table(const TilePass& pass, const RelaxCounts& before) {
   table.set("keep_border", std::vector<int>{pass.keep_border});
   table.set("repair", std::vector<int>{pass.repair});
   table.set("to_count", std::vector<int>{pass.to_count});
+  table.set("keep_count", std::vector<int>{pass.keep_count});
   table.set("goal", std::vector<double>{pass.goal});
   table.set("sample_size", std::vector<double>{pass.sample_size});
   table.set("mean_size", std::vector<double>{pass.mean_size});
@@ -59,7 +60,8 @@ TilePass pass_from(const Table& table) {
     if (!(x > 0)) throw BadInput(std::string("tile_pass: ") + name + " is not positive");
     return x;
   };
-  TilePass pass{number("sweeps"), number("keep_border") != 0, number("repair") != 0, number("to_count") != 0};
+  TilePass pass{number("sweeps"), number("keep_border") != 0, number("repair") != 0, number("to_count") != 0,
+                number("keep_count") != 0};
   pass.goal = length("goal"), pass.sample_size = length("sample_size"), pass.mean_size = length("mean_size");
   return pass;
 }
@@ -68,8 +70,8 @@ bool same(const TilesOf& a, const TilesOf& b) {
   const TilePass &p = a.pass, &q = b.pass;
   return a.count == b.count && a.vertices == b.vertices && a.line_kind == b.line_kind &&
          a.corners == b.corners && p.sweeps == q.sweeps && p.keep_border == q.keep_border &&
-         p.repair == q.repair && p.to_count == q.to_count && p.goal == q.goal &&
-         p.sample_size == q.sample_size && p.mean_size == q.mean_size &&
+         p.repair == q.repair && p.to_count == q.to_count && p.keep_count == q.keep_count &&
+         p.goal == q.goal && p.sample_size == q.sample_size && p.mean_size == q.mean_size &&
          std::all_of(std::begin(count_columns), std::end(count_columns),
                      [&](const auto& c) { return a.before.*c.second == b.before.*c.second; });
 }

@@ -12,7 +12,7 @@ namespace meshpipe {
 struct FailureFacts {
   double least_size = 0;      ///< sizes from here on can be met, with a margin; 0: unknown
   double strip_width = 0;     ///< strips narrower than this ask for too many triangles; 0: none do
-  double narrow_width = 0;    ///< around parts, or between sheets, that ask for too many triangles; 0: none
+  double narrow_width = 0;    ///< distance around parts or between sheets that ask for too many triangles
   bool far_off = false;       ///< the coordinates are too coarse, and finer near the origin
   std::string requirement{};  ///< of the contract, the first that is missed,
   double value = 0;           ///< and what was reached of it

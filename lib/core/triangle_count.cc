@@ -56,7 +56,7 @@ double count_with_borders(const Connectivity& surface, const std::vector<int>& p
     if (surface.is_border(h)) ++lines_at[surface.to(h)];
   }
   struct Count {
-    double asked = 0, segments = 0, corners = 0;  // of borders: of lines inside both sides
+    double asked = 0, segments = 0, corners = 0;  // along borders; lines inside a part count on both sides
     double euler = 0;                             // characteristic
   };
   std::vector<Count> of(part.empty() ? 0 : 1 + *std::max_element(part.begin(), part.end()));

@@ -19,8 +19,8 @@ constexpr double size_over_longest = 1.5;
 /// for: the integral of dA / (sqrt(3)/4 h^2), with the mean of the corners for h where they differ by less
 /// than a factor of 2.
 double count_for_size(const Mesh& mesh, const std::vector<double>& size);
-/// Returns the same with at least as many triangles in each part (per triangle, from 0) as have only the
-/// corners of the part's border and of model edges in it, and the vertices along these, for vertices.
+/// Returns the same, but per part no fewer than a triangulation needs whose only vertices are on the part's
+/// border and on model edges in it. `part`: per triangle, from 0, below the number of triangles.
 double count_with_borders(const Connectivity& surface, const std::vector<int>& part,
                           const std::vector<double>& size);
 

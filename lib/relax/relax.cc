@@ -457,7 +457,7 @@ void relax_tile(Tile& tile, const std::vector<int>& line_kind, const TilePass& p
   const Ordered ordered(tile.mesh, tile.slice);
   tile.slice = {};
   State s = start_state(tile.mesh, *ordered.on, line_kind, ordered.of_points(tile.corner));
-  s.keep_border = pass.keep_border;
+  s.keep_border = pass.keep_border, s.whole.keep_count = pass.keep_count;
   s.whole.mean_size = pass.mean_size;
   s.whole.share = pass.share;
   s.whole.rim_excess.resize(s.points.size());
@@ -513,7 +513,7 @@ TilePass TiledRelax::pass(const TiledMesh& whole, bool repair) const {
       reference.vertex.has("size") ? count_for_size(reference, reference.vertex.get<double>("size")) : live;
   const double target = options.target_triangles > 0 ? options.target_triangles : natural;
   TilePass pass{options.sweeps, options.keep_border, repair};
-  pass.to_count = options.target_triangles > 0;
+  pass.to_count = options.target_triangles > 0, pass.keep_count = options.keep_count;
   pass.goal = target / live;
   pass.sample_size = size_for_count(total_area(reference), target);
   pass.mean_size = size_for_count(total_area(whole.mesh), live);

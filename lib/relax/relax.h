@@ -14,7 +14,7 @@ struct RelaxOptions {
   /// Triangle count of the result; refinement in narrow places is taken from the rest. 0: as the size field
   /// asks, and narrow places have more.
   double target_triangles = 0;
-  bool keep_count = false;   ///< repair of shapes adds few triangles: kappa at narrow places is 0.25, not 0.4
+  bool keep_count = false;   ///< repair of shapes adds few triangles, except where kappa is below 0.25
   bool keep_border = false;  ///< no new vertex on the border
   bool sheets_meet = false;  ///< border vertices at the same place, to the last bit, are copies of one
   /// Meshes of more than four times this number of triangles are optimized in tiles of at most as many, in
@@ -89,7 +89,8 @@ struct TilePass {
   int sweeps = 4;
   bool keep_border = false;
   bool repair = false;
-  bool to_count = false;   ///< is the goal what was asked for?
+  bool to_count = false;  ///< is the goal what was asked for?
+  bool keep_count = false;
   double goal = 1;         ///< triangles to come to, per triangle
   double sample_size = 0;  ///< distance of the samples of features
   double mean_size = 0;    ///< of the mesh

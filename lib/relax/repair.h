@@ -26,9 +26,9 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
 
 /// Repairs the triangles that are not good enough, the worst first, then vertices of a valence other than 5,
 /// 6, 7: in each of 4 rounds at most 200 + n/100 of n triangles, since more mean that sizes are at fault.
-/// Only where something has changed after `since`, on the clock of `s`. From `most` triangles on none are
-/// added, except for needles.
-void repair_worst(State& s, Repairs& memory, int since = -1, int most = INT_MAX);
+/// Only where something has changed after `since`, on the clock of `s`. From `most_live` triangles on
+/// none are added, except for needles.
+void repair_worst(State& s, Repairs& memory, int since = -1, int most_live = INT_MAX);
 
 // --- missed_features.cc ---
 
@@ -50,7 +50,7 @@ struct Samples {
     for (Sample& s : list) s.near = s.time = -1;
     search.forget();
   }
-  /// Goes back to an earlier mesh, for which the list was this; places inside triangles that were added since
+  /// Goes back to an earlier mesh, whose samples were these; places inside triangles that were added since
   /// stay.
   void go_back(std::vector<Sample> earlier);
 };
@@ -97,7 +97,7 @@ struct Faults : Intersections {
 /// folds, at needles, and where mesh and reference are almost half the size apart; then repairs there. Goes
 /// on until rounds no longer help, then, if mcheck accepts none, without a margin. If mcheck accepts one of
 /// the meshes seen, leaves the best of these, with its mild needles repaired; else the one with the fewest
-/// faults, which it returns.
+/// faults, which it returns. With more than 400 pairs at first it changes nothing.
 Faults remove_faults(State& s, Samples& samples);
 
 }  // namespace meshpipe

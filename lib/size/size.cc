@@ -304,6 +304,12 @@ void convert_data(Surface& s, const std::string& name) {
              decltype(Column::data)(c->data));
 }
 
+/// Are these labels of at most n parts? The column may be another program's.
+bool has_labels(const Column* column, int n) {
+  const auto* labels = column ? std::get_if<std::vector<int>>(&column->data) : nullptr;
+  return labels && std::all_of(labels->begin(), labels->end(), [&](int l) { return 0 <= l && l < n; });
+}
+
 /// Returns how many triangles narrow places may ask for.
 double most_for(double triangles) { return std::max(most_times * triangles, many_triangles); }
 
@@ -613,7 +619,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
   }
   report.triangles = count_for_size(surface, size) + report.strips;
   report.least = report.triangles;
-  if (surface.face.has("part")) {
+  if (has_labels(surface.face.find("part"), (int)surface.tris.size())) {
     const std::vector<int> opposite = opposite_halfedges(surface);
     report.least = std::max(report.least, count_with_borders({surface, opposite, model_of(surface)},
                                                              surface.face.get<int>("part"), size));

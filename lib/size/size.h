@@ -52,7 +52,7 @@ struct SizeReport {
   LayerReport layers;
   double smallest = 0, largest = 0;
   double triangles = 0;  ///< that the field asks for, with those of `strips`
-  double least = 0;      ///< that there will be: narrow parts have more, see count_with_borders
+  double least = 0;      ///< of the result: narrow parts have more than `triangles`, see count_with_borders
   double strips = 0;     ///< more of them, as narrow strips have more than their area stands for
   double scale = 1;      ///< factor of the other sources where they ask for more than `triangles`
   int added = 0;         ///< vertices

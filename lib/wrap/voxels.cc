@@ -255,11 +255,13 @@ void make_manifold(Voxels& v) {
 
 Voxels outside_voxels(const Mesh& soup, const Bvh& tree, const WrapOptions& o, WrapReport& report) {
   const double spacing = std::max(o.alpha, o.offset) / voxels_per_alpha;
+  const Box box = box_of(soup);
   double far = 0;
-  for (const Vec3& p : soup.points) far = std::max({far, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  for (const Vec3& p : {box.lo, box.hi}) far = std::max({far, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   if (const double apart = std::nextafter(far, infinity) - far; spacing < least_spacing * apart)
-    throw NotAdmissible("voxels are " + shown(spacing) + " wide, but coordinates are " + shown(apart) +
-                        " apart: try mconvert --center (they are closer together near the origin)");
+    throw NotAdmissible("voxels are " + shown(spacing) +
+                        " wide, but doubles as large as the coordinates are " + shown(apart) +
+                        " apart: try mconvert --center, which moves them to the origin");
   // a path between centers this far away from the soup stays clear of a ball of diameter alpha in between
   const double clear = o.offset + 0.5 * o.alpha + 0.5 * spacing, solid = o.offset + half_diagonal * spacing;
   report.spacing = spacing;

@@ -53,7 +53,7 @@ std::vector<std::string> size_lines(const SizeReport& r, const SizeOptions& o, b
                     shown(r.narrow.gap) + " apart, it is lowered from " + shown(r.narrow.from) + " to " +
                     shown(r.narrow.to));
   const bool narrow = r.narrow.places + r.lowered.places > 0 || r.least > (1 + more) * r.triangles;
-  if (o.triangles > 0 && narrow && r.least > (1 + more) * o.triangles)
+  if (o.triangles > 0 && narrow && !(o.max > 0) && r.least > (1 + more) * o.triangles)
     lines.push_back("no fewer than about " + std::to_string(std::llround(r.least)) +
                     " triangles are good in narrow places, instead of " +
                     std::to_string(std::llround(o.triangles)));

@@ -506,6 +506,18 @@ TEST(Size, GeometryIsDividedAsAsked) {
 
 // A small end in the wall of a wide tube: all of its rim is divided by its own length, also where it is
 // split.
+TEST(Size, PartsOfOtherProgramsAreNotCounted) {
+  for (const auto& labels : {std::vector{0, 1, 2, 3}, {-1, -1, -1, -1}, {0, 2'000'000'000, -5, 1}}) {
+    Surface s = surface_of(
+        {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}});
+    s.face.set("part", labels);
+    SizeOptions options;
+    options.size = 0.2;
+    const SizeReport r = set_size(s, nullptr, options);
+    EXPECT_GE(r.least, r.triangles);
+  }
+}
+
 TEST(Size, RimsOfSmallEndsAreDividedAsAsked) {
   Surface s = surface_of(tube(4, 24, false));
   int hole = 0;
