@@ -161,7 +161,8 @@ void part_double_edges(State& s) {
   }
 }
 
-void extract_copies(const State& s, const std::vector<int>& vertices, State& patch) {
+void extract_copies(const State& s, const std::vector<int>& triangles, const std::vector<int>& vertices,
+                    State& patch) {
   const int n = (int)vertices.size();
   patch.copy.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -175,6 +176,12 @@ void extract_copies(const State& s, const std::vector<int>& vertices, State& pat
       if (found) patch.copy[i] = (int)(at - vertices.begin());
       if (!found) patch.hold[i] = frozen;
     }
+  }
+  const EditMesh& m = patch.mesh;
+  for (int h = 0; h < (int)m.opp.size(); ++h) {
+    const int whole = 3 * triangles[h / 3] + h % 3;
+    if (s.mesh.opp[whole] < 0 && edges_along(patch, h).size() < edges_along(s, whole).size())
+      patch.hold[m.from(h)] = patch.hold[m.to(h)] = frozen;
   }
   for (int i = 0; i < n; ++i)
     if (patch.hold[i] == frozen) for_copies(patch, i, [&](int c) { patch.hold[c] = frozen; });

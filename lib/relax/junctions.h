@@ -37,8 +37,9 @@ bool doubles_edges(const State& s, int h, int gone);
 /// Flips or splits inside edges that join the same places as an edge of another sheet.
 void part_double_edges(State& s);
 
-/// Sets the copies in a patch, whose vertices are these vertices of s (ascending). Where some copies are
-/// outside of the patch, all are frozen.
-void extract_copies(const State& s, const std::vector<int>& vertices, State& patch);
+/// Sets the copies in a patch of these triangles, whose vertices are these vertices of s (ascending). Where
+/// some copies are outside of the patch, or triangles at an edge between copies are, all are frozen.
+void extract_copies(const State& s, const std::vector<int>& triangles, const std::vector<int>& vertices,
+                    State& patch);
 
 }  // namespace meshpipe

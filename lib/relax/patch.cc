@@ -153,7 +153,7 @@ State extract(const State& s, const std::vector<int>& triangles) {
   for (int h = 0; h < (int)patch.mesh.opp.size(); ++h)
     if (patch.mesh.opp[h] < 0 && s.mesh.opp[3 * triangles[h / 3] + h % 3] >= 0)
       patch.hold[patch.mesh.from(h)] = patch.hold[patch.mesh.to(h)] = frozen;
-  if (!s.copy.empty()) extract_copies(s, vertices, patch);
+  if (!s.copy.empty()) extract_copies(s, triangles, vertices, patch);
   return patch;
 }
 

@@ -187,6 +187,24 @@ TEST(Copies, DoubleEdgesAreParted) {
   EXPECT_EQ(double_edges(state), 0);
 }
 
+TEST(Copies, AnEdgeThatOneSheetHasOutsideOfAPatchIsHeld) {
+  Strips m;
+  std::vector<int> all, without;
+  for (int sheet = 0; sheet < 3; ++sheet)
+    for (int v : {2, 3}) m.s.mesh.star(v + sheet * per_sheet, [&](int h) { all.push_back(h / 3); });
+  sort_unique(all);
+  const int outside = m.edge(2 + 2 * per_sheet, 3 + 2 * per_sheet) / 3;
+  for (int t : all)
+    if (t != outside) without.push_back(t);
+  auto splits = [&](const std::vector<int>& triangles) {
+    State patch = extract(m.s, triangles);
+    const int at = (int)(std::find(triangles.begin(), triangles.end(), m.edge(2, 3) / 3) - triangles.begin());
+    return split_edge(patch, 3 * at + m.edge(2, 3) % 3);
+  };
+  EXPECT_TRUE(splits(all));
+  EXPECT_FALSE(splits(without));
+}
+
 TEST(Copies, PatchesHoldAllSheets) {
   Strips m;
   const std::vector<int> found = triangles_around(m.s, m.edge(2, 3) / 3, 1);
