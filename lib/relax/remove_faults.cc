@@ -353,7 +353,8 @@ Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
   search.look(s);
-  const bool too_many = search.now.pairs.size() > rules::most_pairs;
+  const bool too_many =
+      (double)search.now.pairs.size() > std::max(rules::most_pairs, rules::most_pairs_share * s.mesh.live);
   auto remove = [&] {
     if (too_many) return;
     if (!search.best->fault.none()) refine(s, search, most);

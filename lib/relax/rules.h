@@ -127,7 +127,8 @@ constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
-constexpr std::size_t most_pairs = 400;  // of 366 meshes none that began with more lost a tenth
+constexpr double most_pairs = 400, most_pairs_share = 0.01;  // of the triangles: of 366 meshes none that
+                                                             // began with more of both lost a tenth
 constexpr double reduced_at_pair = 0.35,
                  reduced_at_needle = 0.3;    // of the size, where the mesh is begun again
 constexpr double reduced_at_distance = 0.3;  // over the distance in sizes: the same, well within a half,
