@@ -31,7 +31,7 @@ struct Known {
   Samples& samples;
   Limits limits = needed;
   MeasuredMesh of_mesh{};
-  std::optional<Mesh> contacts{};     ///< where the reference before cuts intersects itself
+  std::optional<Mesh> contacts{};     ///< where the reference before cuts intersects itself, and its chords
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
   std::optional<Bvh> built{};
   std::vector<char> corners{};
