@@ -140,12 +140,6 @@ std::pair<std::optional<double>, std::optional<double>> kappa_by_lines(const Con
   return {mean(1), mean(0)};
 }
 
-std::vector<std::pair<int, int>> chords_of(const Connectivity& c) {
-  return chord_pairs(
-      c.mesh.tris, c.mesh.points, [&](int h) { return c.opposite[h]; },
-      [&](int h) { return c.is_border(h) || c.is_model(h); });
-}
-
 /// Finds intersections and chords, new ones where the reference has neither. Where sheets meet, their borders
 /// are joined, and the reference's are found in any case. Trees: null if they are `measured`.
 void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh_tree, const Mesh& before,
@@ -158,7 +152,7 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
     return sheet_intersections(copy, tree);
   };
   f.intersections = measured ? measured->intersections : find(joined[0], result.mesh, *mesh_tree);
-  const auto chords = f.mesh.sound() ? chords_of(result) : std::vector<std::pair<int, int>>();
+  const auto chords = f.mesh.sound() ? chord_pairs(result) : std::vector<std::pair<int, int>>();
   if (f.intersections.empty() && chords.empty() && !sheets_meet) return;
   const auto old = before_tree ? find(joined[1], before, *before_tree) : self_intersections(before);
   const Mesh& reference = sheets_meet ? joined[1] : before;
@@ -175,7 +169,7 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
   sort_unique(f.intersections);
   f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, old));
   if (chords.empty() || f.new_intersections.empty() || !f.reference.sound()) return;
-  const auto theirs = chords_of({given, opposite_halfedges(given), model_of(given)});
+  const auto theirs = chord_pairs({given, opposite_halfedges(given), model_of(given)});
   f.new_intersections = new_intersections(mesh, f.new_intersections, contacts(given, theirs));
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lib/core/mesh.h"
+#include "lib/core/connectivity.h"
 
 namespace meshpipe {
 
@@ -65,6 +65,13 @@ std::vector<std::pair<int, int>> chord_pairs(const std::vector<Tri>& tris, const
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+/// Returns the same of a surface, where borders and model edges are hard.
+inline std::vector<std::pair<int, int>> chord_pairs(const Connectivity& c) {
+  return chord_pairs(
+      c.mesh.tris, c.mesh.points, [&](int h) { return c.opposite[h]; },
+      [&](int h) { return c.is_border(h) || c.is_model(h); });
 }
 
 }  // namespace meshpipe

@@ -81,15 +81,6 @@ bool is_forced(const State& s, int t, double k, Known& known) {
 
 namespace {
 
-/// The same as chords_of in a surface.
-std::vector<std::pair<int, int>> chords_in(const Surface& surface) {
-  const std::vector<int> opposite = opposite_halfedges(surface);
-  const Connectivity c{surface, opposite, model_of(surface)};
-  return chord_pairs(
-      surface.tris, surface.points, [&](int h) { return opposite[h]; },
-      [&](int h) { return c.is_border(h) || c.is_model(h); });
-}
-
 /// Pairs that intersect, and chords, where the reference has neither.
 void find_intersections(const State& s, Known& known, Fault& found) {
   renew(known.of_mesh.intersections, s, known.samples.search);
@@ -101,8 +92,9 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   if (!known.contacts) {
     Mesh joined = original_mesh(known.reference);
     if (!s.copy.empty()) join_borders(joined);
-    known.contacts =
-        contacts(known.reference, chords_in(known.reference), contacts(joined, self_intersections(joined)));
+    const std::vector<int> opposite = opposite_halfedges(known.reference);
+    const auto chords = chord_pairs({known.reference, opposite, model_of(known.reference)});
+    known.contacts = contacts(known.reference, chords, contacts(joined, self_intersections(joined)));
     if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
   }
   found.of_reference = (int)found.pairs.size();
