@@ -2,7 +2,6 @@
 #include "formats/formats.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "formats/foreign/abaqus.h"
 #include "formats/foreign/geo.h"

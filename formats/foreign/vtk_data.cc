@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/foreign/vtk_data.h"
 
-#include <algorithm>
-
 #include "formats/text.h"
 #include "lib/core/error.h"
 

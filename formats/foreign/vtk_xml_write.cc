@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <zlib.h>
 
-#include <algorithm>
-
 #include "formats/foreign/base64.h"
 #include "formats/foreign/bytes.h"
 #include "formats/foreign/vtk_data.h"

@@ -168,9 +168,8 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
   f.intersections.insert(f.intersections.end(), chords.begin(), chords.end());
   sort_unique(f.intersections);
   f.new_intersections = new_intersections(mesh, f.intersections, contacts(reference, old));
-  if (chords.empty() || f.new_intersections.empty() || !f.reference.sound()) return;
-  const auto theirs = chord_pairs({given, opposite_halfedges(given), model_of(given)});
-  f.new_intersections = new_intersections(mesh, f.new_intersections, contacts(given, theirs));
+  if (f.new_intersections.empty() || !f.reference.sound()) return;
+  f.new_intersections = new_intersections(mesh, f.new_intersections, reference_contacts(given, sheets_meet));
 }
 
 /// Measures the distances of borders, and of borders and model edges where both surfaces know theirs.

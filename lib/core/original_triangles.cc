@@ -5,7 +5,9 @@
 #include <cmath>
 #include <span>
 
-#include "lib/core/connectivity.h"
+#include "lib/core/chord.h"
+#include "lib/core/intersect.h"
+#include "lib/core/junctions.h"
 #include "lib/core/lists.h"
 
 namespace meshpipe {
@@ -84,6 +86,14 @@ Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin, std::ve
 Mesh original_mesh(const Surface& reference) {
   return reference.face.has("origin") ? recover_triangles(reference, reference.face.get<int>("origin"))
                                       : Mesh(reference);
+}
+
+Mesh reference_contacts(const Surface& reference, bool sheets_meet) {
+  Mesh joined = original_mesh(reference);
+  if (sheets_meet) join_borders(joined);
+  const std::vector<int> opposite = opposite_halfedges(reference);
+  const auto chords = chord_pairs({reference, opposite, model_of(reference)});
+  return contacts(reference, chords, contacts(joined, self_intersections(joined)));
 }
 
 }  // namespace meshpipe

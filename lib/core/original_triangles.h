@@ -13,8 +13,12 @@ namespace meshpipe {
 Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin,
                        std::vector<int>* whole_of = nullptr);
 
-/// Returns a reference before its triangles were cut, or a copy if it has no column `origin`. Look for its
-/// intersections there: new vertices are rounded, so sheets may cross in the cut one only.
+/// Returns a reference before its triangles were cut, or a copy if it has no column `origin`.
 Mesh original_mesh(const Surface& reference);
+
+/// Returns the contacts (lib/core/intersect.h) of a reference: its chords, and where it intersects itself or
+/// fans touch, as it was before it was cut, since new vertices are rounded. If `sheets_meet`, its borders are
+/// joined. Throws: as opposite_halfedges.
+Mesh reference_contacts(const Surface& reference, bool sheets_meet);
 
 }  // namespace meshpipe

@@ -2,7 +2,6 @@
 #include "lib/core/sectors.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace meshpipe {
 namespace {

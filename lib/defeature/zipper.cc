@@ -2,7 +2,6 @@
 #include "lib/defeature/zipper.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "lib/core/lists.h"
 #include "lib/core/topology.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <numbers>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/intersect.h"

@@ -5,7 +5,6 @@
 #include "lib/core/farthest.h"
 #include "lib/core/fold.h"
 #include "lib/core/intersect.h"
-#include "lib/core/junctions.h"
 #include "lib/core/original_triangles.h"
 
 namespace meshpipe {
@@ -90,11 +89,7 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   sort_unique(found.pairs);
   if (found.pairs.empty()) return;
   if (!known.contacts) {
-    Mesh joined = original_mesh(known.reference);
-    if (!s.copy.empty()) join_borders(joined);
-    const std::vector<int> opposite = opposite_halfedges(known.reference);
-    const auto chords = chord_pairs({known.reference, opposite, model_of(known.reference)});
-    known.contacts = contacts(known.reference, chords, contacts(joined, self_intersections(joined)));
+    known.contacts = reference_contacts(known.reference, !s.copy.empty());
     if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
   }
   found.of_reference = (int)found.pairs.size();

@@ -426,10 +426,7 @@ Intersections part_tiles(const TiledRelax& by, TiledMesh& whole, RelaxCounts& co
     const auto boxes = split_into_boxes(whole.mesh, identity(whole.mesh.tris.size()), by.options.tile);
     Intersections found{tile_intersections(whole.mesh, boxes, rules::around_seams)};
     if (found.pairs.empty()) return found;
-    if (!known) {
-      const Mesh before = original_mesh(by.reference);
-      known = contacts(before, self_intersections(before));
-    }
+    if (!known) known = reference_contacts(by.reference, false);
     const int all = (int)found.pairs.size();
     found.pairs = new_intersections(whole.mesh, found.pairs, *known);
     found.of_reference = all - (int)found.pairs.size();

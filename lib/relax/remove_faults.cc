@@ -5,7 +5,6 @@
 #include <unordered_set>
 
 #include "lib/core/intersect.h"
-#include "lib/core/triangle_count.h"
 #include "lib/relax/faults.h"
 
 namespace meshpipe {

@@ -2,6 +2,7 @@
 #include "lib/smooth/separate.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "lib/core/intersect.h"
 
@@ -10,16 +11,15 @@ namespace meshpipe {
 int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held) {
   const int n = (int)start.size();
   std::vector<char> back(n, 0);
-  Mesh known;
-  bool has_known = false;
+  std::optional<Mesh> known;
   for (int round = 0;; ++round) {
     auto pairs = self_intersections(mesh);
-    if (!pairs.empty() && !has_known) {
+    if (pairs.empty()) break;
+    if (!known) {
       const Mesh before{start, mesh.tris};
       known = contacts(before, self_intersections(before));
-      has_known = true;
     }
-    if (!pairs.empty()) pairs = new_intersections(mesh, pairs, known);
+    pairs = new_intersections(mesh, pairs, *known);
     if (pairs.empty()) break;
     std::vector<char> near(n, 0);
     for (const auto& [a, b] : pairs)

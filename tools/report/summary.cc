@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/report/summary.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "lib/core/number.h"
