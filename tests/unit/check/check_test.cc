@@ -116,6 +116,32 @@ TEST(check, chords_of_a_rim_intersect_its_cap) {
   EXPECT_EQ(f.new_intersections.size(), 0u);
 }
 
+//  3---2
+//  |\ /|   A square in the plane z = 0, and a cone above it, open at the top,
+//  | 4 |   whose tip is where the middle of the square is, another vertex. The
+//  |/ \|   result has no vertex there: the tip is on a triangle.
+//  0---1
+TEST(check, a_tip_that_touches_a_sheet_may_touch_it_in_the_result) {
+  auto with_cone = [](double tip, const std::vector<Tri>& square) {
+    Surface s;
+    s.points = {{0, 0, 0},   {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0},
+                {1, 1, tip}, {2, 1, 1}, {1, 2, 1}, {0, 1, 1}, {1, 0, 1}};
+    s.tris = square;
+    for (int i = 0; i < 4; ++i) s.tris.push_back({5, 6 + i, 6 + (i + 1) % 4});
+    return s;
+  };
+  const std::vector<Tri> middle{{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, none{{0, 1, 2}, {0, 2, 3}};
+  for (const bool sheets_meet : {false, true}) {
+    auto found = [&](double tip_of_reference) {
+      return examine(with_cone(0, none), with_cone(tip_of_reference, middle), nullptr, 10, infinity,
+                     sheets_meet)
+          .new_intersections.size();
+    };
+    EXPECT_EQ(found(0), 0);
+    EXPECT_GT(found(0.3), 0);
+  }
+}
+
 TEST(check, cuts_are_undone) {
   Surface s = surface_of(torus(0.4, 900));
   const Mesh before = s;
