@@ -7,6 +7,7 @@
 #include "lib/core/edges.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
+#include "lib/core/original_triangles.h"
 #include "lib/core/segments.h"
 #include "lib/core/topology.h"
 
@@ -63,9 +64,10 @@ void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
 Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
   Diagnosis d;
   if (!has_sound_indices(surface)) return d;
-  if (const auto pairs = self_intersections(surface); !pairs.empty()) {
+  const Mesh original = original_mesh(surface);
+  if (const auto pairs = self_intersections(original); !pairs.empty()) {
     d.intersections = pairs.size();
-    d.intersection = contacts(surface, {pairs[0]}).points.at(0);
+    d.intersection = contacts(original, {pairs[0]}).points.at(0);
   }
   look_at_edges(surface, d);
   try {

@@ -37,7 +37,8 @@ constexpr double arch_turn = 2.1;       ///< radians: a chord of a third of a tu
 constexpr double quarter = 0.785;       ///< of a circle, over its diameter: edges across arches turn as much
 constexpr int most_of_arch = 64;        ///< triangles between its lines: more of them follow it anyway
 constexpr double rounding = 1e-9;       ///< of a distance to the same point, from two triangles
-constexpr int most_looks = 1000;        ///< at triangles, for each half-edge in the mean
+constexpr int chunk = 340;              ///< triangles, neighbors in space
+constexpr long long most_work = 3LL * chunk * 300;  ///< looks at triangles for a chunk: 300 for a half-edge
 constexpr long long most_section_work = 1'000'000;  ///< the same for all sections of a chunk: milliseconds
 constexpr int most_pieces = 1000;                   ///< of a piece of an edge that are measured
 constexpr double least_piece = 1e-4;                ///< of an edge: bounds the measurements of one
@@ -124,6 +125,7 @@ class Measure {
   /// Returns the size permitted at t along half-edge h, and the gap there; infinite where nothing bounds it.
   SizeBound at(int h, double t, Search& search) const {
     const Vec3 p = lerp(surface_.point(surface_.from(h)), surface_.point(surface_.to(h)), t);
+    if (search.work > most_work) return {h, p, infinity, 0};
     return is_line(h) ? strip(h, p, search) : sheet(h, p, search);
   }
   /// The same for the tube along a half-edge that is longer than the size; its mean width is the gap.
@@ -435,9 +437,8 @@ void measure_edge(const Measure& measure, int h, Search& search, std::vector<Siz
 /// one sheet. `first`, `last`: of a list in search.near that has all triangles that are near these edges;
 /// empty: the tree has them.
 void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Search& search,
-                    long long most_work, std::vector<SizeBound>& found, std::size_t first = 0,
-                    std::size_t last = 0) {
-  if (edges.empty() || search.work >= most_work) return;
+                    std::vector<SizeBound>& found, std::size_t first = 0, std::size_t last = 0) {
+  if (edges.empty() || search.work > most_work) return;
   if (edges.size() == 1) return measure_edge(measure, edges[0].half_edge, search, found);
   Box box{edges[0].place, edges[0].place};
   double gap = 0;
@@ -465,7 +466,7 @@ void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Se
   }
   if (end > last && search.one_graph(std::span(near).subspan(last, end - last), measure.normals())) return;
   for (auto part : {edges.first(edges.size() / 2), edges.subspan(edges.size() / 2)})
-    measure_sheets(measure, part, search, most_work, found, last, end);
+    measure_sheets(measure, part, search, found, last, end);
 }
 
 /// Drops the bounds of sheets next to places where they meet: no size keeps these apart.
@@ -522,7 +523,6 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
                                        double least, double most_triangles) {
   const Measure measure(surface, asked);
-  constexpr int chunk = 340;  // triangles, neighbors in space
   const std::vector<int>& order = measure.tree().order();
   const int n = surface.n_tris();
   std::vector<std::vector<SizeBound>> found((n + chunk - 1) / chunk);
@@ -531,13 +531,12 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
   for (bool line : {true, false}) {
 #pragma omp parallel
     {
-      constexpr long long most = 3LL * chunk * most_looks;
       Search search(surface);
 #pragma omp for schedule(dynamic)
       for (int c = 0; c < (int)found.size(); ++c) {
         std::vector<SizeBound> edges;
         search.work = search.section_work = 0;
-        for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk) && search.work < most; ++i) {
+        for (int i = 3 * c * chunk; i < 3 * std::min(n, (c + 1) * chunk); ++i) {
           const int h = 3 * order[i / 3] + i % 3;
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           if (!line) {
@@ -552,7 +551,7 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
             for (const SizeBound& x : {measure.at(h, 0, search), measure.at(measure.before(h), 1, search)})
               if (x.size < infinity) found[c].push_back(x);
         }
-        measure_sheets(measure, edges, search, most, found[c]);
+        measure_sheets(measure, edges, search, found[c]);
       }
     }
     all.clear();
