@@ -11,8 +11,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr int points_at_once =
-    256;  // points that one thread takes on: each search starts where the last ended
+constexpr int points_at_once = 256;                 // for a thread: each search starts where the last ended
 constexpr double relative = 0.05, absolute = 1e-4;  // of the Hausdorff distance, of the diagonal
 
 /// A point's distance to the other surface, and the nearest triangle.

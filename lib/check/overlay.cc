@@ -6,8 +6,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double uncovered =
-    1e-8;  // of the area: what rounding may leave uncovered is no wider than its root
+constexpr double uncovered = 1e-8;  // of the area: what rounding leaves uncovered is no wider than its root
 
 /// A triangle in its own plane, and the coordinates of points there: x and y, and z above it.
 struct Frame {

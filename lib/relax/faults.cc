@@ -217,7 +217,8 @@ void find_far(const State& s, Known& known, Fault& found) {
       const double bearable = bearable_distance(s, judged, mean, share);
       if (x.distance <= bearable) continue;
       const int t = triangle_to_refine(s, known.samples.search, x, p, judged);
-      far.push_back({t, -x.distance / bearable}), found.missed.push_back({t, p});
+      far.push_back({t, -x.distance / bearable}),
+          found.missed.push_back({t, p, share * x.distance / bearable});
     }
   };
   int since = known.of_mesh.time;

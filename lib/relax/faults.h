@@ -50,11 +50,19 @@ struct Known {
   }
 };
 
+/// A place of the reference that is too far from the mesh, the triangle that may come nearer to it, and its
+/// distance in sizes.
+struct MissedPlace {
+  int near;
+  Vec3 at;
+  double distance;
+};
+
 /// What is wrong: pairs and folds, and a sum of distances and 1/kappa over what is bearable.
 struct Fault : Intersections {
   int folds = 0;
   std::vector<int> triangles;  ///< those at folds, those that are too far from the reference, and needles
-  std::vector<std::pair<int, Vec3>> missed;  ///< places of the reference, by the triangle nearest to them
+  std::vector<MissedPlace> missed;
   int mild = 0;  ///< needles with less than rules::bearable_kappa that are within the limits
   double excess = 0;
   bool acceptable = true;  ///< to mcheck? Not if it was not looked for all that mcheck looks for

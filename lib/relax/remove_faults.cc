@@ -158,8 +158,8 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   for (auto [a, b] : fault.pairs) items.push_back({a, b, intersect(s, a, b), {}});
   for (int t : fault.triangles) items.push_back({t, -1, false, {}});
   for (Item& i : items)
-    for (const auto& [t, p] : fault.missed)
-      if (t == i.t || t == i.other) i.missed.push_back(p);
+    for (const MissedPlace& m : fault.missed)
+      if (m.near == i.t || m.near == i.other) i.missed.push_back(m.at);
   const double mean = mean_size(s);
   if (!(std::min(mean, in_vain.mean) > rules::same_mean * std::max(mean, in_vain.mean))) in_vain = {mean, {}};
   const int begun = s.clocks.now;
@@ -321,6 +321,11 @@ std::vector<SizeReduction> reductions_at(const State& s, const Fault& fault, Kno
     const auto [a, b, c] = s.mesh.tris[t];
     reductions.push_back({(1.0 / 3) * (s.points[a] + s.points[b] + s.points[c]), factor});
   };
+  auto at_distance = [](double far) {
+    return std::clamp(rules::reduced_at_distance / far, rules::least_reduced, rules::most_reduced);
+  };
+  for (const MissedPlace& m : fault.missed)
+    if (m.distance > rules::within_limit) reductions.push_back({m.at, at_distance(m.distance)});
   for (const auto& [t, u] : fault.pairs) add(t, rules::reduced_at_pair), add(u, rules::reduced_at_pair);
   for (int h : folded_edges(s, known))
     add(h / 3, rules::reduced_at_pair), add(s.mesh.opp[h] / 3, rules::reduced_at_pair);
@@ -328,15 +333,12 @@ std::vector<SizeReduction> reductions_at(const State& s, const Fault& fault, Kno
     const auto [a, b, c] = s.mesh.tris[t];
     const double k = kappa(s.points[a], s.points[b], s.points[c]);
     const double size = bearable_distance(s, t, mean, 1);
-    double far = distance_of(s, t, known.tree(), rules::within_limit * size);
-    for (const auto& [near, p] : fault.missed)
-      if (near == t) far = std::max(far, norm(nearest_point(s, t, p) - p));
-    far /= size;
+    const double far = distance_of(s, t, known.tree(), rules::within_limit * size) / size;
     if (k <= rules::failing_kappa && k * rules::worst_needle >= rules::bearable_kappa &&
         !is_forced(s, t, k, known))
       add(t, rules::reduced_at_needle);
     else if (far > rules::within_limit)
-      add(t, std::clamp(rules::reduced_at_distance / far, rules::least_reduced, rules::most_reduced));
+      add(t, at_distance(far));
   }
   return reductions;
 }

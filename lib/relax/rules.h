@@ -88,26 +88,20 @@ constexpr double least_piece = 0.02;  // of a segment: shorter pieces are needle
 constexpr int rings = 2, thorough_rings = 3;  // of triangles in a patch
 constexpr int largest_patch = 400;  // triangles: trials grow with its square; without large fans it has 100
 constexpr int sweeps_to_settle = 3;
-constexpr double repair_growth =
-    1.1;  // of the triangles: what the repair of shapes may add to a count that was asked for
+constexpr double repair_growth = 1.1;  // of the triangles: what repair of shapes may add to a count asked for
 constexpr int repair_rounds = 4;
-constexpr int repairs = 200,
-              triangles_per_repair = 100;  // beyond the sum the sizes are at fault, not triangles
-constexpr int thorough_repairs = 30,
-              triangles_per_thorough = 1000;  // of pairs of edits: for the worst, until as many fail: forced
-// triangles: of more bad ones it is seen whether rounds help
-constexpr int hopeless = 100;
-constexpr double forced_share = 0.8,
-                 same_share = 0.98;  // of the bad ones are left: borders and lines force them
+constexpr int repairs = 200, triangles_per_repair = 100;             // beyond the sum, sizes are at fault
+constexpr int thorough_repairs = 30, triangles_per_thorough = 1000;  // of pairs of edits, until as many fail
+constexpr int hopeless = 100;  // triangles: of more bad ones it is seen whether rounds help
+constexpr double forced_share = 0.8, same_share = 0.98;  // of the bad ones are left: lines force them
 
 // faults (faults.cc)
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: mcheck accepts less, with any rounding
 constexpr int few_to_look_on = 20;      // triangles at fault: with more, more will be looked for later
-constexpr double own_sheet =
-    2;  // of the distance: where the mesh of the sheet of a missed place is looked for
-constexpr double as_near = 1e-6;    // of a distance: rounding errors
+constexpr double own_sheet = 2;         // of the distance: where the mesh of a missed place's sheet is sought
+constexpr double as_near = 1e-6;        // of a distance: rounding errors
 constexpr double long_side = 1.5;   // of the mean size: shorter triangles are looked at where the mesh bends
 constexpr double same_mean = 0.99;  // of the mean size: if it is less, looks at distances begin again
 constexpr double doubtful = 0.4;    // of the bearable, walked to: from there all of a triangle is searched
@@ -117,11 +111,10 @@ constexpr double sharp_half = 0.34;  // sine of 20 degrees: wider corners have r
 constexpr double leaning = 0.85;     // of the isosceles triangle's kappa: what leaning ones have
 constexpr double refinement = 0.8;   // of the size, each round
 constexpr double pair_excess =
-    2;  // of a pair or fold: its two triangles; by counts alone, 2 pairs and 100 needles beat 10 pairs
-constexpr double less_excess = 0.99;  // of that and the sum of distances over the bearable: a gain
-constexpr double stale_share = 0.1;   // of the triangles: more that are new are worth a new search tree
-constexpr double growth = 1.6,
-                 few = 300;       // of the triangles, and triangles: what the removal of faults may add
+    2;  // of a pair or fold; by counts alone, 2 pairs and 100 needles beat 10 pairs
+constexpr double less_excess = 0.99;       // of that and the sum of distances over the bearable: a gain
+constexpr double stale_share = 0.1;        // of the triangles: more that are new are worth a new search tree
+constexpr double growth = 1.6, few = 300;  // of the triangles, and triangles: what removal of faults may add
 constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
 constexpr int fault_rounds = 24, useless_rounds = 6;
 constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
@@ -131,7 +124,7 @@ constexpr double most_pairs = 400, most_pairs_share = 0.01;  // of the triangles
                                                              // began with more of both lost a tenth
 constexpr double reduced_at_pair = 0.35,
                  reduced_at_needle = 0.3;    // of the size, where the mesh is begun again
-constexpr double reduced_at_distance = 0.3;  // over the distance in sizes: the same, well within a half,
+constexpr double reduced_at_distance = 0.2;  // over the distance in sizes: the same, well within a half,
 constexpr double least_reduced = 0.25, most_reduced = 0.6;  // within these bounds
 constexpr double reduced_gradation = 0.5;                   // growth of the size per length away from there
 constexpr double reduced_growth = 0.5;                      // of the triangles: what smaller sizes may add

@@ -19,12 +19,10 @@ constexpr double least_width = 1e-5;  ///< of the diagonal: narrower strips are 
 constexpr double rounding_of_places = 1e-15;  ///< of coordinates: lines no farther apart may be one
 constexpr double most_sag = 0.45;             ///< of the gap; triangles sag by 4/3 of what edges do
 constexpr double longest = 1.4;               ///< edge, in sizes: a longer one is split
-constexpr double least_width_share =
-    0.1;  ///< size over the widths of the triangles, where sheets almost touch
-constexpr double least_share =
-    1.0 / 16;                          ///< of the size asked for: less is not asked for by sheets and arches
-constexpr double at_line = 1.05;       ///< gaps: the nearest place of a sheet is where both meet
-constexpr double fold_at_lines = 0.5;  ///< of the size permitted: sheets that meet at lines within it
+constexpr double least_width_share = 0.1;     ///< size over widths of triangles, where sheets almost touch
+constexpr double least_share = 1.0 / 16;      ///< of the size asked for: sheets and arches ask for no less
+constexpr double at_line = 1.05;              ///< gaps: the nearest place of a sheet is where both meet
+constexpr double fold_at_lines = 0.5;         ///< of the size permitted: sheets that meet at lines within it
 constexpr double lowered = 0.62;       ///< of the size asked for: sheets that permit more have not failed
 constexpr double needle = 0.1;         ///< height of a triangle over the width of its strip
 constexpr int most_needles = 8;        ///< side by side along a line
