@@ -243,29 +243,21 @@ void find_far(const State& s, Known& known, Fault& found) {
     const double bearable = bearable_distance(s, t, mean, share);
     if (known.of_mesh.searched[t] > bearable) far.push_back({t, -known.of_mesh.searched[t] / bearable});
   }
-  // of triangles much longer than the size corners do not show enough: there may be a whole fold between
-  // them. A look at all takes long, so it waits until little else is wrong
-  std::vector<int> triangles = found.triangles;
-  for (const auto& [t, ratio] : far) triangles.push_back(t);
-  sort_unique(triangles);
-  if ((int)(triangles.size() + found.pairs.size()) <= rules::few_to_look_on) {
-    const Mesh changed = known.of_mesh.looked < 0 ? Mesh{} : changed_triangles(s, known.of_mesh.looked);
-    const double most = std::max(mean, *std::max_element(s.size.begin(), s.size.end()));
-    std::optional<Bvh> tree;
-    if (!changed.tris.empty()) tree.emplace(changed);
-    add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
-      if (!(whole.side(whole.longest()) > rules::long_side * mean)) return false;
-      bool near = known.of_mesh.looked < 0;
-      const Vec3 reach{most, most, most};
-      const Box box = box_of(known.reference, f);
-      if (tree) tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
-      return near;
-    });
-    known.of_mesh.looked = s.clocks.now;
-    look_at_samples();
-  } else {
-    found.acceptable = false;
-  }
+  // of triangles much longer than the size corners do not show enough: there may be a whole fold between them
+  const Mesh changed = known.of_mesh.looked < 0 ? Mesh{} : changed_triangles(s, known.of_mesh.looked);
+  const double most = std::max(mean, *std::max_element(s.size.begin(), s.size.end()));
+  std::optional<Bvh> tree;
+  if (!changed.tris.empty()) tree.emplace(changed);
+  add_missed_places(s, known.samples, share, [&](int f, const Piece& whole, int) {
+    if (!(whole.side(whole.longest()) > rules::long_side * mean)) return false;
+    bool near = known.of_mesh.looked < 0;
+    const Vec3 reach{most, most, most};
+    const Box box = box_of(known.reference, f);
+    if (tree) tree->overlapping({box.lo - reach, box.hi + reach}, [&](int) { near = true; });
+    return near;
+  });
+  known.of_mesh.looked = s.clocks.now;
+  look_at_samples();
   std::sort(far.begin(), far.end());
   for (int last = -1; auto [t, ratio] : far) {
     if (std::exchange(last, t) == t) continue;

@@ -99,7 +99,6 @@ constexpr double forced_share = 0.8, same_share = 0.98;  // of the bad ones are 
 constexpr double parallel = 0.8;        // cosine: no edge between normals this close sags by `too_far`
 constexpr double too_far = 0.475;       // of the size; a half is the limit of mcheck
 constexpr double within_limit = 0.495;  // of the size: mcheck accepts less, with any rounding
-constexpr int few_to_look_on = 20;      // triangles at fault: with more, more will be looked for later
 constexpr double own_sheet = 2;         // of the distance: where the mesh of a missed place's sheet is sought
 constexpr double as_near = 1e-6;        // of a distance: rounding errors
 constexpr double long_side = 1.5;   // of the mean size: shorter triangles are looked at where the mesh bends
