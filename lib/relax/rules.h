@@ -122,8 +122,8 @@ constexpr int fault_repairs = 10,
 constexpr double most_pairs = 400, most_pairs_share = 0.01;  // of the triangles: of 366 meshes none that
                                                              // began with more of both lost a tenth
 constexpr double reduced_at_pair = 0.35,
-                 reduced_at_needle = 0.3;    // of the size, where the mesh is begun again
-constexpr double reduced_at_distance = 0.2;  // over the distance in sizes: the same, well within a half,
+                 reduced_at_needle = 0.3;     // of the size, where the mesh is begun again
+constexpr double reduced_at_distance = 0.27;  // over the distance in sizes: the same, well within a half,
 constexpr double least_reduced = 0.25, most_reduced = 0.6;  // within these bounds
 constexpr double reduced_gradation = 0.5;                   // growth of the size per length away from there
 constexpr double reduced_growth = 0.5;                      // of the triangles: what smaller sizes may add
