@@ -4,6 +4,7 @@
 
 #include "lib/core/bvh.h"
 #include "lib/core/edit_mesh.h"
+#include "lib/core/farthest.h"
 #include "lib/core/fold.h"
 #include "lib/core/normals.h"
 #include "lib/core/topology.h"
@@ -16,6 +17,7 @@ constexpr double rounding = 3e-6;     ///< of the diagonal: single-precision coo
 constexpr double nearest_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
 constexpr double flat = 0.05;         ///< of the longest edge: a higher triangle has a normal of its own
 constexpr double same_side = 0.5;     ///< cosine between normals: what is bent more has an edge there
+constexpr double fold_share = 4;      ///< of the tolerance: what lies flat on itself bounds no volume
 constexpr int most_rows = 20;         ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
@@ -45,40 +47,47 @@ bool is_cap(const EditMesh& m, const std::vector<Vec3>& points, int h, double le
          !m.joined(m.apex(h), m.apex(m.opp[h]));
 }
 
-double distance(const std::vector<Vec3>& points, const Tri& t, int v) {
-  const Vec3 &p = points[v], &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-  return norm(vector_to(closest_on_triangle(p, a, b, c), a, b, c, p));
+/// The triangles around the two of h.
+std::vector<int> triangles_around(const EditMesh& m, int h) {
+  const int o = m.opp[h];
+  std::vector<int> around;
+  for (int e : {next(h), prev(h), next(o), prev(o)})
+    if (m.opp[e] >= 0) around.push_back(m.opp[e] / 3);
+  return around;
 }
 
-/// How far a flip moves the surface at most, and the triangle that is then where the smaller one was.
-struct Unfolding {
-  double moved = infinity;
-  int instead = -1;
-};
-
-/// Flips the edge of h in thought, at which the surface lies flat on itself; infinite if it does not, or
-/// still would. The apex of the smaller triangle divides the larger one, from which it is not far. What is
-/// left over is the smaller triangle: it is no farther from its own other edges than it is high, and no
-/// farther from one triangle around than its corners are, as distance from a triangle is convex. Requires: h
-/// is of the smaller triangle.
-Unfolding unfold(const EditMesh& m, const Mesh& s, int h) {
+/// Flips the edge of h in thought, at which the surface lies flat on itself. Returns how far that moves the
+/// surface at most; infinite if it does not lie so, or still would. The apex of the smaller triangle divides
+/// the larger one, from which it is not far. What is left over is the smaller triangle: others may lie where
+/// it was. Requires: h is of the smaller triangle.
+double unfold(const EditMesh& m, const Mesh& s, int h, double least) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
   const auto& p = s.points;
-  if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) ||
-      !(dot(area_vector(p[a], p[d], p[c]), up) > 0) || !(dot(area_vector(p[b], p[c], p[d]), up) > 0))
-    return {};
-  Unfolding found{norm(n) / edge_length(s, h), h / 3};
-  auto try_instead = [&](int face, const Tri& t) {
-    const double most = std::max({distance(p, t, a), distance(p, t, b), distance(p, t, c)});
-    if (most < found.moved) found = {most, face};
+  auto faces_back = [&](int x, int y, int z) {
+    return dot(area_vector(p[x], p[y], p[z]), up) <= 0 && height(p[x], p[y], p[z]) > least;
   };
-  try_instead(h / 3, {a, d, c});
-  try_instead(o / 3, {b, c, d});
-  for (int e : {next(h), prev(h), next(o), prev(o)})
-    if (const int g = m.opp[e]; g >= 0) try_instead(g / 3, s.tris[g / 3]);
-  found.moved += distance(p, s.tris[o / 3], c);
-  return found;
+  if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) || faces_back(a, d, c) || faces_back(b, c, d))
+    return infinity;
+  Mesh after;
+  auto add = [&](const Tri& t) {
+    const int i = (int)after.points.size();
+    for (int v : t) after.points.push_back(p[v]);
+    after.tris.push_back({i, i + 1, i + 2});
+  };
+  add({a, d, c}), add({b, c, d});
+  for (int t : triangles_around(m, h)) add(s.tris[t]);
+  auto nearest = [&](Vec3 q) {
+    Bvh::Hit hit{infinity, {-1}};
+    for (int t = 0; t < (int)after.tris.size(); ++t)
+      if (const double l = norm(closest_point(after, t, q) - q); l < hit.distance) hit = {l, {t}};
+    return hit;
+  };
+  const Piece smaller{{p[a], p[b], p[c]}, {0, 1, 0}, {0, 0, 0}};
+  const Farthest left = farthest(
+      smaller, after, [&](int) { return least; }, nearest);
+  const Vec3 on = closest_point(s, o / 3, p[c]);
+  return (left.hit.place.face < 0 ? 0 : left.hit.distance) + norm(on - p[c]);
 }
 
 /// Per triangle, how far it is from the surface as it was, and what it stands for is from it, at most.
@@ -86,14 +95,14 @@ using Drift = std::vector<double>;
 
 /// Returns whether a flip of the edge of h unfolds the surface and keeps it within the tolerance; then the
 /// drift is what it is after the flip.
-bool may_unfold(const EditMesh& m, const Mesh& s, int h, double tolerance, Drift& drift) {
+bool may_unfold(const EditMesh& m, const Mesh& s, int h, double least, double tolerance, Drift& drift) {
   const int o = m.opp[h];
   if (m.hard[h] || triangle_area(s, h / 3) > triangle_area(s, o / 3)) return false;
-  const Unfolding u = unfold(m, s, h);
-  const double after = std::max(drift[h / 3], drift[o / 3]) + u.moved;
-  if (!(after <= tolerance)) return false;
+  const double moved = unfold(m, s, h, least), after = std::max(drift[h / 3], drift[o / 3]) + moved;
+  if (!(after <= fold_share * tolerance)) return false;
   drift[h / 3] = drift[o / 3] = after;
-  drift[u.instead] = std::max(drift[u.instead], after);
+  if (moved > 0)
+    for (int t : triangles_around(m, h)) drift[t] = std::max(drift[t], after);
   return true;
 }
 
@@ -128,7 +137,7 @@ Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double
     for (int t = 0; t < (int)m.tris.size(); ++t) {
       int h = longest_edge(surface, t);
       if (!is_cap(m, surface.points, h, least)) {
-        for (h = 3 * t; h < 3 * t + 3 && !may_unfold(m, surface, h, tolerance, drift);) ++h;
+        for (h = 3 * t; h < 3 * t + 3 && !may_unfold(m, surface, h, least, tolerance, drift);) ++h;
         if (h == 3 * t + 3) continue;
       }
       const int u = m.opp[h] / 3;
