@@ -34,6 +34,8 @@ constexpr double default_tolerance = 0.06;
 constexpr double most_of_diagonal = 0.01;
 /// Of the distance of --max-error: the rest is for the mesh.
 constexpr double error_share = 0.25;
+/// Of the tolerance, for folds: what lies flat on itself bounds no volume.
+constexpr double fold_share = 4;
 
 /// Gives table `sheet` the merged patches, which must have the same regions on their sides.
 void relabel_sheets(Stream& stream, const PatchMerge& merge) {
@@ -220,7 +222,7 @@ void mark(Io& io, Options& o) {
   if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("origin") &&
       !stream.find("chart_vertex") && !stream.find("mid_vertex"))
     flips = flip_caps_and_folds(surface, segments_under(surface, read_model_edges(stream)),
-                                tolerance_of(o, length, diagonal(surface)));
+                                fold_share * tolerance_of(o, length, diagonal(surface)));
   report_flips(io, flips);
   DefeatureReport unfolded;
   unfolded.moved = flips.moved;

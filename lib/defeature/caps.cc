@@ -17,7 +17,6 @@ constexpr double rounding = 3e-6;     ///< of the diagonal: single-precision coo
 constexpr double nearest_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
 constexpr double flat = 0.05;         ///< of the longest edge: a higher triangle has a normal of its own
 constexpr double same_side = 0.5;     ///< cosine between normals: what is bent more has an edge there
-constexpr double fold_share = 4;      ///< of the tolerance: what lies flat on itself bounds no volume
 constexpr int most_rows = 20;         ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
@@ -64,10 +63,8 @@ double unfold(const EditMesh& m, const Mesh& s, int h, double least) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
   const auto& p = s.points;
-  auto faces_back = [&](int x, int y, int z) {
-    return dot(area_vector(p[x], p[y], p[z]), up) <= 0 && height(p[x], p[y], p[z]) > least;
-  };
-  if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) || faces_back(a, d, c) || faces_back(b, c, d))
+  auto faces_up = [&](int x, int y, int z) { return dot(area_vector(p[x], p[y], p[z]), up) > 0; };
+  if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) || !faces_up(a, d, c) || !faces_up(b, c, d))
     return infinity;
   Mesh after;
   auto add = [&](const Tri& t) {
@@ -99,7 +96,7 @@ bool may_unfold(const EditMesh& m, const Mesh& s, int h, double least, double to
   const int o = m.opp[h];
   if (m.hard[h] || triangle_area(s, h / 3) > triangle_area(s, o / 3)) return false;
   const double moved = unfold(m, s, h, least), after = std::max(drift[h / 3], drift[o / 3]) + moved;
-  if (!(after <= fold_share * tolerance)) return false;
+  if (!(after <= tolerance)) return false;
   drift[h / 3] = drift[o / 3] = after;
   if (moved > 0)
     for (int t : triangles_around(m, h)) drift[t] = std::max(drift[t], after);

@@ -115,8 +115,8 @@ TEST(Caps, AFinIsNotCutOffIfItIsLarge) {
   s.tris = {{0, 1, 2}, {1, 0, 3}};
   s.face.rows = s.tris.size();
   const std::vector<int> none(6, -1);
-  EXPECT_EQ(flip_caps_and_folds(s, none, 0.1).count, 0);
-  const Flips flips = flip_caps_and_folds(s, none, 0.2);
+  EXPECT_EQ(flip_caps_and_folds(s, none, 0.4).count, 0);
+  const Flips flips = flip_caps_and_folds(s, none, 0.5);
   EXPECT_EQ(flips.count, 1);
   EXPECT_GT(flips.moved, 0.4);  // the middle of 0 1 is as far from the spikes
   EXPECT_LT(flips.moved, 0.5);
