@@ -35,10 +35,11 @@ long long Numbers::finish() {
 }
 
 int Numbers::row(long long number) const {
-  if (!direct_.empty())
-    return number < least_ || number - least_ >= static_cast<long long>(direct_.size())
-               ? -1
-               : direct_[number - least_];
+  if (!direct_.empty()) {
+    // unsigned: the difference may be more than a signed number holds
+    const auto after = static_cast<unsigned long long>(number) - static_cast<unsigned long long>(least_);
+    return number < least_ || after >= direct_.size() ? -1 : direct_[after];
+  }
   const auto at = std::lower_bound(number_.begin(), number_.end(), number);
   return at != number_.end() && *at == number ? by_number_[at - number_.begin()] : -1;
 }

@@ -9,6 +9,7 @@
 #include "lib/core/intersect.h"
 #include "lib/core/junctions.h"
 #include "lib/core/lists.h"
+#include "lib/core/topology.h"
 
 namespace meshpipe {
 namespace {

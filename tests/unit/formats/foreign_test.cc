@@ -8,6 +8,7 @@
 #include "formats/foreign/columns.h"
 #include "formats/foreign/feature_edges.h"
 #include "formats/foreign/inria.h"
+#include "formats/foreign/numbers.h"
 #include "formats/foreign/stl.h"
 #include "formats/formats.h"
 #include "formats/text.h"
@@ -263,6 +264,16 @@ TEST(Msh, NumbersMayBeBeyondInt) {
   std::string bytes = msh("1\n123456789012 2 2 3 1 1 2 5000000000\n");
   bytes.replace(bytes.find("\n3 2 2 0"), 3, "\n5000000000 ");
   EXPECT_EQ(read_any(bytes, "in").surface.tris, (std::vector<Tri>{{0, 1, 2}}));
+}
+
+TEST(Msh, NumbersMayBeAsFarApartAsThereAre) {
+  Numbers numbers;
+  const long long least = std::numeric_limits<long long>::min() + 1;
+  numbers.add(least);
+  EXPECT_EQ(numbers.finish(), 0);
+  EXPECT_EQ(numbers.row(least), 0);
+  for (long long other : {1LL, least - 1, std::numeric_limits<long long>::max()})
+    EXPECT_EQ(numbers.row(other), -1);
 }
 
 TEST(Bounds, RepeatedSectionsOfMeshAreRefused) {
