@@ -56,9 +56,9 @@ std::vector<int> triangles_around(const EditMesh& m, int h) {
 }
 
 /// Flips the edge of h in thought, at which the surface lies flat on itself. Returns how far that moves the
-/// surface at most; infinite if it does not lie so, or still would. The apex of the smaller triangle divides
-/// the larger one, from which it is not far. What is left over is the smaller triangle: others may lie where
-/// it was. Requires: h is of the smaller triangle.
+/// surface, as far as halving finds it; infinite if it does not lie so, or still would. The apex of the
+/// smaller triangle divides the larger one, from which it is not far. What is left over is the smaller
+/// triangle: others may lie where it was. Requires: h is of the smaller triangle.
 double unfold(const EditMesh& m, const Mesh& s, int h, double least) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
