@@ -56,10 +56,11 @@ std::vector<int> triangles_around(const EditMesh& m, int h) {
 }
 
 /// Flips the edge of h in thought, at which the surface lies flat on itself. Returns how far that moves the
-/// surface, as far as halving finds it; infinite if it does not lie so, or still would. The apex of the
-/// smaller triangle divides the larger one, from which it is not far. What is left over is the smaller
-/// triangle: others may lie where it was. Requires: h is of the smaller triangle.
-double unfold(const EditMesh& m, const Mesh& s, int h, double least) {
+/// surface, at most; infinite if it does not lie so, or still would, or if halving does not tell to a
+/// fiftieth of `tolerance`. The apex of the smaller triangle divides the larger one, from which it is not
+/// far. What is left over is the smaller triangle: others may lie where it was. Requires: h is of the
+/// smaller.
+double unfold(const EditMesh& m, const Mesh& s, int h, double least, double tolerance) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
   const auto& p = s.points;
@@ -81,10 +82,14 @@ double unfold(const EditMesh& m, const Mesh& s, int h, double least) {
     return hit;
   };
   const Piece smaller{{p[a], p[b], p[c]}, {0, 1, 0}, {0, 0, 0}};
-  const Farthest left = farthest(
-      smaller, after, [&](int) { return least; }, nearest);
-  const Vec3 on = closest_point(s, o / 3, p[c]);
-  return (left.hit.place.face < 0 ? 0 : left.hit.distance) + norm(on - p[c]);
+  const double apex_moves = norm(closest_point(s, o / 3, p[c]) - p[c]);
+  for (double resolution : {least, tolerance / 50}) {
+    const Farthest left = farthest(
+        smaller, after, [&](int) { return resolution; }, nearest);
+    const double found = left.hit.place.face < 0 ? 0 : farther_by * left.hit.distance;
+    if (left.complete) return std::max(found, resolution > least ? resolution : 0) + apex_moves;
+  }
+  return infinity;
 }
 
 /// Per triangle, how far it is from the surface as it was, and what it stands for is from it, at most.
@@ -95,7 +100,8 @@ using Drift = std::vector<double>;
 bool may_unfold(const EditMesh& m, const Mesh& s, int h, double least, double tolerance, Drift& drift) {
   const int o = m.opp[h];
   if (m.hard[h] || triangle_area(s, h / 3) > triangle_area(s, o / 3)) return false;
-  const double moved = unfold(m, s, h, least), after = std::max(drift[h / 3], drift[o / 3]) + moved;
+  const double moved = unfold(m, s, h, least, tolerance),
+               after = std::max(drift[h / 3], drift[o / 3]) + moved;
   if (!(after <= tolerance)) return false;
   drift[h / 3] = drift[o / 3] = after;
   if (moved > 0)

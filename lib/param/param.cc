@@ -27,6 +27,8 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
 /// the triangles of a part up to which that is so; larger parts are cut, which costs less than either.
 constexpr double poor = 4;
 constexpr std::size_t small = 20000;
+/// And, in the mean over the area, from where on a map is all but a line: then another one is looked for.
+constexpr double absurd = 100;
 
 /// The element at the fraction q of the order.
 double quantile(std::vector<double>& values, double q) {
@@ -81,15 +83,25 @@ class Search {
     report_.form = options_.form;
     if (is_too_uneven(most_uneven)) return {};
     std::vector<Vec2> uv = asked_for();
-    if (report_.flips_before > 0 || !report_.border_was_simple) {
-      if (options_.strict) refuse();
-      bool valid = !uv.empty() && repaired(uv);
+    bool valid = report_.flips_before == 0 && report_.border_was_simple;
+    if (!valid && options_.strict) refuse();
+    if (!valid) {
+      valid = !uv.empty() && repaired(uv);
       report_.flips_after = uv.empty() ? report_.flips_before : count_inverted(part_.tris, uv);
-      for (const Fallback& next : fallbacks(options_))
-        if (!valid) valid = try_next(next, uv);
-      if (!valid) give_up(uv);
     }
-    measure_distortion(part_, uv, report_);
+    if (valid) measure_distortion(part_, uv, report_);
+    for (const Fallback& next : fallbacks(options_)) {
+      if (valid && !is_all_but_a_line()) break;
+      const ParamReport before = report_;
+      std::vector<Vec2> trial = uv;
+      const bool found = try_next(next, trial);
+      if (found) measure_distortion(part_, trial, report_);
+      if (!valid || (found && report_.anisotropy_mean < before.anisotropy_mean))
+        uv = std::move(trial), valid = found;
+      else
+        report_ = before;
+    }
+    if (!valid) give_up(uv);
     // what is valid and poor costs the mesher more than a few steps here
     constexpr int steps_if_poor = 20;
     const bool improve = part_.tris.size() <= small && !options_.strict &&
@@ -171,6 +183,12 @@ class Search {
       return;
     report_ = after;
     uv = std::move(better);
+  }
+
+  /// A circle map that was asked for is the user's own choice.
+  bool is_all_but_a_line() const {
+    const bool chosen = report_.used == options_.map && options_.map != MapKind::conformal;
+    return !options_.strict && !chosen && report_.anisotropy_mean > absurd;
   }
 
   bool valid_map(const std::vector<Vec2>& uv) const {
