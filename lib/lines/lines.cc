@@ -529,7 +529,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, const
   }
   if (keep_border)
     keep_input_points(surface, place, chains, division);
-  else if (!sheets_meet)
+  else
     divide_at_sharp_corners(mesh, size, chains, division);
   for (std::size_t l = 0; l < chains.leader.size(); ++l) division[l] = division[chains.leader[l]];
   std::vector<char> inside(n_vertices, 0);

@@ -119,15 +119,22 @@ void divide_at_sharp_corners(const Connectivity& mesh, const std::vector<double>
                              Division& division) {
   const std::vector<LineEnd> ends = ends_of_lines(chains);
   const std::vector<Sector> sectors = sharp_sectors(mesh, ends);
-  // a fan of sectors is divided as the sharpest of them
+  auto leader = [&](int e) { return chains.leader.empty() ? ends[e].line : chains.leader[ends[e].line]; };
+  // a fan of sectors, and all that share lines with it where sheets meet, is divided as the sharpest of them
   UnionFind fans((int)ends.size());
   for (const Sector& s : sectors) fans.join(s.right, s.left);
+  std::vector<std::array<int, 2>> first(chains.chain.size(), {-1, -1});  // of the ends of copies of a line
+  for (int e = 0; e < (int)ends.size(); ++e) {
+    int& f = first[leader(e)][ends[e].back];
+    if (f < 0) f = e;
+    fans.join(f, e);
+  }
   std::vector<double> sharpest(ends.size(), infinity);
   for (const Sector& s : sectors)
     sharpest[fans.find(s.left)] = std::min(sharpest[fans.find(s.left)], s.angle);
   std::vector<std::vector<int>> members(ends.size());
   for (int e = 0; e < (int)ends.size(); ++e)
-    if (sharpest[fans.find(e)] < widest) members[fans.find(e)].push_back(e);
+    if (leader(e) == ends[e].line && sharpest[fans.find(e)] < widest) members[fans.find(e)].push_back(e);
   for (const std::vector<int>& fan : members) {
     if (fan.empty()) continue;
     const double growth = per_width * sharpest[fans.find(fan[0])];

@@ -144,6 +144,38 @@ TEST(Lines, OneTriangleFillsASharpCorner) {
   }
 }
 
+//  0 <|    the same where the lower side is also that of another sheet, below: there it is divided alike
+TEST(Lines, OneTriangleFillsASharpCornerWhereSheetsMeet) {
+  const double width = 2 * pi / 180;
+  Surface s;
+  s.points = {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}, {0, 0, 0}, {1, 0, 0}, {1, width, 0}};
+  s.tris = {{0, 2, 1}, {3, 4, 5}};
+  s.vertex.set("size", std::vector<double>(6, 0.1));
+  s.face.set("part", std::vector<int>{0, 1});
+  const Lines lines = make_lines(s, flat_charts(s, 2), nullptr, false, true);
+  std::vector<std::vector<double>> lower, upper;  // distances from the corner
+  for (const Line& l : lines.lines) {
+    std::vector<double> d;
+    double lowest = 1, highest = -1;
+    for (int i = 0; i < l.count; ++i) {
+      const Vec3 p = position(s, lines.points[l.first + i]);
+      lowest = std::min(lowest, p.y), highest = std::max(highest, p.y);
+      d.push_back(norm(p));
+    }
+    std::sort(d.begin(), d.end());
+    if (lowest == 0 && highest == 0) lower.push_back(d);
+    if (lowest == 0 && highest > 0 && d[0] == 0) upper.push_back(d);
+  }
+  ASSERT_EQ(lower.size(), 2u);
+  ASSERT_EQ(upper.size(), 1u);
+  EXPECT_EQ(lower[0], lower[1]);
+  ASSERT_GT(lower[0].size(), 8u);
+  for (std::size_t i = 1; i < 6; ++i) {
+    EXPECT_NEAR(lower[0][i], upper[0][i], 1e-12);
+    EXPECT_LT(lower[0][i + 1] - lower[0][i], 8.1 * width * lower[0][i]);
+  }
+}
+
 TEST(Lines, PointsThatFallOnVerticesAreVertices) {
   const Surface s = grid(
       8, 4, flat, [](int, int) { return 0; }, 0.25);
