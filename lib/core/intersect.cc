@@ -105,23 +105,41 @@ bool disjoint_triangles_meet(const Corners& s, const Corners& t) {
          segment_meets(t.b, t.c, t1, t2, s) || segment_meets(t.c, t.a, t2, t0, s);
 }
 
-/// The polygon that two triangles in one plane share, by cutting one at the edges of the other (Sutherland
-/// and Hodgman, 1974).
+/// What is left of a polygon on the side of a plane to which the normal points (Sutherland and Hodgman,
+/// 1974).
+void cut_off(std::vector<Vec3>& polygon, Vec3 on_plane, Vec3 normal) {
+  std::vector<Vec3> kept;
+  for (std::size_t j = 0; j < polygon.size(); ++j) {
+    const Vec3 p = polygon[j], q = polygon[(j + 1) % polygon.size()];
+    const double d = dot(p - on_plane, normal), e = dot(q - on_plane, normal);
+    if (d >= 0) kept.push_back(p);
+    if ((d > 0 && e < 0) || (d < 0 && e > 0)) kept.push_back(lerp(p, q, d / (d - e)));
+  }
+  polygon = std::move(kept);
+}
+
+/// What triangle s has above and below t, the polygon that they share if they are in one plane.
 std::vector<Vec3> overlap_of(const Corners& s, const Corners& t) {
   std::vector<Vec3> polygon{s.a, s.b, s.c};
-  const Vec3 n = area_vector(t.a, t.b, t.c), corner[4] = {t.a, t.b, t.c, t.a};
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 inward = cross(n, corner[i + 1] - corner[i]);
-    std::vector<Vec3> kept;
-    for (std::size_t j = 0; j < polygon.size(); ++j) {
-      const Vec3 p = polygon[j], q = polygon[(j + 1) % polygon.size()];
-      const double d = dot(p - corner[i], inward), e = dot(q - corner[i], inward);
-      if (d >= 0) kept.push_back(p);
-      if ((d > 0 && e < 0) || (d < 0 && e > 0)) kept.push_back(lerp(p, q, d / (d - e)));
-    }
-    polygon = std::move(kept);
-  }
+  const Vec3 n = area_vector(t.a, t.b, t.c);
+  cut_off(polygon, t.a, cross(n, t.b - t.a));
+  cut_off(polygon, t.b, cross(n, t.c - t.b));
+  cut_off(polygon, t.c, cross(n, t.a - t.c));
   return polygon;
+}
+
+/// What triangle s has no farther than `near` from t; nothing if they are not parallel, or only side by side.
+std::vector<Vec3> coincidence(const Corners& s, const Corners& t, double near) {
+  constexpr double parallel = 0.99, sliver = 1e-6;  // cosine; of the smaller triangle's area
+  const Vec3 m = area_vector(s.a, s.b, s.c), n = area_vector(t.a, t.b, t.c), up = normalized(n);
+  if (std::abs(dot(m, up)) < parallel * norm(m)) return {};
+  std::vector<Vec3> polygon = overlap_of(s, t);
+  cut_off(polygon, t.a - near * up, up);
+  cut_off(polygon, t.a + near * up, -1.0 * up);
+  double area = 0;
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    area += norm(area_vector(polygon[0], polygon[i - 1], polygon[i]));
+  return area > sliver * std::min(norm(m), norm(n)) ? polygon : std::vector<Vec3>{};
 }
 
 bool coplanar(const Corners& s, const Corners& t) {
@@ -155,6 +173,14 @@ std::vector<Vec3> contact(const Mesh& mesh, int s, int t) {
     for (Vec3 y : found)
       if (norm(y - x) > norm(ends.second - ends.first)) ends = {x, y};
   return {ends.first, ends.second};
+}
+
+/// Adds a polygon, or a segment by its ends, as triangles.
+void add_place(const std::vector<Vec3>& ring, Mesh& places) {
+  const int first = (int)places.points.size(), n = (int)ring.size();
+  places.points.insert(places.points.end(), ring.begin(), ring.end());
+  if (n < 3) places.tris.push_back({first, first + n - 1, first + n - 1});
+  for (int i = 2; i < n; ++i) places.tris.push_back({first, first + i - 1, first + i});
 }
 
 }  // namespace
@@ -230,12 +256,22 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
 }
 
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places) {
-  for (auto [s, t] : pairs) {
-    const std::vector<Vec3> ring = contact(mesh, s, t);
-    const int first = (int)places.points.size(), n = (int)ring.size();
-    places.points.insert(places.points.end(), ring.begin(), ring.end());
-    if (n < 3) places.tris.push_back({first, first + n - 1, first + n - 1});
-    for (int i = 2; i < n; ++i) places.tris.push_back({first, first + i - 1, first + i});
+  for (auto [s, t] : pairs) add_place(contact(mesh, s, t), places);
+  return places;
+}
+
+Mesh coincidences(const Mesh& mesh, double near, Mesh places) {
+  const Bvh tree(mesh);
+  const Vec3 margin{near, near, near};
+  for (int s = 0; s < (int)mesh.tris.size(); ++s) {
+    std::vector<int> others;
+    const Box box = box_of(mesh, s);
+    tree.overlapping({box.lo - margin, box.hi + margin}, [&](int t) {
+      if (t > s) others.push_back(t);
+    });
+    for (int t : others)
+      if (const auto shared = coincidence(corners(mesh, s), corners(mesh, t), near); !shared.empty())
+        add_place(shared, places);
   }
   return places;
 }

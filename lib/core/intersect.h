@@ -28,6 +28,9 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
 /// last); for two triangles in one plane, the polygon that they share.
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places = {});
 
+/// Adds to `places` where triangles lie on others, all that is no farther from them than `near`.
+Mesh coincidences(const Mesh& mesh, double near, Mesh places);
+
 /// Returns those of the intersecting pairs whose contact is, all along, farther than twice their longest edge
 /// from `known`, the contacts of another mesh of the same surface: that mesh does not intersect there.
 std::vector<std::pair<int, int>> new_intersections(const Mesh& mesh,

@@ -94,7 +94,10 @@ Mesh reference_contacts(const Surface& reference, bool sheets_meet) {
   if (sheets_meet) join_borders(joined);
   const std::vector<int> opposite = opposite_halfedges(reference);
   const auto chords = chord_pairs({reference, opposite, model_of(reference)});
-  return contacts(reference, chords, contacts(joined, self_intersections(joined)));
+  constexpr double rounding = 1e-6;  // of the diagonal: single-precision coordinates, with a margin
+  Mesh found = contacts(joined, self_intersections(joined));
+  if (!joined.tris.empty()) found = coincidences(joined, rounding * diagonal(joined), std::move(found));
+  return contacts(reference, chords, std::move(found));
 }
 
 }  // namespace meshpipe

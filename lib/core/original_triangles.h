@@ -16,9 +16,10 @@ Mesh recover_triangles(const Mesh& mesh, const std::vector<int>& origin,
 /// Returns a reference before its triangles were cut, or a copy if it has no column `origin`.
 Mesh original_mesh(const Surface& reference);
 
-/// Returns the contacts (lib/core/intersect.h) of a reference: its chords, and where it intersects itself or
-/// fans touch, as it was before it was cut, since new vertices are rounded. If `sheets_meet`, its borders are
-/// joined. Throws: as opposite_halfedges.
+/// Returns the contacts (lib/core/intersect.h) of a reference: its chords, and where it intersects itself,
+/// fans touch, or it lies on itself to the rounding of single-precision coordinates, as it was before it was
+/// cut, since new vertices are rounded. If `sheets_meet`, its borders are joined. Throws: as
+/// opposite_halfedges.
 Mesh reference_contacts(const Surface& reference, bool sheets_meet);
 
 }  // namespace meshpipe

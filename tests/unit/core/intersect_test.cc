@@ -105,34 +105,53 @@ TEST(intersect, new_are_those_where_the_reference_has_none) {
   EXPECT_EQ(new_intersections(fine, more, contacts(apart, self_intersections(apart))), more);
 }
 
+// a square of n x n squares, and another one that is moved
+Mesh sheets(int n, Vec3 move) {
+  Mesh m;
+  for (int sheet : {0, 1}) {
+    const int first = (int)m.points.size();
+    for (int i = 0; i <= n * (n + 2); ++i)
+      m.points.push_back(Vec3{10.0 * (i / (n + 1)) / n, 10.0 * (i % (n + 1)) / n, 0} + (double)sheet * move);
+    for (int i = 0; i < n * (n + 1); ++i) {
+      if (i % (n + 1) == n) continue;
+      const int a = first + i, b = a + n + 1;
+      m.tris.push_back({a, b, b + 1});
+      m.tris.push_back({a, b + 1, a + 1});
+    }
+  }
+  return m;
+}
+
+double area_of(const Mesh& m) {
+  double area = 0;
+  for (int t = 0; t < (int)m.tris.size(); ++t) area += norm(area_vector(m, t)) / 2;
+  return area;
+}
+
 // triangles in one plane overlap: what a finer mesh of them has anywhere in the overlap is not new
 TEST(intersect, in_one_plane_they_share_a_polygon) {
-  auto sheets = [](int n, Vec3 move) {  // a square of n x n squares, and another one below that is moved
-    Mesh m;
-    for (int sheet : {0, 1}) {
-      const int first = (int)m.points.size();
-      for (int i = 0; i <= n * (n + 2); ++i)
-        m.points.push_back(Vec3{10.0 * (i / (n + 1)) / n, 10.0 * (i % (n + 1)) / n, 0} +
-                           (double)sheet * move);
-      for (int i = 0; i < n * (n + 1); ++i) {
-        if (i % (n + 1) == n) continue;
-        const int a = first + i, b = a + n + 1;
-        m.tris.push_back({a, b, b + 1});
-        m.tris.push_back({a, b + 1, a + 1});
-      }
-    }
-    return m;
-  };
   const Mesh coarse = sheets(1, {3, 4, 0}), fine = sheets(20, {3, 4, 0});
   const Mesh known = contacts(coarse, self_intersections(coarse));
-  double area = 0;
-  for (int t = 0; t < (int)known.tris.size(); ++t) area += norm(area_vector(known, t)) / 2;
-  EXPECT_NEAR(area, 7 * 6, 1e-12);
+  EXPECT_NEAR(area_of(known), 7 * 6, 1e-12);
   const auto pairs = self_intersections(fine);
   EXPECT_FALSE(pairs.empty());
   EXPECT_TRUE(new_intersections(fine, pairs, known).empty());
   const Mesh elsewhere = sheets(20, {-6, 0, 0});
   EXPECT_FALSE(new_intersections(elsewhere, self_intersections(elsewhere), known).empty());
+}
+
+// sheets that touch but for rounding: a finer mesh may intersect anywhere in the overlap
+TEST(intersect, where_a_surface_lies_on_itself_no_intersection_is_new) {
+  const Mesh coarse = sheets(1, {3, 4, 1e-7});
+  EXPECT_TRUE(self_intersections(coarse).empty());
+  const Mesh known = coincidences(coarse, 1e-6, {});
+  EXPECT_NEAR(area_of(known), 7 * 6, 1e-6);
+  const Mesh fine = sheets(20, {3, 4, 0});
+  EXPECT_TRUE(new_intersections(fine, self_intersections(fine), known).empty());
+  const Mesh elsewhere = sheets(20, {-6, 0, 0});
+  EXPECT_FALSE(new_intersections(elsewhere, self_intersections(elsewhere), known).empty());
+  EXPECT_TRUE(coincidences(coarse, 1e-8, {}).tris.empty());
+  EXPECT_TRUE(coincidences(sheets(20, {3, 4, 1}), 1e-6, {}).tris.empty());  // neighbors lie side by side
 }
 
 }  // namespace
