@@ -32,7 +32,8 @@ void report_charts(Io& io, const ParamOptions& options, const std::vector<Chart>
     median = std::max(median, r.anisotropy_median);
     p99 = std::max(p99, r.anisotropy_p99);
     smallest = std::min(smallest, r.smallest_area);
-    const bool as_asked = r.used == options.map && (r.used != MapKind::conformal || r.form == options.form);
+    const bool as_asked =
+        r.used == options.map && (r.used != MapKind::conformal || (r.form == options.form && r.bend == 0));
     other += !as_asked;
     repaired += as_asked && (r.flips_before > 0 || !r.border_was_simple);
   }

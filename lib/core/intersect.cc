@@ -118,6 +118,14 @@ void cut_off(std::vector<Vec3>& polygon, Vec3 on_plane, Vec3 normal) {
   polygon = std::move(kept);
 }
 
+/// Twice the area of a plane polygon.
+double area_of(const std::vector<Vec3>& polygon) {
+  Vec3 sum;
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum = sum + area_vector(polygon[0], polygon[i - 1], polygon[i]);
+  return norm(sum);
+}
+
 /// What triangle s has above and below t, the polygon that they share if they are in one plane.
 std::vector<Vec3> overlap_of(const Corners& s, const Corners& t) {
   std::vector<Vec3> polygon{s.a, s.b, s.c};
@@ -128,18 +136,26 @@ std::vector<Vec3> overlap_of(const Corners& s, const Corners& t) {
   return polygon;
 }
 
-/// What triangle s has no farther than `near` from t; nothing if they are not parallel, or only side by side.
+/// Where triangle s lies on t: what it has above and below t, if half of that is no farther than `near` (so
+/// not next to a sharp edge); nothing if they are not parallel, or only side by side.
 std::vector<Vec3> coincidence(const Corners& s, const Corners& t, double near) {
   constexpr double parallel = 0.99, sliver = 1e-6;  // cosine; of the smaller triangle's area
   const Vec3 m = area_vector(s.a, s.b, s.c), n = area_vector(t.a, t.b, t.c), up = normalized(n);
-  if (std::abs(dot(m, up)) < parallel * norm(m)) return {};
+  if (!(std::abs(dot(m, up)) > parallel * norm(m))) return {};
+  auto beyond = [&](Vec3 on_plane, Vec3 normal) {
+    return std::max(
+               {dot(s.a - on_plane, normal), dot(s.b - on_plane, normal), dot(s.c - on_plane, normal)}) <= 0;
+  };
+  if (beyond(t.a - near * up, up) || beyond(t.a + near * up, -1.0 * up) || beyond(t.a, cross(n, t.b - t.a)) ||
+      beyond(t.b, cross(n, t.c - t.b)) || beyond(t.c, cross(n, t.a - t.c)))
+    return {};
   std::vector<Vec3> polygon = overlap_of(s, t);
+  const double all = area_of(polygon);
   cut_off(polygon, t.a - near * up, up);
   cut_off(polygon, t.a + near * up, -1.0 * up);
-  double area = 0;
-  for (std::size_t i = 2; i < polygon.size(); ++i)
-    area += norm(area_vector(polygon[0], polygon[i - 1], polygon[i]));
-  return area > sliver * std::min(norm(m), norm(n)) ? polygon : std::vector<Vec3>{};
+  const double area = area_of(polygon);
+  const bool lies_on_it = area > 0.5 * all && area > sliver * std::min(norm(m), norm(n));
+  return lies_on_it ? polygon : std::vector<Vec3>{};
 }
 
 bool coplanar(const Corners& s, const Corners& t) {
@@ -261,18 +277,21 @@ Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, M
 }
 
 Mesh coincidences(const Mesh& mesh, double near, Mesh places) {
+  if (mesh.tris.empty()) return places;
   const Bvh tree(mesh);
   const Vec3 margin{near, near, near};
+  std::vector<std::vector<std::vector<Vec3>>> found(mesh.tris.size());
+#pragma omp parallel for schedule(dynamic, 256)
   for (int s = 0; s < (int)mesh.tris.size(); ++s) {
-    std::vector<int> others;
-    const Box box = box_of(mesh, s);
-    tree.overlapping({box.lo - margin, box.hi + margin}, [&](int t) {
-      if (t > s) others.push_back(t);
+    const Box own = box_of(mesh, s), box{own.lo - margin, own.hi + margin};
+    tree.overlapping(box, [&](int t) {
+      if (t <= s || !overlap(box, box_of(mesh, t))) return;
+      if (auto shared = coincidence(corners(mesh, s), corners(mesh, t), near); !shared.empty())
+        found[s].push_back(std::move(shared));
     });
-    for (int t : others)
-      if (const auto shared = coincidence(corners(mesh, s), corners(mesh, t), near); !shared.empty())
-        add_place(shared, places);
   }
+  for (const auto& polygons : found)
+    for (const std::vector<Vec3>& polygon : polygons) add_place(polygon, places);
   return places;
 }
 

@@ -28,7 +28,8 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
 /// last); for two triangles in one plane, the polygon that they share.
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places = {});
 
-/// Adds to `places` where triangles lie on others, all that is no farther from them than `near`.
+/// Adds to `places` where triangles lie on others: where they are parallel (to 8 degrees), and at least half
+/// of their overlap is no farther from the other than `near`.
 Mesh coincidences(const Mesh& mesh, double near, Mesh places);
 
 /// Returns those of the intersecting pairs whose contact is, all along, farther than twice their longest edge

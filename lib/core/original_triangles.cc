@@ -96,7 +96,7 @@ Mesh reference_contacts(const Surface& reference, bool sheets_meet) {
   const auto chords = chord_pairs({reference, opposite, model_of(reference)});
   constexpr double rounding = 1e-6;  // of the diagonal: single-precision coordinates, with a margin
   Mesh found = contacts(joined, self_intersections(joined));
-  if (!joined.tris.empty()) found = coincidences(joined, rounding * diagonal(joined), std::move(found));
+  found = coincidences(joined, rounding * diagonal(joined), std::move(found));
   return contacts(reference, chords, std::move(found));
 }
 

@@ -56,10 +56,10 @@ std::vector<int> triangles_around(const EditMesh& m, int h) {
 }
 
 /// Flips the edge of h in thought, at which the surface lies flat on itself. Returns how far that moves the
-/// surface, at most; infinite if it does not lie so, or still would, or if halving does not tell to a
-/// fiftieth of `tolerance`. The apex of the smaller triangle divides the larger one, from which it is not
-/// far. What is left over is the smaller triangle: others may lie where it was. Requires: h is of the
-/// smaller.
+/// surface, at most, to `least` or a fiftieth of `tolerance`; infinite if it does not lie so, or still would,
+/// or if halving does not tell. The apex of the smaller triangle divides the larger one, from which it is not
+/// far. What is left over is the smaller triangle: others may lie where it was. Requires: h is of the smaller
+/// triangle.
 double unfold(const EditMesh& m, const Mesh& s, int h, double least, double tolerance) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
@@ -87,6 +87,7 @@ double unfold(const EditMesh& m, const Mesh& s, int h, double least, double tole
     const Farthest left = farthest(
         smaller, after, [&](int) { return resolution; }, nearest);
     const double found = left.hit.place.face < 0 ? 0 : farther_by * left.hit.distance;
+    if (!left.complete && found > tolerance) break;
     if (left.complete) return std::max(found, resolution > least ? resolution : 0) + apex_moves;
   }
   return infinity;

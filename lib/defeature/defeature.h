@@ -45,7 +45,7 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
 
 struct Flips {
   int count = 0;
-  double moved = 0;  ///< by those at folds: no point of either surface is farther than this from the other
+  double moved = 0;  ///< by those at folds, to 3e-6 of the diagonal: how far either surface is from the other
 };
 
 /// Flips edges at triangles of no height: below 3e-6 of the diagonal, rounding of single-precision

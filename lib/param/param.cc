@@ -27,7 +27,8 @@ std::vector<std::array<int, 2>> sample(const std::vector<std::array<int, 2>>& cr
 /// the triangles of a part up to which that is so; larger parts are cut, which costs less than either.
 constexpr double poor = 4;
 constexpr std::size_t small = 20000;
-/// And, in the mean over the area, from where on a map is all but a line: then another one is looked for.
+/// sigma1/sigma2, in the mean over the area, from where on a map is all but a line: points of a mesh in it
+/// fall together.
 constexpr double absurd = 100;
 
 /// The element at the fraction q of the order.
@@ -37,7 +38,7 @@ double quantile(std::vector<double>& values, double q) {
   return *at;
 }
 
-/// A map to try where the one asked for, and its repair, is not one-to-one.
+/// A map to try where the one asked for, and its repair, is not one-to-one or all but a line.
 struct Fallback {
   MapKind kind;
   double bend = 0;  ///< of a conformal map's border, towards a circle
@@ -76,7 +77,8 @@ class Search {
                                                     : least_squares_map(part_, disk_, filled);
   }
 
-  /// The map asked for, its repair, or the first of the fallbacks that is one-to-one.
+  /// The map asked for, its repair, or the first of the fallbacks that is one-to-one and more than a line; if
+  /// none is, the one with the least sigma1/sigma2.
   std::vector<Vec2> run(double most_uneven) {
     report_ = {};
     report_.used = options_.map;
@@ -95,6 +97,7 @@ class Search {
       const ParamReport before = report_;
       std::vector<Vec2> trial = uv;
       const bool found = try_next(next, trial);
+      if (found && report_.border_was_simple) report_.apart.clear();
       if (found) measure_distortion(part_, trial, report_);
       if (!valid || (found && report_.anisotropy_mean < before.anisotropy_mean))
         uv = std::move(trial), valid = found;
@@ -148,10 +151,8 @@ class Search {
       valid = !trial.empty() && (valid_map(trial) || repaired(trial));
     } catch (const GoalMissed&) {  // singular to rounding, or a border that does not close
     }
-    if (valid && conformal) {
-      report_.bend = next.bend;
-      report_.form = ConformalForm::boundary_first;
-    }
+    if (valid) report_.bend = next.bend;
+    if (valid && conformal) report_.form = ConformalForm::boundary_first;
     if (valid || (!conformal && !trial.empty())) uv = std::move(trial);
     return valid;
   }
@@ -185,10 +186,8 @@ class Search {
     uv = std::move(better);
   }
 
-  /// A circle map that was asked for is the user's own choice.
   bool is_all_but_a_line() const {
-    const bool chosen = report_.used == options_.map && options_.map != MapKind::conformal;
-    return !options_.strict && !chosen && report_.anisotropy_mean > absurd;
+    return !options_.strict && !is_own_choice(report_, options_) && !(report_.anisotropy_mean <= absurd);
   }
 
   bool valid_map(const std::vector<Vec2>& uv) const {

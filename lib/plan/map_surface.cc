@@ -95,8 +95,7 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
   const SubMesh& mesh = charts.chart[p].mesh;
   const bool missed = !charts.failure[p].empty();
   const double area_scale = missed ? infinity : report.area_scale;
-  // a circle map that was asked for is the user's own choice
-  const bool chosen = report.used == options.map && options.map != MapKind::conformal;
+  const bool chosen = is_own_choice(report, options);
   const bool stretched =
       !missed && !chosen && round < limit::stretched_rounds &&
       (report.anisotropy_p99 > limit::anisotropy ||

@@ -311,11 +311,11 @@ void repair_mild(State& s, Search& search) {
   search.look(s);
 }
 
-/// Where faults are more than mcheck accepts: none if there are too many. Of needles those are left out that
+/// Where faults are more than mcheck accepts: none if too much is wrong. Of needles those are left out that
 /// the model forces, also at smaller sizes.
 std::vector<SizeReduction> reductions_at(const State& s, const Fault& fault, Known& known) {
   std::vector<SizeReduction> reductions;
-  if (fault.places() > rules::few_faults) return reductions;
+  if (fault.sum() > rules::most_left) return reductions;
   const double mean = mean_size(s);
   auto add = [&](int t, double factor) {
     const auto [a, b, c] = s.mesh.tris[t];

@@ -346,6 +346,7 @@ void refuse_costly_field(Field& f, double limit, double triangles, const SizeRep
 /// Throws: GoalMissed if closed components so slender that the size is more than their circumference, in the
 /// mean along their length, ask for many times as many triangles: four edges around are the least.
 void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, double size, double triangles) {
+  constexpr double few_triangles = 1000;
   std::vector<int> component;
   const int n = components(opposite, component);
   std::vector<double> area(n, 0);
@@ -365,7 +366,7 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
     asked += area[c] / (0.25 * std::sqrt(3.0) * around * around / (ring_edges * ring_edges));
     if (around < narrowest) narrowest = around, place = 0.5 * (box[c].lo + box[c].hi);
   }
-  if (asked <= most_for(triangles)) return;
+  if (asked <= most_times * std::max(triangles, few_triangles)) return;
   throw Informed<GoalMissed>("slender parts ask for " + shown(std::round(asked)) + " triangles instead of " +
                                  shown(std::round(triangles)) + ": the size is " + shown(size) +
                                  ", and the mean way around one is " + shown(narrowest) + ", its middle at " +

@@ -140,7 +140,7 @@ TEST(intersect, in_one_plane_they_share_a_polygon) {
   EXPECT_FALSE(new_intersections(elsewhere, self_intersections(elsewhere), known).empty());
 }
 
-// sheets that touch but for rounding: a finer mesh may intersect anywhere in the overlap
+// sheets that touch to rounding: a finer mesh may intersect anywhere in the overlap
 TEST(intersect, where_a_surface_lies_on_itself_no_intersection_is_new) {
   const Mesh coarse = sheets(1, {3, 4, 1e-7});
   EXPECT_TRUE(self_intersections(coarse).empty());
@@ -151,7 +151,11 @@ TEST(intersect, where_a_surface_lies_on_itself_no_intersection_is_new) {
   const Mesh elsewhere = sheets(20, {-6, 0, 0});
   EXPECT_FALSE(new_intersections(elsewhere, self_intersections(elsewhere), known).empty());
   EXPECT_TRUE(coincidences(coarse, 1e-8, {}).tris.empty());
-  EXPECT_TRUE(coincidences(sheets(20, {3, 4, 1}), 1e-6, {}).tris.empty());  // neighbors lie side by side
+  Mesh tilted = sheets(20, {3, 4, 1});  // neighbors lie side by side
+  for (Vec3& p : tilted.points) p = {0.6 * p.x - 0.3 * p.y, p.x + 0.01 * p.z, 0.7 * p.y + p.z};
+  EXPECT_TRUE(coincidences(tilted, 1e-6, {}).tris.empty());
+  const Mesh ridge{{{0, 0, 0}, {0, 1, 0}, {1, 0.5, 0}, {1, 0.5, 0.08}}, {{1, 0, 2}, {0, 1, 3}}};  // 5 degrees
+  EXPECT_TRUE(coincidences(ridge, 1e-6, {}).tris.empty());
 }
 
 }  // namespace

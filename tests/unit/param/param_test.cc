@@ -110,9 +110,6 @@ TEST(Param, SliversAndDegenerateTrianglesAreMappedByTheConvexMap) {
   EXPECT_TRUE(one_to_one(slivers, map_part(slivers, {}, r)));
 }
 
-//  2        one triangle, and two triangles that share no edge at 0
-//  | \      .
-//  0--1
 TEST(Param, NoMapIsAllButALine) {
   // strips of triangles that are nearly flat, and bent: the repair of a few flips may leave others so flat
   // that the map is a line to rounding
@@ -132,9 +129,15 @@ TEST(Param, NoMapIsAllButALine) {
     const auto uv = map_part(part, {}, report);
     EXPECT_TRUE(one_to_one(part, uv)) << seed;
     EXPECT_LT(report.anisotropy_mean, 100) << seed;
+    EXPECT_NEAR(report.anisotropy_p99, distortion(part, uv).anisotropy_p99, 1e-9 * report.anisotropy_p99)
+        << seed;
+    EXPECT_TRUE(report.used == MapKind::conformal || report.bend == 0) << seed;
   }
 }
 
+//  2        one triangle, and two triangles that share no edge at 0
+//  | \      .
+//  0--1
 TEST(Param, SmallAndWrongParts) {
   SubMesh one{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {0, 1, 2}, {0}};
   EXPECT_TRUE(one_to_one(one, conformal_map(one)));

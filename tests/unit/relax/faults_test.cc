@@ -13,7 +13,7 @@ namespace {
 TEST(Faults, ReferenceIsTheSurfaceBeforeCuts) {
   // a triangle cut at d, which rounding has put above the sheet e f g next to it
   Mesh mesh;
-  mesh.points = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, 2e-9}, {0, 0, 1e-9}, {3, 0, 1e-9}, {0, 3, 1e-9}};
+  mesh.points = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {1, 1, 2e-5}, {0, 0, 1e-5}, {3, 0, 1e-5}, {0, 3, 1e-5}};
   mesh.tris = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {4, 5, 6}};
   Surface surface = surface_of(mesh);
   surface.vertex.set("size", std::vector<double>(7, 3));
