@@ -127,7 +127,7 @@ constexpr double reduced_at_distance = 0.27;  // over the distance in sizes: the
 constexpr double least_reduced = 0.25, most_reduced = 0.6;  // within these bounds
 constexpr double reduced_gradation = 0.5;                   // growth of the size per length away from there
 constexpr double reduced_growth = 0.5;                      // of the triangles: what smaller sizes may add
-constexpr double most_left = 150;  // sum of faults: of 41 meshes begun again none with more was repaired
+constexpr double most_left = 150;  // sum of faults: of 77 begun again none with over 78 became good
 constexpr int most_restarts = 3;   // each takes as long as the first time
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 
