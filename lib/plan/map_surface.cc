@@ -13,12 +13,16 @@
 namespace meshpipe {
 namespace {
 
+/// Why a part waits for a map. One of which only the border has changed waits until there are no others: cuts
+/// of its neighbors may change it again.
+enum Wait : char { mapped, new_border, new_part };
+
 /// What is known of every part while charts are made.
 struct Charts {
   std::vector<Chart> chart;
   std::vector<ParamReport> report;
   std::vector<std::string> failure;  ///< why there is no map; empty if there is one
-  std::vector<char> waiting;         ///< to be mapped
+  std::vector<char> waiting;         ///< to be mapped, as in Wait
   std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
 };
 
@@ -52,9 +56,10 @@ int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts,
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
-  charts.waiting.resize(n_parts, 1), charts.as_it_is.resize(n_parts, 0);
+  charts.waiting.resize(n_parts, new_part), charts.as_it_is.resize(n_parts, 0);
   for (int p = 0; p < n_parts; ++p) {
-    charts.waiting[p] |= parts[p].vertex != charts.chart[p].mesh.vertex;
+    if (charts.waiting[p] == mapped && parts[p].vertex != charts.chart[p].mesh.vertex)
+      charts.waiting[p] = new_border;
     charts.chart[p].mesh = std::move(parts[p]);
   }
 }
@@ -63,17 +68,18 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
 void take_known(std::vector<Chart> known, const std::vector<ParamReport>& reports, Charts& charts) {
   for (std::size_t p = 0; p < std::min(known.size(), charts.chart.size()); ++p) {
     const SubMesh& mesh = charts.chart[p].mesh;
-    charts.waiting[p] = known[p].mesh.vertex != mesh.vertex || count_inverted(mesh.tris, known[p].uv) > 0;
-    if (charts.waiting[p] && !known[p].uv.empty()) continue;
+    const bool holds = known[p].mesh.vertex == mesh.vertex && count_inverted(mesh.tris, known[p].uv) == 0;
+    charts.waiting[p] = holds ? mapped : new_part;
+    if (!holds && !known[p].uv.empty()) continue;
     charts.chart[p].uv = std::move(known[p].uv);
     charts.report[p] = reports[p];
   }
 }
 
-/// Maps the parts that wait for it, in parallel.
-void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
+/// Maps the parts that wait for it by the reason `next`, in parallel.
+void map_waiting(const ParamOptions& options, int round, Wait next, std::size_t n_triangles, Charts& charts) {
   parallel_for((int)charts.chart.size(), [&](int p) {
-    if (!charts.waiting[p] || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
+    if (charts.waiting[p] != next || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
     Chart& chart = charts.chart[p];
     charts.failure[p].clear();
     try {
@@ -138,23 +144,23 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
                                std::vector<ParamReport>& reports, std::vector<Chart> known, bool alone) {
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   Charts charts;
+  auto waits = [&](Wait why) { return std::count(charts.waiting.begin(), charts.waiting.end(), why) > 0; };
   for (int round = 0;; ++round) {
     take_parts(surface, n_parts, charts);
     if (round == 0) take_known(std::move(known), reports, charts);
-    map_waiting(options, round, surface.tris.size(), charts);
+    const Wait next = waits(new_part) ? new_part : new_border;
+    map_waiting(options, round, next, surface.tris.size(), charts);
     if (alone) leave_poor(options.strict, charts);
     if (alone) break;
     const bool may_cut = !options.strict && round < limit::most_rounds;
-    bool again = false;
     for (int p = 0, n = n_parts; p < n; ++p) {
-      if (!charts.waiting[p]) continue;
+      if (charts.waiting[p] != next) continue;
       const int before = n_parts;
       if (may_cut) n_parts = cut_again(surface, p, n_parts, options, round, charts);
-      charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]);
-      again |= charts.waiting[p];
+      charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]) ? new_part : mapped;
       if (!charts.waiting[p] && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
     }
-    if (!again) break;
+    if (!waits(new_part) && !waits(new_border)) break;
   }
   reports = std::move(charts.report);
   return std::move(charts.chart);
