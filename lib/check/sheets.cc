@@ -33,7 +33,7 @@ std::vector<char> inside_sheets(const Mesh& apart) {
   return inside;
 }
 
-/// The junctions of borders; where the inside of sheets touches them, that is an intersection.
+/// The junctions of borders. That the inside of a sheet touches one is an intersection, and changes nothing.
 Junctions junctions_of(const Mesh& joined, const std::vector<char>& inside, const std::vector<int>& patch,
                        bool named) {
   Junctions j;
@@ -42,15 +42,18 @@ Junctions junctions_of(const Mesh& joined, const std::vector<char>& inside, cons
     Key key;
   };
   std::vector<Edge> edges;
+  std::vector<int> borders;
   for_each_edge(joined.tris, (int)joined.points.size(), [&](std::span<const EdgeUse> uses) {
-    const int h = half_edge(uses[0]);
-    if (uses.size() == 1) j.edges.push_back({patch[h / 3], h / 3});
-    const auto is_inside = [&](EdgeUse e) { return inside[half_edge(e)]; };
-    if (uses.size() < 2 || std::any_of(uses.begin(), uses.end(), is_inside)) return;
-    Key key;
-    if (!named) key.push_back((int)uses.size());
+    borders.clear();
     for (EdgeUse e : uses)
-      if (named) key.push_back(patch[half_edge(e) / 3]);
+      if (!inside[half_edge(e)]) borders.push_back(half_edge(e));
+    if (borders.size() == 1) j.edges.push_back({patch[borders[0] / 3], borders[0] / 3});
+    if (borders.size() < 2) return;
+    const int h = borders[0];
+    Key key;
+    if (!named) key.push_back((int)borders.size());
+    for (int border : borders)
+      if (named) key.push_back(patch[border / 3]);
     std::sort(key.begin(), key.end());
     edges.push_back({origin(joined.tris, h), target(joined.tris, h), std::move(key)});
   });

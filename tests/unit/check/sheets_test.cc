@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/check/sheets.h"
+
+#include <gtest/gtest.h>
+
+using namespace meshpipe;
+
+namespace {
+
+// Three sheets of one triangle each meet along the line from (0,0,0) to (1,1,0). It is also a diagonal of a
+// square, which intersects them there:
+//
+//        d-----b
+//        |    /|
+//        |   / |     sheets: (a b x), (a b y), (a b z), each with its own points
+//        |  /  |
+//        | /   |
+//        a-----c
+Surface fan_through_square(bool along_line) {
+  Surface s;
+  for (Vec3 x : {Vec3{.5, .5, 1}, Vec3{1, 0, 1}, Vec3{0, 1, 1}}) {
+    const int n = (int)s.points.size();
+    s.points.insert(s.points.end(), {{0, 0, 0}, {1, 1, 0}, x});
+    s.tris.push_back({n, n + 1, n + 2});
+  }
+  const int a = (int)s.points.size(), b = a + 1, c = a + 2, d = a + 3;
+  s.points.insert(s.points.end(), {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}});
+  if (along_line)
+    s.tris.push_back({a, c, b}), s.tris.push_back({a, b, d});
+  else
+    s.tris.push_back({a, c, d}), s.tris.push_back({c, b, d});
+  return s;
+}
+
+}  // namespace
+
+TEST(CompareSheets, InsideOfASheetAlongALineIsNoPartOfIt) {
+  for (bool first : {false, true})
+    for (bool second : {false, true}) {
+      const SheetFindings f =
+          compare_sheets(fan_through_square(first), fan_through_square(second), {}, false, false);
+      EXPECT_TRUE(f.faults.empty()) << f.faults[0];
+      EXPECT_EQ(f.lines, (Both{1, 1}));
+      EXPECT_EQ(f.corners, (Both{2, 2}));
+    }
+}
+
+TEST(CompareSheets, ALineOfOtherSheetsIsFound) {
+  Surface less = fan_through_square(true);
+  less.tris.erase(less.tris.begin());
+  EXPECT_FALSE(compare_sheets(fan_through_square(true), less, {}, false, false).faults.empty());
+}
