@@ -6,9 +6,21 @@
 #include "lib/core/split_edges.h"
 #include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
+#include "lib/core/weld.h"
 
 namespace meshpipe {
 namespace {
+
+/// Moves the points from `first` on, each in the middle of an edge between two others, along their edges
+/// where another point is at the same place: on a triangle of zero area.
+void move_off_others(std::vector<Vec3>& points, int first, const std::vector<std::array<int, 2>>& ends) {
+  const std::vector<char> all(points.size(), 1);
+  for (double at : {7 / 16., 9 / 16., 3 / 8., 5 / 8., 1 / 4., 3 / 4.}) {
+    const std::vector<int> same = first_equal(points, all);
+    for (int v = first; v < (int)points.size(); ++v)
+      if (same[v] != v) points[v] = lerp(points[ends[v - first][0]], points[ends[v - first][1]], at);
+  }
+}
 
 /// Divides edges where sheets meet and two sides of one have the same copies of both ends: these would be
 /// neighbors in that sheet, rather than the sides of a slit. Returns, per triangle, the one it is part of;
@@ -30,10 +42,14 @@ std::vector<int> open_slits(Surface& s) {
   std::vector<int> number =
       identity(n);  // of a vertex, those in the middle of half-edges included, which are one
   std::vector<int> rows = number;
+  std::vector<std::array<int, 2>> divided;  // the ends of those edges
   for (int h = 0; h < (int)first.size(); ++h) {
     mark.push_back(first[h] >= 0);
     if (first[h] < 0) continue;
-    if (first[h] == h) middle[h] = (int)rows.size(), rows.push_back((int)number.size());
+    if (first[h] == h) {
+      middle[h] = (int)rows.size(), rows.push_back((int)number.size());
+      divided.push_back({origin(s.tris, h), target(s.tris, h)});
+    }
     number.push_back(middle[first[h]]);
   }
   if ((int)rows.size() == n) return {};
@@ -43,6 +59,7 @@ std::vector<int> open_slits(Surface& s) {
     for (int& v : t) v = number[v];
   for (std::size_t i = 0; i < rows.size(); ++i) s.points[i] = s.points[rows[i]];
   s.points.resize(rows.size());
+  move_off_others(s.points, n, divided);
   take_rows(s.vertex, rows);
   return parent;
 }

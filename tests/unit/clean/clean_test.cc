@@ -913,6 +913,36 @@ TEST(Clean, SlitsOfOneEdgeAreDividedSoThatTheyStayOpen) {
   EXPECT_NEAR(volume(s), 2, 1e-12);
 }
 
+TEST(Clean, SheetsWithoutAreaAreDropped) {
+  // a square, and a tetrahedron whose corners are in one line: none of its edges may flip or collapse
+  const std::vector<Vec3> points{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0},
+                                 {5, 0, 0}, {6, 0, 0}, {7, 0, 0}, {8, 0, 0}};
+  const std::vector<Tri> tris{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 7, 5}, {5, 7, 6}, {6, 7, 4}};
+  for (auto sheets : {CleanOptions::pair, CleanOptions::split, CleanOptions::keep}) {
+    Surface s = surface(points, tris);
+    const CleanReport r = clean(s, {.weld = 0, .sheets = sheets});
+    EXPECT_EQ(r.flat, 0);
+    EXPECT_EQ(r.degenerate, 4);
+    EXPECT_EQ(s.tris.size(), 2u);
+  }
+}
+
+TEST(Clean, TheMiddleOfADividedSlitIsNoOtherPoint) {
+  // as above, and a triangle with a corner in the middle of the edge
+  const Surface two = cubes({{0, 0, 0}, {1, 1, 0}});
+  std::vector<Vec3> points = two.points;
+  std::vector<Tri> tris = two.tris;
+  const int n = (int)points.size();
+  points.insert(points.end(), {{1, 1, 0.5}, {3, 3, 0.5}, {3, 4, 0.5}});
+  tris.push_back({n, n + 1, n + 2});
+  Surface s = surface(points, tris);
+  clean(s, {.sheets = CleanOptions::keep});
+  take_apart(s);
+  EXPECT_EQ(s.tris.size(), 29u);
+  EXPECT_EQ(std::count(s.points.begin(), s.points.end(), (Vec3{1, 1, 0.5})), 1);
+  expect_manifold(s);
+}
+
 TEST(Clean, SecondCopiesOfASheetAreDropped) {
   for (bool reversed : {false, true})
     for (bool other : {false, true}) {
