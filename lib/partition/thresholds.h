@@ -39,17 +39,6 @@ constexpr double unresolved_area_scale = 1e16;
 /// 5 surfaces.
 constexpr double mean_anisotropy = 4;
 constexpr double anisotropy = 100;  ///< the 99th percentile of sigma1/sigma2, above which a part is cut
-/// Median of sigma1/sigma2 above which a limb is cut along its length. A limb with N edges around it changes
-/// its scale by exp(2 pi / N) over each of them, which shears triangles to about 1 + 3.6 / N. Effect: 56 maps
-/// on 20 surfaces.
-constexpr double limb_anisotropy = 1.05;
-/// That median, less 1, in the pieces over that of the whole: the cut is undone above it. Effect: keeps 4 of
-/// the 56, on 3 surfaces.
-constexpr double limb_gain = 0.6;
-/// Geodesic aspect ratio below which no limb is cut along its length: it has no length.
-constexpr double limb_aspect = 2;
-/// Triangles below which no limb is cut along its length: it costs more than it gains.
-constexpr std::size_t limb_triangles = 500;
 constexpr std::size_t least_triangles = 50;  ///< below it no part is cut for the mean of sigma1/sigma2
 /// Parts that one cut along limbs may end in: a ragged part keeps its aspect ratio through many cuts. Effect:
 /// 80 of 121 cuts are given up, on 4 surfaces.

@@ -26,31 +26,6 @@ struct Charts {
   std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
 };
 
-/// Cuts a limb along its length if its triangles then keep their shape much better in every piece. Returns
-/// the new number of parts; n_parts, with nothing changed, if it did not.
-int cut_if_flatter(Surface& surface, const SubMesh& mesh, int part, int n_parts, const ParamOptions& options,
-                   const ParamReport& whole) {
-  if (topology_of(mesh).eta_geo < limit::limb_aspect) return n_parts;
-  Surface trial = surface;
-  const int n = cut_along_limbs(trial, part, n_parts);
-  if (n == n_parts) return n_parts;
-  std::vector<int> piece = trial.face.get<int>("part");
-  for (int& label : piece) label = label == part ? 0 : label < n_parts ? -1 : label - n_parts + 1;
-  for (const SubMesh& half : split_by_label(trial, piece, n - n_parts + 1)) {
-    ParamReport report;
-    try {
-      map_part(half, options, report);
-    } catch (const Error&) {
-      return n_parts;
-    }
-    if (report.anisotropy_median - 1 > limit::limb_gain * (whole.anisotropy_median - 1) ||
-        report.anisotropy_p99 > whole.anisotropy_p99)
-      return n_parts;
-  }
-  surface = std::move(trial);
-  return n;
-}
-
 /// Takes the parts as they are after cuts. One that was not cut itself keeps its map, unless a cut of its
 /// neighbors has put vertices on its border.
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
@@ -108,10 +83,7 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
        (report.anisotropy_mean > limit::mean_anisotropy && mesh.tris.size() >= limit::least_triangles));
   const bool limbs =
       !missed && !charts.as_it_is[p] && round < limit::limb_rounds && area_scale > limit::area_scale;
-  int n = limbs || stretched ? cut_along_limbs(surface, p, n_parts) : n_parts;
-  if (n == n_parts && !missed && !chosen && round < limit::limb_rounds &&
-      report.anisotropy_median > limit::limb_anisotropy && mesh.tris.size() >= limit::limb_triangles)
-    n = cut_if_flatter(surface, mesh, p, n_parts, options, report);
+  const int n = limbs || stretched ? cut_along_limbs(surface, p, n_parts) : n_parts;
   charts.as_it_is[p] = charts.chart[p].uv.empty() && !missed && n == n_parts;
   if (n > n_parts || charts.as_it_is[p] || !(area_scale > limit::unresolved_area_scale || stretched))
     return n;
@@ -127,10 +99,8 @@ int cut_again(Surface& surface, int p, int n_parts, const ParamOptions& options,
 void leave_poor(bool strict, Charts& charts) {
   for (std::size_t p = 0; p < charts.chart.size(); ++p) {
     ParamReport& r = charts.report[p];
-    const bool small = charts.chart[p].mesh.tris.size() < limit::limb_triangles;
     if (charts.failure[p].empty() &&
-        (strict || (r.area_scale <= limit::area_scale && r.anisotropy_mean <= limit::mean_anisotropy &&
-                    (small || r.anisotropy_median <= limit::limb_anisotropy))))
+        (strict || (r.area_scale <= limit::area_scale && r.anisotropy_mean <= limit::mean_anisotropy)))
       continue;
     const double scale = charts.chart[p].uv.empty() ? r.area_scale : 1;
     charts.chart[p].uv.clear();
