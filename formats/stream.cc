@@ -2,6 +2,7 @@
 #include "formats/stream.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "formats/stream/elements.h"
 #include "lib/core/error.h"
@@ -52,6 +53,25 @@ std::string Stream::name_of(int dim, int tag) const {
   for (const Name& n : names)
     if (n.dim == dim && n.tag == tag) return n.text;
   return {};
+}
+
+bool is_length(std::string_view column) {
+  constexpr std::string_view names[] = {"x", "y", "z", "size", "radius", "thickness", "gap", "layers"};
+  return std::find(std::begin(names), std::end(names), column) != std::end(names);
+}
+
+void change_unit(Stream& stream, int unit) {
+  const int by = stream.unit - unit;
+  if (by == 0) return;
+  auto scale = [&](Table& table) {
+    for (Column& column : table.columns)
+      if (auto* lengths = std::get_if<std::vector<double>>(&column.data); lengths && is_length(column.name))
+        for (double& value : *lengths) value = std::ldexp(value, by);
+  };
+  for (Vec3& p : stream.surface.points) p = {std::ldexp(p.x, by), std::ldexp(p.y, by), std::ldexp(p.z, by)};
+  scale(stream.surface.vertex);
+  for (Table& table : stream.tables) scale(table);
+  stream.unit = unit;
 }
 
 bool is_stream(std::string_view bytes) {

@@ -30,6 +30,7 @@ struct Stream {
   std::vector<std::string> remarks;  ///< other comments, kept as they are
   int input_triangles = 0;           ///< after mclean; 0: not recorded
   int asked_triangles = 0;           ///< of the mesh to be made; 0: as the sizes ask
+  int unit = 0;                      ///< coordinates and sizes are multiples of 2^unit
   bool ascii = false;                ///< encoding of the input, and by default of the output
 
   const Table* find(std::string_view table) const;
@@ -42,6 +43,11 @@ struct Stream {
   /// Returns the name of a patch (dim 2) or line (dim 1), or "".
   std::string name_of(int dim, int tag) const;
 };
+
+/// Returns whether a column of this name holds coordinates, or lengths that msize gives.
+bool is_length(std::string_view column);
+/// Changes the unit of all lengths, exactly unless they overflow or vanish.
+void change_unit(Stream& stream, int unit);
 
 /// Returns whether bytes are a stream (a PLY with the line "comment mply"), or the line that a failed program
 /// leaves in its place.

@@ -200,6 +200,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   }
   if (io.threads > 0) omp_set_num_threads(io.threads);
   io.arguments = recorded_options(app);
+  io.length = first_length(app);
   io.report["program"] = program;
   return guarded(io, [&] { run_body(io, body, usage); });
 }

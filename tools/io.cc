@@ -33,12 +33,14 @@ void encode(const std::string& path, const Stream& stream, bool text, const Sink
 
 std::string name_of(const std::string& path) { return path == "-" ? "stdin" : path; }
 
-/// Returns a stream that was read, after its checks.
-Stream accepted(const Io& io, Stream stream) {
+/// Returns a stream that was read, in this unit, after its checks.
+Stream accepted(const Io& io, Stream stream, int unit) {
   // what the reader of a foreign file left out; the remarks of a stream were reported by earlier programs
   if (stream.history.empty())
     for (const std::string& remark : stream.remarks) io.say(remark);
-  if (!io.any_size) expect_measurable(stream.surface);
+  if (io.any_size) return stream;
+  change_unit(stream, unit);
+  expect_measurable(stream.surface);
   return stream;
 }
 
@@ -69,13 +71,19 @@ void write_output(const Io& io, bool text, const std::function<void(const Sink&)
 Stream& Io::read(const Wanted& wanted) {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
-  if (takes_shards) {
-    input_ = std::make_unique<InputFile>(input);
-    stream = accepted(*this, read_next(*input_, name_of(input), true, wanted));
-    if (input_->next(1).empty()) input_.reset();  // frees its memory now
-  } else {
-    stream = read(input);
+  input_ = std::make_unique<InputFile>(input);
+  stream = read_next(*input_, name_of(input), takes_shards, wanted);
+  if (!takes_shards || input_->next(1).empty()) input_.reset();  // frees its memory now
+  int unit = stream.unit;
+  if (!any_size && unit == 0) {
+    unit = measurable_unit(stream.surface);
+    if (unit != 0)
+      say("coordinates and lengths are multiples of 2^" + std::to_string(unit) + " from here on");
   }
+  stream = accepted(*this, std::move(stream), unit);
+  if (stream.unit != 0 && !length.empty())
+    throw BadUsage(length + " is a length, but this surface is computed in units of 2^" +
+                   std::to_string(stream.unit) + ": first run mconvert --scale");
   set_phase(Phase::working);
   return stream;
 }
@@ -84,7 +92,9 @@ std::string Io::read_bytes(const std::string& path) { return std::string(InputFi
 
 Stream Io::read(const std::string& path) const {
   InputFile file(path);
-  return accepted(*this, read_next(file, name_of(path)));
+  Stream other = read_next(file, name_of(path));
+  const int unit = stream.surface.points.empty() ? other.unit : stream.unit;
+  return accepted(*this, std::move(other), unit);
 }
 
 bool Io::text_for(const Stream& stream) const {
@@ -100,6 +110,7 @@ bool Io::text_for(const Stream& stream) const {
 }
 
 void Io::write(Stream& stream) {
+  if (!is_stream_name(output)) change_unit(stream, 0);
   stream.history.push_back({program, MESHPIPE_VERSION, arguments});
   const bool text = text_for(stream);
   set_phase(Phase::writing);
@@ -156,9 +167,11 @@ int Io::write_each(const std::function<Stream(Stream)>& make) {
   return n;
 }
 
-void Io::write_to(const std::string& path, const Stream& stream) const {
-  const bool text = ascii || needs_text(*this, path, stream);
-  write_atomically(path, [&](const Sink& sink) { encode(path, stream, text, sink); });
+void Io::write_to(const std::string& path, Stream other) const {
+  other.unit = stream.unit;
+  if (!is_stream_name(path)) change_unit(other, 0);
+  const bool text = ascii || needs_text(*this, path, other);
+  write_atomically(path, [&](const Sink& sink) { encode(path, other, text, sink); });
 }
 
 void Io::write_bytes(std::string_view bytes) const {

@@ -18,14 +18,16 @@ namespace meshpipe {
 class Io : public CommonOptions {
  public:
   /// Reads FILE or standard input, in any format, into `stream`, which outlives the body of the program.
-  /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size.
+  /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size;
+  /// BadUsage for options that are lengths if the stream has a unit.
   /// `wanted`: see read_stream.
   Stream& read(const Wanted& wanted = {});
-  /// Reads a second file of the user's, such as a reference.
+  /// Reads a second file of the user's, such as a reference, in the unit of `stream`.
   Stream read(const std::string& path) const;
   /// Returns the bytes of another file of the user's, or of standard input for "-".
   static std::string read_bytes(const std::string& path);
-  /// Adds this program to the history and writes the stream to -o FILE or standard output.
+  /// Adds this program to the history and writes the stream to -o FILE or standard output; other formats get
+  /// coordinates without a unit.
   void write(Stream& stream);
   /// Writes what `make` makes of each stream of FILE, in parallel: of those of a shard, of which read() has
   /// returned the first. Returns how many there are. Throws: BadUsage if -o FILE is no stream.
@@ -33,8 +35,9 @@ class Io : public CommonOptions {
   /// Returns whether -o FILE has to be text; reports what its format cannot hold.
   /// Throws: CannotWrite for --binary STL whose single precision does not hold the surface.
   bool text_for(const Stream& stream) const;
-  /// Writes another stream to a file, or standard output for "-", in the format of its extension.
-  void write_to(const std::string& path, const Stream& stream) const;
+  /// Writes another stream, in the unit of the one that was read, to a file, or standard output for "-", in
+  /// the format of its extension.
+  void write_to(const std::string& path, Stream other) const;
   /// Writes bytes to -o FILE or standard output.
   void write_bytes(std::string_view bytes) const;
   /// Writes bytes to another file, or standard output for "-".

@@ -44,7 +44,7 @@ void write_refined(const Io& io, const Mesh& result, const std::string& file, st
   Stream refined;
   static_cast<Mesh&>(refined.surface) = result;
   refined.surface.vertex.set("size", std::move(size));
-  io.write_to(file, refined);
+  io.write_to(file, std::move(refined));
 }
 
 void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
@@ -88,12 +88,12 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.offending.empty()) {
     Stream faulty;
     faulty.surface = offending_faces(contract, f, stream.surface);
-    io.write_to(o.offending, faulty);
+    io.write_to(o.offending, std::move(faulty));
   }
   if (!last)
     io.json.clear();
   else if (failures.empty() || o.accept)
-    io.write(stream);
+    change_unit(stream, 0), io.write(stream);
   if (failures.empty()) return verdict.write();
   throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface));
 }

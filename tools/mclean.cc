@@ -158,7 +158,7 @@ void write_offending(const Io& io, const std::string& path, const CleanReport& r
   Stream stream;
   stream.surface = offending_faces(report, input);
   for (int i = 0; i < (int)std::size(fault_names); ++i) stream.names.push_back({2, i + 1, fault_names[i]});
-  io.write_to(path, stream);
+  io.write_to(path, std::move(stream));
 }
 
 /// What earlier runs of mclean and mfeature have done to a surface that is the input now.

@@ -99,11 +99,9 @@ void place(Stream& stream, const Options& o) {
   // halves: the sum of two coordinates may be infinite
   const Vec3 from = o.center ? 0.5 * low + 0.5 * high : Vec3{};
   for (Vec3& p : mesh.points) p = o.scale * (p - from);
-  for (Column& c : stream.surface.vertex.columns)  // lengths that msize gives
-    if (c.name == "size" || c.name == "radius" || c.name == "thickness" || c.name == "gap" ||
-        c.name == "layers")
-      if (auto* lengths = std::get_if<std::vector<double>>(&c.data))
-        for (double& x : *lengths) x *= o.scale;
+  for (Column& c : stream.surface.vertex.columns)
+    if (auto* lengths = std::get_if<std::vector<double>>(&c.data); lengths && is_length(c.name))
+      for (double& x : *lengths) x *= o.scale;
 }
 
 }  // namespace
@@ -145,6 +143,9 @@ int main(int argc, char** argv) {
         const std::vector<int> regions = labels_in(o.regions.empty() ? "all" : o.regions);
         if (!o.feature_edges.empty()) io.expect_report("--feature-edges", o.feature_edges);
         Stream& stream = io.read();
+        const std::string extension = extension_of(io.output);
+        const bool as_stream = extension.empty() || extension == ".mply";
+        if (!as_stream) change_unit(stream, 0);
         if (!o.feature_edges.empty())
           Io::write_file(o.feature_edges, write_feature_edges(stream, o.feature_edges));
         if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
@@ -157,8 +158,7 @@ int main(int argc, char** argv) {
                   std::to_string(stream.surface.tris.size()) + " triangles");
         io.report["vertices"] = stream.surface.points.size();
         io.report["triangles"] = stream.surface.tris.size();
-        const std::string extension = extension_of(io.output);
-        if (extension.empty() || extension == ".mply")
+        if (as_stream)
           io.write(stream);
         else if (const bool ascii = io.text_for(stream); o.polydata)
           io.write_bytes(write_vtk_polydata(has_sheets(stream) ? with_sheets_joined(stream) : stream, ascii));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -128,6 +129,17 @@ std::string recorded_options(const CLI::App& app) {
     }
   }
   return out;
+}
+
+std::string first_length(const CLI::App& app) {
+  static const std::set<std::string> types = {"H",        "EPS",    "D",    "D|P%|auto",
+                                              "auto|TOL", "LENGTH", "EXPR", "T[,GROWTH[,N]][,outside]"};
+  for (const CLI::Option* o : app.get_options()) {
+    if (o->count() == 0 || (!types.contains(o->get_type_name()) && o->get_name() != "--data")) continue;
+    const std::string& value = o->results()[0];
+    if (value != "auto" && value != "0" && !value.ends_with('%')) return o->get_name();
+  }
+  return {};
 }
 
 CLI::Validator positive_number() {

@@ -12,11 +12,15 @@ struct CommonOptions {
   std::string input = "-", output = "-";
   std::string json;  ///< file of the report; empty: none
   bool ascii = false, binary = false, quiet = false, verbose = false;
-  int threads = 0;  ///< 0: as OpenMP chooses
+  int threads = 0;     ///< 0: as OpenMP chooses
+  std::string length;  ///< an option given that is a length, not a share of the surface's; "": none
 };
 
 /// Adds the options; FILE only if the program reads one. Those that `app` already has get a better --help.
 void add_common_options(CLI::App& app, CommonOptions& options, const std::string& program, bool reads_file);
+
+/// Returns CommonOptions::length.
+std::string first_length(const CLI::App& app);
 
 /// Returns the options of the command line that change the result, as the stream records them: those of
 /// recorded_group. Left out are names of files, which depend on where the program ran.

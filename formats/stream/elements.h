@@ -20,6 +20,7 @@ constexpr const char* type_names[] = {"uchar", "int", "double"};
 constexpr std::size_t type_sizes[] = {1, 4, 8};
 /// Rows of an element: half-edges 3 t + i must fit into an int.
 constexpr long long max_rows = 715827882;
+constexpr int most_unit = 1074;  // exponent of the smallest double
 
 struct Property {
   Type type;

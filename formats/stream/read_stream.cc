@@ -110,6 +110,10 @@ void Header::comment(std::string_view line, const std::vector<std::string_view>&
   } else if (w.size() == 3 && w[1] == "asked_triangles") {
     if (!parse(w[2], stream_.asked_triangles) || stream_.asked_triangles < 0)
       fail(quoted(w[2]) + " is not a count of triangles");
+  } else if (w.size() == 3 && w[1] == "unit") {
+    if (!parse(w[2], stream_.unit) || std::abs(stream_.unit) > most_unit)
+      fail(quoted(w[2]) + " is not an exponent from -" + std::to_string(most_unit) + " to " +
+           std::to_string(most_unit));
   } else {
     stream_.remarks.emplace_back(line.substr(std::min(line.size(), std::size_t{8})));
   }

@@ -155,6 +155,7 @@ Stream cut_shard(const Stream& whole, const ShardNumbers& numbers, const std::ve
   shard.remarks = whole.remarks;
   shard.input_triangles = whole.input_triangles;
   shard.asked_triangles = whole.asked_triangles;
+  shard.unit = whole.unit;
   shard.ascii = whole.ascii;
   const Table& parts = whole.need("part", "mpartition");
   const std::vector<int> vertex = inverse(numbers.vertices, whole.surface.points.size());

@@ -87,6 +87,7 @@ std::string header(const Stream& stream, bool ascii) {
     out += "comment input_triangles " + std::to_string(stream.input_triangles) + '\n';
   if (stream.asked_triangles > 0)
     out += "comment asked_triangles " + std::to_string(stream.asked_triangles) + '\n';
+  if (stream.unit != 0) out += "comment unit " + std::to_string(stream.unit) + '\n';
   for (const Name& n : stream.names)
     out += "comment name " + std::to_string(n.dim) + ' ' + std::to_string(n.tag) + ' ' +
            percent_encode(n.text) + '\n';

@@ -4,7 +4,7 @@
 
 #include "lib/clean/repair.h"
 #include "lib/core/lists.h"
-#include "lib/core/union_find.h"
+#include "lib/core/topology.h"
 
 namespace meshpipe {
 namespace {
@@ -64,7 +64,7 @@ class Flat {
       if (again || ++slits > most_slit_flips) continue;
       for (int t : flat) again |= flip_longest(t, false);
     }
-    drop_sheets(flat, counts.removed);
+    drop_components(flat, counts.removed);
     counts.left = (int)flat.size();
     if (std::count(gone_.begin(), gone_.end(), 1)) drop(r_, gone_);
     return counts;
@@ -115,23 +115,15 @@ class Flat {
       }
   }
 
-  /// Drops flat triangles that are joined to others of their kind only: a sheet without area.
-  void drop_sheets(std::vector<int>& flat, std::vector<int>& removed) {
-    UnionFind sheet(r_.tris.size());
-    std::vector<char> has_area(r_.tris.size(), 0);
-    auto each_neighbor = [&](auto visit) {
-      for (int t : flat)
-        for (int h = 3 * t; h < 3 * t + 3; ++h)
-          if (r_.opposite[h] >= 0) visit(t, r_.opposite[h] / 3);
-    };
-    each_neighbor([&](int t, int u) {
-      if (is_flat(r_.tris[u])) sheet.join(t, u);
-    });
-    each_neighbor([&](int t, int u) {
-      if (!is_flat(r_.tris[u])) has_area[sheet.find(t)] = 1;
-    });
+  /// Drops those of components that have no area.
+  void drop_components(std::vector<int>& flat, std::vector<int>& removed) {
+    if (flat.empty()) return;
+    std::vector<int> component;
+    std::vector<char> has_area(components(r_.opposite, component), 0);
+    for (int t = 0; t < (int)r_.tris.size(); ++t)
+      if (!gone_[t] && !is_flat(r_.tris[t])) has_area[component[t]] = 1;
     for (int t : flat)
-      if (!has_area[sheet.find(t)]) removed.push_back(r_.face[t]), gone_[t] = 1;
+      if (!has_area[component[t]]) removed.push_back(r_.face[t]), gone_[t] = 1;
     std::erase_if(flat, [&](int t) { return gone_[t]; });
   }
 

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
 #include "lib/core/lists.h"
+#include "lib/core/number.h"
 #include "lib/core/parallel.h"
 
 namespace meshpipe {
@@ -124,36 +124,35 @@ struct Extent {
   double size() const { return std::max({0.0, hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
 };
 
-/// That of the points that triangles use.
+constexpr double least_size = 1e-50, most_far = 1e50;
+
+bool is_measurable(const Extent& e) { return e.far <= most_far && !(e.size() > 0 && e.size() < least_size); }
+
+/// That of all points, or of those that triangles use if that is not measurable.
 Extent extent_of(const Mesh& mesh) {
-  Extent e;
+  Extent all, used;
+  for (const Vec3& p : mesh.points) all.add(p);
+  if (is_measurable(all)) return all;
   for (const Tri& t : mesh.tris)
-    for (int v : t) e.add(mesh.points[v]);
-  return e;
+    for (int v : t) used.add(mesh.points[v]);
+  return used;
 }
 
 }  // namespace
 
-void expect_measurable(const Mesh& mesh) {
-  constexpr double least = 1e-50, most = 1e50;
-  Extent of_points;
-  for (const Vec3& p : mesh.points) of_points.add(p);
-  if (of_points.far <= most && of_points.size() >= least) return;
+int measurable_unit(const Mesh& mesh) {
   const Extent e = extent_of(mesh);
-  char text[160];
-  if (e.far > most)
-    std::snprintf(
-        text, sizeof text,
-        "a coordinate of %g is too large to compute with, the limit is %g; try mconvert --scale 1e%d", e.far,
-        most, -(int)std::log10(e.far));
-  else if (e.size() > 0 && e.size() < least)
-    std::snprintf(
-        text, sizeof text,
-        "a surface of size %g is too small to compute with, the limit is %g; try mconvert --scale 1e%d",
-        e.size(), least, -(int)std::log10(e.size()));
-  else
-    return;
-  throw NotAdmissible(text);
+  int exponent = 0;
+  if (!is_measurable(e)) std::frexp(e.far, &exponent);
+  return exponent;
+}
+
+void expect_measurable(const Mesh& mesh) {
+  const Extent e = extent_of(mesh);
+  if (!is_measurable(e))
+    throw NotAdmissible("a surface of size " + shown(e.size()) + " with coordinates up to " + shown(e.far) +
+                        " is beyond what can be computed with: " + shown(least_size) + " and " +
+                        shown(most_far));
 }
 
 std::vector<char> used_points(const Mesh& mesh) {

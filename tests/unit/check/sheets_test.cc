@@ -7,15 +7,11 @@ using namespace meshpipe;
 
 namespace {
 
-// Three sheets of one triangle each meet along the line from (0,0,0) to (1,1,0). It is also a diagonal of a
-// square, which intersects them there:
-//
-//        d-----b
-//        |    /|
-//        |   / |     sheets: (a b x), (a b y), (a b z), each with its own points
-//        |  /  |
-//        | /   |
-//        a-----c
+// Three sheets of one triangle each meet along a line, which is also a diagonal of a square:
+//    d---b
+//    |  /|     sheets: (a b x), (a b y), (a b z), each with its own points
+//    | / |
+//    a---c
 Surface fan_through_square(bool along_line) {
   Surface s;
   for (Vec3 x : {Vec3{.5, .5, 1}, Vec3{1, 0, 1}, Vec3{0, 1, 1}}) {
