@@ -174,22 +174,18 @@ bool has_border(const Repair& r) {
 /// fans apart, and goes on where it has opened some. `same`, `welded`: what repairs begin with.
 void close_all_slits(const Surface& surface, const std::vector<int>& same, const CleanReport& welded,
                      const CleanOptions& options, Repair& r, CleanReport& report) {
-  constexpr int most_passes = 5;  // two suffice in practice
-  if (!has_border(r)) return;
-  CleanReport restarted = welded;
-  Repair divided = start(surface, same, restarted);
-  if (const int vertices = close_slits(divided, surface.points, report.holes.slit)) {
-    report = std::move(restarted);
-    report.holes.slit_vertices = vertices;
-    r = std::move(divided);
-    repair(r, surface.points, options, report);
-  }
+  constexpr int most_passes = 6;  // three suffice in practice
   for (int pass = 0; pass < most_passes && has_border(r); ++pass) {
-    divided = r;
-    unite(divided);
-    const int vertices = close_slits(divided, surface.points, report.holes.slit);
-    if (vertices == 0) return;
-    report.holes.slit_vertices += vertices;
+    // the first begins with the input, for repairs have torn fans apart at slits
+    CleanReport restarted = welded;
+    Repair divided = pass ? r : start(surface, same, restarted);
+    if (pass) unite(divided), restarted = report;
+    const int ends = merge_ends_of_slits(divided, surface.points, report.holes.slit, restarted),
+              vertices = close_slits(divided, surface.points, report.holes.slit);
+    if (ends + vertices == 0 && pass) return;
+    if (ends + vertices == 0) continue;
+    report = std::move(restarted);
+    report.holes.slit_ends += ends, report.holes.slit_vertices += vertices;
     r = std::move(divided);
     repair(r, surface.points, options, report);
   }
@@ -208,8 +204,9 @@ std::vector<char> border_vertices(const Repair& r, std::size_t n) {
 
 /// Replaces the surface by the repaired one, unless that is the same.
 void take_over(Repair& r, Surface& surface, const CleanOptions& options, CleanReport& report) {
-  const bool renumber = report.welded || report.welded_near || report.unreferenced || report.degenerate ||
-                        report.dropped_triangles || !report.nonorientable.empty();
+  const bool renumber = report.welded || report.welded_near || report.holes.slit_ends ||
+                        report.unreferenced || report.degenerate || report.dropped_triangles ||
+                        !report.nonorientable.empty();
   report.nothing = !(renumber || report.duplicate || report.flipped || report.nonmanifold_edges ||
                      report.nonmanifold_vertices || report.sheets.flips.edges || report.holes.filled ||
                      report.holes.slit_vertices);

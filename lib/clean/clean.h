@@ -46,6 +46,7 @@ struct HoleCounts {
   std::vector<int> patches;       ///< of the loops filled, if each has its own
   double slit = 0;                ///< the widest slit that is closed where only one side divides an edge
   int slit_vertices = 0;          ///< put on such edges
+  int slit_ends = 0;              ///< pairs of vertices merged at the ends of slits
 };
 
 /// Where components that are not orientable are cut: both sides are oriented differently there.

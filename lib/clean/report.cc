@@ -23,14 +23,17 @@ std::string describe_nothing_left(const CleanReport& r) {
 namespace {
 
 std::vector<RepairRow> repairs(const CleanReport& r) {
-  char within[64], narrow[96];
+  char within[64], narrow[96], ends[96];
   std::snprintf(within, sizeof within, "vertices merged with one within %g", r.tolerance);
+  std::snprintf(ends, sizeof ends, "vertices merged across the ends of slits, at most %g apart",
+                r.holes.slit);
   std::snprintf(narrow, sizeof narrow, "vertices put on edges across slits, at most %g away", r.holes.slit);
   const bool keep = r.sheets.kept;
   return {
       {"welded", r.welded, "vertices welded with an equal one"},
       {"welded_near", r.welded_near, within},
       {"slit_vertices", r.holes.slit_vertices, narrow},
+      {"slit_ends", r.holes.slit_ends, ends},
       {"unreferenced", r.unreferenced, "unreferenced vertices dropped"},
       {"degenerate", r.degenerate, "degenerate triangles removed"},
       {"duplicate", r.duplicate, "duplicate triangles dropped"},

@@ -2,6 +2,7 @@
 // Edges that one side of a slit divides and the other does not.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <span>
 #include <tuple>
 
@@ -14,7 +15,8 @@
 namespace meshpipe {
 namespace {
 
-/// Height of a triangle in widths of a slit, below which it is not seen whether there is a slit or a ribbon.
+/// Height of a triangle, and length of a side, in widths of a slit, below which it is not seen whether there
+/// is a slit or a ribbon, or a small hole.
 constexpr double least_height = 10;
 
 /// A vertex that the other side of a slit has on half-edge h, at a share of its length.
@@ -64,7 +66,52 @@ class Slits {
     return found;
   }
 
+  //   a-----------w     The vertices on both sides of the end of a slit, where they are no farther apart than
+  //   it
+  //  (b)                is wide: neighbors on the border, or neighbors of the same (b). Merged, they close it
+  //   c-----------u     there. Each vertex is in one pair; the ends of other borders are not looked at.
+  std::vector<std::array<int, 2>> find_ends() const {
+    std::vector<std::array<int, 2>> found;
+    std::vector<char> used(edges_.points.size(), 0);
+    auto other = [&](int v, int w) { return ends_[v].size() != 2 ? -1 : ends_[v][ends_[v][0] == w]; };
+    auto add = [&](int a, int to_c, int c, int to_a) {
+      if (a == c || used[a] || used[c] || !(norm(point(a) - point(c)) <= width_)) return;
+      const int w = other(a, to_c), u = other(c, to_a);
+      for (const auto& [from, to] : {std::pair{a, w}, {c, u}})
+        if (to < 0 || !(norm(point(to) - point(from)) >= least_height * width_)) return;
+      used[a] = used[c] = 1;
+      found.push_back({std::min(a, c), std::max(a, c)});
+    };
+    for (const Tri& e : edges_.tris) add(e[0], e[1], e[1], e[0]);
+    for (int b = 0; b < (int)used.size(); ++b)
+      if (ends_[b].size() == 2) add(ends_[b][0], b, ends_[b][1], b);
+    const Lists around = lists_of((int)used.size(), [&](auto use) {
+      for (const Tri& t : r_.tris)
+        for (int i = 0; i < 3; ++i)
+          if (used[t[i]]) use(t[i], t[(i + 1) % 3]), use(t[i], t[(i + 2) % 3]);
+    });
+    std::erase_if(found, [&](const auto& pair) { return would_pinch(pair, around); });
+    return found;
+  }
+
  private:
+  /// Whether two vertices have more neighbors in common than those across which they close up: those that
+  /// both have on the border, and the apex of the triangle at the end of the slit.
+  bool would_pinch(const std::array<int, 2>& pair, const Lists& around) const {
+    std::vector<int> common[3];
+    for (int i : {0, 1}) {
+      common[i].assign(around[pair[i]].begin(), around[pair[i]].end());
+      sort_unique(common[i]);
+    }
+    const bool adjacent = std::binary_search(common[0].begin(), common[0].end(), pair[1]);
+    std::set_intersection(common[0].begin(), common[0].end(), common[1].begin(), common[1].end(),
+                          std::back_inserter(common[2]));
+    return std::count_if(common[2].begin(), common[2].end(), [&](int v) {
+             return !std::count(ends_[pair[0]].begin(), ends_[pair[0]].end(), v) ||
+                    !std::count(ends_[pair[1]].begin(), ends_[pair[1]].end(), v);
+           }) > adjacent;
+  }
+
   Vec3 point(int v) const { return edges_.points[v]; }
 
   double height(int h) const {
@@ -119,6 +166,23 @@ void divide(Divided triangle, std::vector<Tri>& tris) {
 }
 
 }  // namespace
+
+int merge_ends_of_slits(Repair& r, const std::vector<Vec3>& points, double width, CleanReport& report) {
+  std::vector<int> kept = identity((int)r.vertex.size());
+  const std::vector<std::array<int, 2>> ends = Slits(r, points, width).find_ends();
+  for (const auto& [a, c] : ends) kept[c] = a;
+  std::vector<char> gone(r.tris.size(), 0);
+  for (std::size_t t = 0; t < r.tris.size(); ++t) {
+    Tri& c = r.tris[t];
+    for (int& v : c) v = kept[v];
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) continue;
+    gone[t] = 1;
+    report.degenerate += r.face[t] >= 0;
+    record(report, r.face[t], Fault::degenerate);
+  }
+  if (!ends.empty()) drop(r, gone);
+  return (int)ends.size();
+}
 
 int close_slits(Repair& r, const std::vector<Vec3>& points, double width) {
   const std::vector<OnEdge> found = Slits(r, points, width).find();

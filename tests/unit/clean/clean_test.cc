@@ -1062,6 +1062,28 @@ TEST(Clean, SlitsThatMeetAreClosed) {
   expect_manifold(s);
 }
 
+// a tetrahedron a b c d, open along a-b or, with a needle (n b m), along half of it:
+//     a----m----b      above: triangles with c, below: with d; m and n are `width` apart
+//     a----n----b
+TEST(Clean, EndsOfSlitsAreMerged) {
+  enum { a, b, c, d, m, n };
+  for (double width : {1e-7, 1e-3})
+    for (bool needle : {false, true}) {
+      std::vector<Tri> tris{{b, c, d}, {a, d, c}, {a, m, d}, {m, b, d}, {a, c, n}, {n, c, b}};
+      if (needle) tris.push_back({n, b, m});
+      Surface s = surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {.5, 0, 0}, {.5, width, 0}}, tris);
+      EXPECT_EQ(topology_of(s).loops, 1);
+      const CleanReport r = clean(s, {.weld = 0});
+      const bool closed = width < 1e-5;
+      EXPECT_EQ(r.holes.slit_ends, closed) << width;
+      EXPECT_EQ(r.degenerate, closed && needle);
+      EXPECT_EQ(s.points.size(), closed ? 5u : 6u);
+      EXPECT_EQ(topology_of(s).loops, !closed);
+      expect_manifold(s);
+      EXPECT_TRUE(clean(s, {.weld = 0}).nothing);
+    }
+}
+
 TEST(Clean, ARibbonIsNoSlit) {
   Surface s = surface({{0, 0, 0}, {1, 0, 0}, {1, 1e-7, 0}, {0, 1e-7, 0}}, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_TRUE(clean(s).nothing);
