@@ -6,6 +6,7 @@
 
 #include "formats/stream/elements.h"
 #include "lib/core/error.h"
+#include "lib/core/number.h"
 
 namespace meshpipe {
 
@@ -56,19 +57,27 @@ std::string Stream::name_of(int dim, int tag) const {
 }
 
 bool is_length(std::string_view column) {
-  constexpr std::string_view names[] = {"x", "y", "z", "size", "radius", "thickness", "gap", "layers"};
+  constexpr std::string_view names[] = {"x",  "y",  "z",    "xa",     "ya",        "za",  "xb",
+                                        "yb", "zb", "size", "radius", "thickness", "gap", "layers"};
   return std::find(std::begin(names), std::end(names), column) != std::end(names);
 }
 
 void change_unit(Stream& stream, int unit) {
   const int by = stream.unit - unit;
   if (by == 0) return;
+  auto changed = [&](double value) {
+    const double now = std::ldexp(value, by);
+    if (!std::isfinite(now))
+      throw NotAdmissible("a length of " + shown(value) + " where coordinates are below 2^" +
+                          std::to_string(unit) + ": no unit holds both");
+    return now;
+  };
   auto scale = [&](Table& table) {
     for (Column& column : table.columns)
       if (auto* lengths = std::get_if<std::vector<double>>(&column.data); lengths && is_length(column.name))
-        for (double& value : *lengths) value = std::ldexp(value, by);
+        for (double& value : *lengths) value = changed(value);
   };
-  for (Vec3& p : stream.surface.points) p = {std::ldexp(p.x, by), std::ldexp(p.y, by), std::ldexp(p.z, by)};
+  for (Vec3& p : stream.surface.points) p = {changed(p.x), changed(p.y), changed(p.z)};
   scale(stream.surface.vertex);
   for (Table& table : stream.tables) scale(table);
   stream.unit = unit;

@@ -46,7 +46,7 @@ struct Stream {
 
 /// Returns whether a column of this name holds coordinates, or lengths that msize gives.
 bool is_length(std::string_view column);
-/// Changes the unit of all lengths, exactly unless they overflow or vanish.
+/// Changes the unit of all lengths, exactly unless they vanish. Throws: NotAdmissible if one overflows.
 void change_unit(Stream& stream, int unit);
 
 /// Returns whether bytes are a stream (a PLY with the line "comment mply"), or the line that a failed program

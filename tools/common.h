@@ -17,6 +17,7 @@ struct Usage {
   std::string_view writes{};  ///< extensions of -o FILE; empty: those of meshes
   bool passes = false;        ///< makes a few passes over arrays as large as its input: freed memory is kept
   bool shards = false;        ///< FILE may be a shard of several streams
+  bool sets_unit = false;     ///< see Io
   bool any_size = false;      ///< computes nothing from coordinates, so that their size does not matter
 };
 

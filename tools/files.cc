@@ -276,4 +276,6 @@ void remove_partial_file_on_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+std::string read_bytes(const std::string& path) { return std::string(InputFile(path).rest()); }
+
 }  // namespace meshpipe

@@ -41,6 +41,9 @@ class InputFile : public Source {
   bool any_ = false, ended_ = false;
 };
 
+/// Returns the bytes of a file of the user's, or of standard input for "-". Throws: as InputFile.
+std::string read_bytes(const std::string& path);
+
 /// Reads all of a file in any format, or one of the `several` streams of a shard; see read_stream. Throws: as
 /// read_any.
 Stream read_next(InputFile& file, const std::string& where, bool several = false, const Wanted& wanted = {});

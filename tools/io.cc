@@ -21,7 +21,7 @@ namespace {
 /// Returns whether a path gets the stream: .ply, no extension, standard output.
 bool is_stream_name(const std::string& path) {
   const std::string extension = extension_of(path);
-  return path == "-" || extension.empty() || extension == ".ply";
+  return path == "-" || extension.empty() || extension == ".ply" || extension == ".mply";
 }
 
 void encode(const std::string& path, const Stream& stream, bool text, const Sink& sink) {
@@ -74,27 +74,24 @@ Stream& Io::read(const Wanted& wanted) {
   input_ = std::make_unique<InputFile>(input);
   stream = read_next(*input_, name_of(input), takes_shards, wanted);
   if (!takes_shards || input_->next(1).empty()) input_.reset();  // frees its memory now
-  int unit = stream.unit;
-  if (!any_size && unit == 0) {
-    unit = measurable_unit(stream.surface);
-    if (unit != 0)
-      say("coordinates and lengths are multiples of 2^" + std::to_string(unit) + " from here on");
+  unit_ = stream.unit;
+  if (sets_unit && unit_ == 0) {
+    unit_ = measurable_unit(stream.surface);
+    if (unit_ != 0)
+      say("coordinates and lengths are multiples of 2^" + std::to_string(unit_) + " from here on");
   }
-  stream = accepted(*this, std::move(stream), unit);
-  if (stream.unit != 0 && !length.empty())
-    throw BadUsage(length + " is a length, but this surface is computed in units of 2^" +
-                   std::to_string(stream.unit) + ": first run mconvert --scale");
+  stream = accepted(*this, std::move(stream), unit_);
+  if (unit_ != 0 && !length.empty())
+    throw BadUsage(length + " has lengths, but those of this surface are multiples of 2^" +
+                   std::to_string(unit_) + ": run mconvert --scale 1e" +
+                   std::to_string(-(int)(unit_ * std::log10(2))) + " before mclean");
   set_phase(Phase::working);
   return stream;
 }
 
-std::string Io::read_bytes(const std::string& path) { return std::string(InputFile(path).rest()); }
-
 Stream Io::read(const std::string& path) const {
   InputFile file(path);
-  Stream other = read_next(file, name_of(path));
-  const int unit = stream.surface.points.empty() ? other.unit : stream.unit;
-  return accepted(*this, std::move(other), unit);
+  return accepted(*this, read_next(file, name_of(path)), unit_);
 }
 
 bool Io::text_for(const Stream& stream) const {
@@ -110,6 +107,7 @@ bool Io::text_for(const Stream& stream) const {
 }
 
 void Io::write(Stream& stream) {
+  if (&stream != &this->stream) stream.unit = unit_;
   if (!is_stream_name(output)) change_unit(stream, 0);
   stream.history.push_back({program, MESHPIPE_VERSION, arguments});
   const bool text = text_for(stream);
@@ -168,7 +166,7 @@ int Io::write_each(const std::function<Stream(Stream)>& make) {
 }
 
 void Io::write_to(const std::string& path, Stream other) const {
-  other.unit = stream.unit;
+  other.unit = unit_;
   if (!is_stream_name(path)) change_unit(other, 0);
   const bool text = ascii || needs_text(*this, path, other);
   write_atomically(path, [&](const Sink& sink) { encode(path, other, text, sink); });

@@ -24,8 +24,6 @@ class Io : public CommonOptions {
   Stream& read(const Wanted& wanted = {});
   /// Reads a second file of the user's, such as a reference, in the unit of `stream`.
   Stream read(const std::string& path) const;
-  /// Returns the bytes of another file of the user's, or of standard input for "-".
-  static std::string read_bytes(const std::string& path);
   /// Adds this program to the history and writes the stream to -o FILE or standard output; other formats get
   /// coordinates without a unit.
   void write(Stream& stream);
@@ -68,6 +66,7 @@ class Io : public CommonOptions {
 
  private:
   std::vector<std::pair<std::string, std::string>> expected_files_;  ///< option, path
+  int unit_ = 0;                                                     ///< of the stream that read() has read
   std::unique_ptr<InputFile> input_;                                 ///< FILE, if it has several streams
 };
 

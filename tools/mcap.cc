@@ -157,7 +157,7 @@ void run(Io& io, Options& o) {
   parse_trim(o, diagonal(surface));
   if (orient_outward(surface)) io.say("the surface was inside out: all triangles are reversed");
   std::vector<End> ends = find_ends(surface);
-  if (!o.name_file.empty()) name_ends(ends, read_end_names(Io::read_bytes(o.name_file), o.name_file));
+  if (!o.name_file.empty()) name_ends(ends, read_end_names(read_bytes(o.name_file), o.name_file));
   if (!chosen.empty()) o.kept = ends_in(ends, chosen);
   if (!o.at.empty())
     for (char& kept : o.kept) kept = !kept;

@@ -40,6 +40,14 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   io.report["failed"] = failures_json(failures);
 }
 
+/// Writes the stream, in no unit.
+void write_result(Io& io, Stream& stream) {
+  const int unit = stream.unit;
+  change_unit(stream, 0);
+  io.write(stream);
+  change_unit(stream, unit);
+}
+
 void write_refined(const Io& io, const Mesh& result, const std::string& file, std::vector<double> size) {
   Stream refined;
   static_cast<Mesh&>(refined.surface) = result;
@@ -93,7 +101,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!last)
     io.json.clear();
   else if (failures.empty() || o.accept)
-    change_unit(stream, 0), io.write(stream);
+    write_result(io, stream);
   if (failures.empty()) return verdict.write();
   throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface));
 }

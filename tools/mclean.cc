@@ -288,5 +288,5 @@ int main(int argc, char** argv) {
         say(io, report, o, s);
         io.write(stream);
       },
-      {.passes = true});
+      {.passes = true, .sets_unit = true});
 }

@@ -145,10 +145,10 @@ int main(int argc, char** argv) {
         Stream& stream = io.read();
         const std::string extension = extension_of(io.output);
         const bool as_stream = extension.empty() || extension == ".mply";
-        if (!as_stream) change_unit(stream, 0);
+        if (!as_stream || o.center || o.scale != 1) change_unit(stream, 0);
         if (!o.feature_edges.empty())
           Io::write_file(o.feature_edges, write_feature_edges(stream, o.feature_edges));
-        if (!o.sol.empty()) read_sol(stream, Io::read_bytes(o.sol), o.sol);
+        if (!o.sol.empty()) read_sol(stream, read_bytes(o.sol), o.sol);
         place(stream, o);
         if (o.charts) flatten(stream);
         if (!o.color.empty()) color_by(stream.surface, o.color);

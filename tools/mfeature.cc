@@ -76,7 +76,7 @@ PatchMerge merge_patches(const Io& io, Stream& stream, const Options& o, double 
   PatchMerge merge = no_merge(stream.surface);
   if (!stream.surface.face.has("patch") || !(o.merge_auto || !o.group_file.empty())) return merge;
   std::vector<PatchGroup> groups;
-  if (!o.group_file.empty()) groups = read_groups(Io::read_bytes(o.group_file), o.group_file, stream);
+  if (!o.group_file.empty()) groups = read_groups(read_bytes(o.group_file), o.group_file, stream);
   std::vector<std::vector<int>> members;
   for (const PatchGroup& g : groups) members.push_back(g.patches);
   merge_groups(merge, members);

@@ -67,7 +67,7 @@ void report(Io& io, Options& o) {
   if (!o.require.empty()) parse_contract(o.require);
   if (o.results.empty()) o.results = {"-"};
   Page page;
-  if (!o.times.empty()) page.times = parse_times(Io::read_bytes(o.times));
+  if (!o.times.empty()) page.times = parse_times(read_bytes(o.times));
   page.command = o.command;
   for (const std::string& result : o.results) {
     Stream stream;

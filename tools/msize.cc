@@ -26,7 +26,7 @@ Stream read_with_mesh(const Io& io, const std::string& path) {
         std::filesystem::exists(mesh)) {
       Stream stream = io.read(mesh.string());
       stream.surface.vertex = Table{"vertex", stream.surface.points.size(), {}};
-      read_sol(stream, Io::read_bytes(path), path);
+      read_sol(stream, read_bytes(path), path);
       return stream;
     }
   throw BadInput(path + ": expected its mesh next to it, a .mesh or .meshb of the same name");
@@ -39,15 +39,20 @@ std::pair<std::string, std::string> file_and_column(const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-/// Reads FILE or FILE:COLUMN into `sizes`. Returns its search tree.
-std::unique_ptr<Bvh> read_field(const Io& io, const std::string& text, SizeField& sizes) {
+/// Reads FILE or FILE:COLUMN into `sizes`, and its unit. Returns its search tree.
+std::unique_ptr<Bvh> read_field(const Io& io, const std::string& text, SizeField& sizes, int& unit) {
   const auto [path, column] = file_and_column(text);
   if (path.ends_with(".sol") || path.ends_with(".solb")) {
     sizes = size_field_of(read_with_mesh(io, path), column, path);
   } else {
-    const std::string bytes = Io::read_bytes(path);
-    sizes = is_size_table(bytes) ? read_size_table(bytes, path)
-                                 : size_field_of(read_any(bytes, path), column, path);
+    const std::string bytes = read_bytes(path);
+    if (is_size_table(bytes)) {
+      sizes = read_size_table(bytes, path);
+    } else {
+      const Stream field = read_any(bytes, path);
+      unit = field.unit;
+      sizes = size_field_of(field, column, path);
+    }
   }
   return std::make_unique<Bvh>(sizes);
 }
@@ -133,6 +138,7 @@ int main(int argc, char** argv) {
       throw BadUsage("--min " + shown(o.min) + " is larger than --max " + shown(o.max));
     if (!o.boundary_layers.empty()) o.layers = parse_layers(o.boundary_layers);
     SizeField sizes;
+    int unit = 0;  // of the field
     std::unique_ptr<Bvh> tree;
     std::unique_ptr<Expression> expression;
     if (!o.formula.empty())
@@ -140,10 +146,14 @@ int main(int argc, char** argv) {
           std::make_unique<Expression>(o.formula, std::vector<std::string>{"x", "y", "z", "curvature"});
     // before the input, since mremesh checks the options without one; but a pipe can be read only once
     if (!o.field.empty() && can_be_read_again(file_and_column(o.field).first))
-      tree = read_field(io, o.field, sizes);
+      tree = read_field(io, o.field, sizes, unit);
     Stream& stream = io.read();
     Surface& s = stream.surface;
-    if (!o.field.empty() && !tree) tree = read_field(io, o.field, sizes);
+    if (!o.field.empty() && !tree) tree = read_field(io, o.field, sizes, unit);
+    if (tree && unit != stream.unit)
+      throw BadUsage("--field: its lengths are multiples of 2^" + std::to_string(unit) +
+                     ", those of the surface of 2^" + std::to_string(stream.unit) +
+                     "; run mconvert --scale on both before mclean");
     o.at_curvature = expression && expression->uses("curvature");
     if (tree || expression)
       o.at = [&](Vec3 p, double curvature) {

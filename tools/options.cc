@@ -132,12 +132,16 @@ std::string recorded_options(const CLI::App& app) {
 }
 
 std::string first_length(const CLI::App& app) {
-  static const std::set<std::string> types = {"H",        "EPS",    "D",    "D|P%|auto",
-                                              "auto|TOL", "LENGTH", "EXPR", "T[,GROWTH[,N]][,outside]"};
+  static const std::set<std::string> types = {
+      "H", "EPS", "D", "D|P%|auto", "auto|TOL", "LENGTH", "L|P%|Kr", "EXPR", "T[,GROWTH[,N]][,outside]"};
   for (const CLI::Option* o : app.get_options()) {
-    if (o->count() == 0 || (!types.contains(o->get_type_name()) && o->get_name() != "--data")) continue;
+    if (o->count() == 0 ||
+        (!types.contains(o->get_type_name()) && o->get_name() != "--data" && o->get_name() != "--names"))
+      continue;
     const std::string& value = o->results()[0];
-    if (value != "auto" && value != "0" && !value.ends_with('%')) return o->get_name();
+    double zero = 1;
+    if (CLI::detail::lexical_cast(value, zero) && zero == 0) continue;
+    if (value != "auto" && !value.ends_with('%') && !value.ends_with('r')) return o->get_name();
   }
   return {};
 }

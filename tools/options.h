@@ -12,8 +12,9 @@ struct CommonOptions {
   std::string input = "-", output = "-";
   std::string json;  ///< file of the report; empty: none
   bool ascii = false, binary = false, quiet = false, verbose = false;
-  int threads = 0;     ///< 0: as OpenMP chooses
-  std::string length;  ///< an option given that is a length, not a share of the surface's; "": none
+  int threads = 0;         ///< 0: as OpenMP chooses
+  std::string length;      ///< an option given that has lengths, not shares of the surface's; "": none
+  bool sets_unit = false;  ///< Io::read chooses a unit in which the surface is measurable, if it is not
 };
 
 /// Adds the options; FILE only if the program reads one. Those that `app` already has get a better --help.

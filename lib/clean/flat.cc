@@ -115,9 +115,11 @@ class Flat {
       }
   }
 
-  /// Drops those of components that have no area.
+  /// Drops those of components in which all triangles are flat.
   void drop_components(std::vector<int>& flat, std::vector<int>& removed) {
     if (flat.empty()) return;
+    for (std::size_t h = 0; h < r_.opposite.size(); ++h)
+      if (gone_[h / 3]) r_.opposite[h] = -1;
     std::vector<int> component;
     std::vector<char> has_area(components(r_.opposite, component), 0);
     for (int t = 0; t < (int)r_.tris.size(); ++t)

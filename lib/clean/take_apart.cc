@@ -17,8 +17,11 @@ void move_off_others(std::vector<Vec3>& points, int first, const std::vector<std
   const std::vector<char> all(points.size(), 1);
   for (double at : {7 / 16., 9 / 16., 3 / 8., 5 / 8., 1 / 4., 3 / 4.}) {
     const std::vector<int> same = first_equal(points, all);
+    bool apart = true;
     for (int v = first; v < (int)points.size(); ++v)
-      if (same[v] != v) points[v] = lerp(points[ends[v - first][0]], points[ends[v - first][1]], at);
+      if (same[v] != v)
+        points[v] = lerp(points[ends[v - first][0]], points[ends[v - first][1]], at), apart = false;
+    if (apart) return;
   }
 }
 

@@ -149,10 +149,11 @@ int measurable_unit(const Mesh& mesh) {
 
 void expect_measurable(const Mesh& mesh) {
   const Extent e = extent_of(mesh);
-  if (!is_measurable(e))
-    throw NotAdmissible("a surface of size " + shown(e.size()) + " with coordinates up to " + shown(e.far) +
-                        " is beyond what can be computed with: " + shown(least_size) + " and " +
-                        shown(most_far));
+  if (is_measurable(e)) return;
+  const bool far = e.far > most_far;
+  throw NotAdmissible((far ? "a coordinate of " + shown(e.far) : "a size of " + shown(e.size())) +
+                      " is beyond the limit of " + shown(far ? most_far : least_size) +
+                      ": try mconvert --scale 1e" + std::to_string(-(int)std::log10(e.far)));
 }
 
 std::vector<char> used_points(const Mesh& mesh) {

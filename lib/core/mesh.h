@@ -84,7 +84,7 @@ std::vector<char> used_points(const Mesh& mesh);
 
 /// Returns the diagonal of the bounding box of the points that triangles use, a length; 0 without any.
 double diagonal(const Mesh& mesh);
-/// Returns the exponent by which coordinates are below 1, from 0.5 on; 0 if expect_measurable does not throw.
+/// Returns e such that the largest coordinate is from 2^(e-1) to 2^e; 0 if expect_measurable does not throw.
 int measurable_unit(const Mesh& mesh);
 /// Throws NotAdmissible, naming the size, if areas and volumes of the surface would overflow or vanish: if a
 /// coordinate is beyond 1e50, or the surface is smaller than 1e-50 in all directions and not a point.

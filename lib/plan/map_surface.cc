@@ -22,8 +22,8 @@ struct Charts {
   std::vector<Chart> chart;
   std::vector<ParamReport> report;
   std::vector<std::string> failure;  ///< why there is no map; empty if there is one
-  std::vector<char> waiting;         ///< to be mapped, as in Wait
-  std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
+  std::vector<Wait> waiting;
+  std::vector<char> as_it_is;  ///< its area scale is too large, but no cut along its limbs helps
 };
 
 /// Takes the parts as they are after cuts. One that was not cut itself keeps its map, unless a cut of its
@@ -128,7 +128,7 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
       const int before = n_parts;
       if (may_cut) n_parts = cut_again(surface, p, n_parts, options, round, charts);
       charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]) ? new_part : mapped;
-      if (!charts.waiting[p] && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
+      if (charts.waiting[p] == mapped && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
     }
     if (!waits(new_part) && !waits(new_border)) break;
   }

@@ -12,7 +12,7 @@ namespace meshpipe {
 RoundFile::RoundFile(Io& io, std::string file, bool bounded_distance) : file_(std::move(file)) {
   if (file_.empty()) return;
   io.expect_report("--verdict", file_);
-  if (std::filesystem::is_regular_file(file_)) before_ = Io::read_bytes(file_);
+  if (std::filesystem::is_regular_file(file_)) before_ = read_bytes(file_);
   outcome.bounded_distance = bounded_distance;
   io.on_failure = [this, &io](int status, const std::string& why, const std::string& program) {
     outcome.status = status;
