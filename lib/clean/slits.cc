@@ -69,7 +69,7 @@ class Slits {
   //   a-----------w     The vertices on both sides of the end of a slit, where they are no farther apart than
   //   it
   //  (b)                is wide: neighbors on the border, or neighbors of the same (b). Merged, they close it
-  //   c-----------u     there. Each vertex is in one pair; the ends of other borders are not looked at.
+  //   c-----------u     there. Each vertex is in one pair.
   std::vector<std::array<int, 2>> find_ends() const {
     std::vector<std::array<int, 2>> found;
     std::vector<char> used(edges_.points.size(), 0);
@@ -77,8 +77,9 @@ class Slits {
     auto add = [&](int a, int to_c, int c, int to_a) {
       if (a == c || used[a] || used[c] || !(norm(point(a) - point(c)) <= width_)) return;
       const int w = other(a, to_c), u = other(c, to_a);
-      for (const auto& [from, to] : {std::pair{a, w}, {c, u}})
-        if (to < 0 || !(norm(point(to) - point(from)) >= least_height * width_)) return;
+      if (w < 0 || u < 0) return;
+      const Vec3 side = point(w) - point(a), across = point(u) - point(c);
+      if (!(std::min(norm(side), norm(across)) >= least_height * width_ && dot(side, across) > 0)) return;
       used[a] = used[c] = 1;
       found.push_back({std::min(a, c), std::max(a, c)});
     };

@@ -1084,6 +1084,12 @@ TEST(Clean, EndsOfSlitsAreMerged) {
     }
 }
 
+TEST(Clean, AShortEdgeOfAStraightBorderIsNoSlit) {
+  Surface s = surface({{0, 0, 0}, {.5, 0, 0}, {.5 + 1e-7, 0, 0}, {1, 0, 0}, {.5, 1, 0}},
+                      {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}});
+  EXPECT_TRUE(clean(s, {.weld = 0}).nothing);
+}
+
 TEST(Clean, ARibbonIsNoSlit) {
   Surface s = surface({{0, 0, 0}, {1, 0, 0}, {1, 1e-7, 0}, {0, 1e-7, 0}}, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_TRUE(clean(s).nothing);
