@@ -102,7 +102,8 @@ class Remesh(unittest.TestCase):
                 (meshpipe.InputError, 3, {"faces": FACES[:, :2]}),
                 (meshpipe.InputError, 3, {"points": POINTS * np.nan}),
                 (meshpipe.InputError, 3, {"patch": [1]}),
-                (meshpipe.NotAdmissible, 4, {"points": POINTS * 1e60}),
+                (meshpipe.NotAdmissible, 4, {"points": POINTS * 0}),
+                (meshpipe.UsageError, 2, {"points": POINTS * 1e60}),
                 (meshpipe.ContractMissed, 6, {"size": 0.5, "max_error": 1e-12}),
                 (meshpipe.OutputError, 7, {"keep": "/dev/null/x"})):
             with self.subTest(arguments=arguments), self.assertRaises(error) as caught:
