@@ -178,9 +178,7 @@ int run_tool(int argc, char** argv, const char* program, const char* summary,
   tune_allocation(usage.passes);
   Io io;
   io.program = program;
-  io.any_size = usage.any_size;
-  io.sets_unit = usage.sets_unit;
-  io.takes_shards = usage.shards;
+  io.usage = usage;
   CLI::App app{summary, program};
   use_plain_help(app);
   app.option_defaults()->group(recorded_group);

@@ -11,16 +11,6 @@
 
 namespace meshpipe {
 
-/// In what a program differs from the others.
-struct Usage {
-  bool reads = true;          ///< takes FILE
-  std::string_view writes{};  ///< extensions of -o FILE; empty: those of meshes
-  bool passes = false;        ///< makes a few passes over arrays as large as its input: freed memory is kept
-  bool shards = false;        ///< FILE may be a shard of several streams
-  bool sets_unit = false;     ///< see Io
-  bool any_size = false;      ///< computes nothing from coordinates, so that their size does not matter
-};
-
 /// Returns the number of triangles that the machine's memory holds in a pipeline of these programs.
 double most_triangles();
 

@@ -38,7 +38,7 @@ Stream accepted(const Io& io, Stream stream, int unit) {
   // what the reader of a foreign file left out; the remarks of a stream were reported by earlier programs
   if (stream.history.empty())
     for (const std::string& remark : stream.remarks) io.say(remark);
-  if (io.any_size) return stream;
+  if (io.usage.any_size) return stream;
   change_unit(stream, unit);
   expect_measurable(stream.surface);
   return stream;
@@ -72,10 +72,10 @@ Stream& Io::read(const Wanted& wanted) {
   if (input == "-" && ::isatty(STDIN_FILENO))
     throw BadUsage("no FILE, and standard input is a terminal; see " + program + " --help");
   input_ = std::make_unique<InputFile>(input);
-  stream = read_next(*input_, name_of(input), takes_shards, wanted);
-  if (!takes_shards || input_->next(1).empty()) input_.reset();  // frees its memory now
+  stream = read_next(*input_, name_of(input), usage.shards, wanted);
+  if (!usage.shards || input_->next(1).empty()) input_.reset();  // frees its memory now
   unit_ = stream.unit;
-  if (sets_unit && unit_ == 0) {
+  if (usage.sets_unit && unit_ == 0) {
     unit_ = measurable_unit(stream.surface);
     if (unit_ != 0)
       say("coordinates and lengths are multiples of 2^" + std::to_string(unit_) + " from here on");

@@ -14,13 +14,22 @@
 
 namespace meshpipe {
 
+/// In what a program differs from the others.
+struct Usage {
+  bool reads = true;          ///< takes FILE
+  std::string_view writes{};  ///< extensions of -o FILE; empty: those of meshes
+  bool passes = false;        ///< makes a few passes over arrays as large as its input: freed memory is kept
+  bool shards = false;        ///< FILE may be a shard of several streams
+  bool sets_unit = false;     ///< chooses a unit in which the surface is measurable, if it is not
+  bool any_size = false;      ///< computes nothing from coordinates, so that their size does not matter
+};
+
 /// Reads and writes as the common options ask.
 class Io : public CommonOptions {
  public:
   /// Reads FILE or standard input, in any format, into `stream`, which outlives the body of the program.
-  /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless any_size;
-  /// BadUsage for options that are lengths if the stream has a unit.
-  /// `wanted`: see read_stream.
+  /// Throws: NotAdmissible if the size of the surface is not measurable (lib/core/mesh.h), unless of any
+  /// size; BadUsage for options that are lengths if the stream has a unit. `wanted`: see read_stream.
   Stream& read(const Wanted& wanted = {});
   /// Reads a second file of the user's, such as a reference, in the unit of `stream`.
   Stream read(const std::string& path) const;
@@ -53,8 +62,8 @@ class Io : public CommonOptions {
 
   std::string program;
   std::string arguments;  ///< that change the result, for the stream's history
-  bool any_size = false;
-  bool takes_shards = false;      ///< FILE may have several streams
+  Usage usage;
+  std::string length;             ///< an option given that has lengths, not shares of the surface's; "": none
   Stream stream;                  ///< what read() has read, as far as the program has come with it
   bool names_way_out = true;      ///< on a failure; not if it will be tried again
   nlohmann::ordered_json report;  ///< --json FILE gets it on success and on status 4 (if not empty), 5, 6

@@ -18,9 +18,9 @@ void cut(Io& io, int count, const std::string& directory) {
       whole.surface.vertex.has("size") ? kept_vertices(whole) : std::vector<char>();
   std::size_t largest = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    const Stream shard = cut_shard(whole, number_shard(whole, shares[i]), kept);
+    Stream shard = cut_shard(whole, number_shard(whole, shares[i]), kept);
     largest = std::max(largest, shard.surface.tris.size());
-    io.write_to(shard_name(directory, i), shard);
+    io.write_to(shard_name(directory, i), std::move(shard));
   }
   auto counted = [](std::size_t n, const char* what) {
     return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");

@@ -12,15 +12,13 @@ struct CommonOptions {
   std::string input = "-", output = "-";
   std::string json;  ///< file of the report; empty: none
   bool ascii = false, binary = false, quiet = false, verbose = false;
-  int threads = 0;         ///< 0: as OpenMP chooses
-  std::string length;      ///< an option given that has lengths, not shares of the surface's; "": none
-  bool sets_unit = false;  ///< Io::read chooses a unit in which the surface is measurable, if it is not
+  int threads = 0;  ///< 0: as OpenMP chooses
 };
 
 /// Adds the options; FILE only if the program reads one. Those that `app` already has get a better --help.
 void add_common_options(CLI::App& app, CommonOptions& options, const std::string& program, bool reads_file);
 
-/// Returns CommonOptions::length.
+/// Returns the first option of the command line that has lengths, not shares of the surface's; "" without.
 std::string first_length(const CLI::App& app);
 
 /// Returns the options of the command line that change the result, as the stream records them: those of

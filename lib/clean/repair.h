@@ -58,14 +58,11 @@ std::vector<char> ends_of_short_edges(const Mesh& mesh, const std::vector<int>& 
 int merge_noise(const Mesh& mesh, const std::vector<char>& candidates, double tolerance,
                 std::vector<int>& same);
 
-/// Merges vertices on both sides of the end of a slit, at most `width` apart (length), and drops the triangle
-/// between them. Returns the number of pairs. Requires: no neighbors are known yet.
-int merge_ends_of_slits(Repair& r, const std::vector<Vec3>& points, double width, CleanReport& report);
-
-/// Divides triangles at edges without a neighbor where other such edges run along them with vertices in
-/// between, at most `width` away (length): as on two sides of a slit of which one has more vertices. Returns
-/// the number of vertices put on edges. Requires: no neighbors are known yet.
-int close_slits(Repair& r, const std::vector<Vec3>& points, double width);
+/// Merges vertices on both sides of the ends of slits, and divides triangles at edges without a neighbor
+/// where other such edges run along them with vertices in between, as on two sides of a slit of which one has
+/// more vertices: at most HoleCounts::slit away. The report counts both. Returns whether there were any.
+/// Requires: no neighbors are known yet.
+bool close_slits(Repair& r, const std::vector<Vec3>& points, CleanReport& report);
 
 /// Drops the triangles with gone != 0; the others keep their order, and edges next to a gap become border.
 void drop(Repair& r, const std::vector<char>& gone);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <tuple>
 
@@ -66,10 +67,11 @@ class Slits {
     return found;
   }
 
-  //   a-----------w     The vertices on both sides of the end of a slit, where they are no farther apart than
-  //   it
-  //  (b)                is wide: neighbors on the border, or neighbors of the same (b). Merged, they close it
-  //   c-----------u     there. Each vertex is in one pair.
+  // Pairs of vertices on both sides of the end of a slit, no farther apart than it is wide:
+  //   a-----------w
+  //  (b)                neighbors on the border, or neighbors of the same vertex (b)
+  //   c-----------u
+  // Merged, they close it there. Each vertex is in one pair.
   std::vector<std::array<int, 2>> find_ends() const {
     std::vector<std::array<int, 2>> found;
     std::vector<char> used(edges_.points.size(), 0);
@@ -77,7 +79,7 @@ class Slits {
     auto add = [&](int a, int to_c, int c, int to_a) {
       if (a == c || used[a] || used[c] || !(norm(point(a) - point(c)) <= width_)) return;
       const int w = other(a, to_c), u = other(c, to_a);
-      if (w < 0 || u < 0) return;
+      if (std::min(w, u) < 0) return;
       const Vec3 side = point(w) - point(a), across = point(u) - point(c);
       if (!(std::min(norm(side), norm(across)) >= least_height * width_ && dot(side, across) > 0)) return;
       used[a] = used[c] = 1;
@@ -86,6 +88,7 @@ class Slits {
     for (const Tri& e : edges_.tris) add(e[0], e[1], e[1], e[0]);
     for (int b = 0; b < (int)used.size(); ++b)
       if (ends_[b].size() == 2) add(ends_[b][0], b, ends_[b][1], b);
+    if (found.empty()) return found;
     const Lists around = lists_of((int)used.size(), [&](auto use) {
       for (const Tri& t : r_.tris)
         for (int i = 0; i < 3; ++i)
@@ -166,12 +169,10 @@ void divide(Divided triangle, std::vector<Tri>& tris) {
   }
 }
 
-}  // namespace
-
-int merge_ends_of_slits(Repair& r, const std::vector<Vec3>& points, double width, CleanReport& report) {
+/// Merges these pairs of vertices, and drops the triangles between them.
+void merge(const std::vector<std::array<int, 2>>& pairs, Repair& r, CleanReport& report) {
   std::vector<int> kept = identity((int)r.vertex.size());
-  const std::vector<std::array<int, 2>> ends = Slits(r, points, width).find_ends();
-  for (const auto& [a, c] : ends) kept[c] = a;
+  for (const auto& [a, c] : pairs) kept[c] = a;
   std::vector<char> gone(r.tris.size(), 0);
   for (std::size_t t = 0; t < r.tris.size(); ++t) {
     Tri& c = r.tris[t];
@@ -181,17 +182,23 @@ int merge_ends_of_slits(Repair& r, const std::vector<Vec3>& points, double width
     report.degenerate += r.face[t] >= 0;
     record(report, r.face[t], Fault::degenerate);
   }
-  if (!ends.empty()) drop(r, gone);
-  return (int)ends.size();
+  drop(r, gone);
 }
 
-int close_slits(Repair& r, const std::vector<Vec3>& points, double width) {
-  const std::vector<OnEdge> found = Slits(r, points, width).find();
-  int count = 0;
+}  // namespace
+
+bool close_slits(Repair& r, const std::vector<Vec3>& points, CleanReport& report) {
+  std::optional<Slits> slits(std::in_place, r, points, report.holes.slit);
+  const std::vector<std::array<int, 2>> ends = slits->find_ends();
+  if (!ends.empty()) {
+    merge(ends, r, report);
+    slits.emplace(r, points, report.holes.slit);
+  }
+  const std::vector<OnEdge> found = slits->find();
   for (std::size_t i = 0; i < found.size();) {
     const int t = found[i].h / 3;
     Divided triangle{r.tris[t], {}};
-    for (; i < found.size() && found[i].h / 3 == t; ++i, ++count)
+    for (; i < found.size() && found[i].h / 3 == t; ++i)
       triangle.on[found[i].h % 3].push_back(found[i].vertex);
     std::vector<Tri> pieces;
     divide(std::move(triangle), pieces);
@@ -202,7 +209,9 @@ int close_slits(Repair& r, const std::vector<Vec3>& points, double width) {
       r.flipped.push_back(0);
     }
   }
-  return count;
+  report.holes.slit_ends += (int)ends.size();
+  report.holes.slit_vertices += (int)found.size();
+  return !ends.empty() || !found.empty();
 }
 
 }  // namespace meshpipe
