@@ -12,6 +12,7 @@ namespace meshpipe {
 namespace {
 
 constexpr int points_at_once = 256;                 // for a thread: each search starts where the last ended
+constexpr double own_sheet = 2;                     // of a distance: how much farther p's own sheet may be
 constexpr double relative = 0.05, absolute = 1e-4;  // of the Hausdorff distance, of the diagonal
 
 /// A point's distance to the other surface, and the nearest triangle.
@@ -98,10 +99,20 @@ class OneSided : public OneWay {
   void found(const Near& near, Vec3 p, int face) {
     if (near.distance > largest) largest = near.distance, place = p;
     if (allowed_.at.empty()) return;
-    const int t = allowed_.from_mesh ? face : near.face;
-    const double r = near.distance / allowed_.at[t];
+    int t = allowed_.from_mesh ? face : near.face;
+    double r = near.distance / allowed_.at[t];
+    if (r > 1 && !allowed_.from_mesh) judge_by_others(p, near.distance, r, t);
     deviation.ratio[t] = std::max(deviation.ratio[t], r);
     if (r > deviation.worst) deviation.worst = r, deviation.triangle = t, deviation.place = p;
+  }
+  /// Finds the triangle that allows the most, as a ratio, of those that are not much farther from p than the
+  /// nearest: where sheets of different sizes meet, that may be of another sheet than p.
+  void judge_by_others(Vec3 p, double distance, double& ratio, int& triangle) const {
+    const Vec3 reach = own_sheet * distance * Vec3{1, 1, 1};
+    to_tree_.overlapping({p - reach, p + reach}, [&](int t) {
+      const double r = from_triangle(p, t) / allowed_.at[t];
+      if (r < ratio || (r == ratio && t < triangle)) ratio = r, triangle = t;
+    });
   }
   /// Below this, a piece's distance need not be known any better.
   double enough(const Piece& p) const {

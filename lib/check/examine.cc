@@ -186,12 +186,15 @@ void measure_curves(Findings& f, const Connectivity& result, const Mesh& referen
   f.features = curve_distance(reference_curves, curves) / unit;
 }
 
-/// The reference as the result is compared with it: before cuts, if that is sound.
+/// The reference as the result is compared with it: before cuts, if that is sound and has no other borders.
+/// Where triangles with hardly any area could not be recovered, those around them leave gaps.
 Mesh compared_reference(const Surface& given, Soundness& soundness) {
   Mesh reference = original_mesh(given);
   soundness = soundness_of(reference);
-  if (soundness.sound()) return reference;
-  soundness = soundness_of(given);
+  if (soundness.sound() && soundness.loops == 0) return reference;
+  Soundness cut = soundness_of(given);
+  if (soundness.sound() && soundness.loops == cut.loops) return reference;
+  soundness = std::move(cut);
   return given;
 }
 

@@ -89,13 +89,6 @@ std::vector<std::pair<double, int>> farthest_samples(const State& s, Samples& sa
   return farthest;
 }
 
-/// Does a walk from v, or a slide along its line, end at p?
-bool reaches(const State& s, int v, Vec3 p, bool on_line) {
-  const SurfaceWalk& walk = s.reference->walk;
-  const Place to = on_line ? walk.slide(s.place[v], p) : walk.closest(s.place[v], p);
-  return norm(walk.point(to) - p) < rules::reached * s.target(v);
-}
-
 /// The neighborhood of the first triangle with a vertex of that at `place`, or a new one on one of its edges,
 /// whichever leaves the better mesh when all around it has settled. None if the place cannot be walked to,
 /// would spoil the mesh (`lost`: much), or if then the mesh would be farther from the reference than `least`.

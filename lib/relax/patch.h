@@ -50,10 +50,12 @@ void settle(State& s, int times);
 void rest(State& s);
 /// Repeats in s the edits of the patch extracted from these triangles, then moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
-/// The objective that trials minimize, and whether splits may fold what smoothing may unfold.
+/// The objective that trials minimize, whether splits may fold what smoothing may unfold, and around how many
+/// triangles of a patch, its first, edits are tried.
 struct Judge {
   std::function<double(const State&)> of = objective;
   bool may_fold = false;
+  int at = 1;
 };
 /// Evaluates the trials by the judge and keeps the `most` best, the best first.
 void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge = {});

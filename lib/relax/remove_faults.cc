@@ -60,6 +60,14 @@ struct Before {
   }
 };
 
+/// How far two triangles intersect.
+double length_of_contact(const Mesh& mesh, const std::pair<int, int>& pair) {
+  const std::vector<Vec3> contact = contacts(mesh, {pair}).points;
+  double length = 0;
+  for (Vec3 p : contact) length = std::max(length, norm(p - contact[0]));
+  return length;
+}
+
 /// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
 /// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
 /// is asked for becomes `before`.
@@ -107,7 +115,11 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   for (auto [t, u] : before.pairs)
     if (same[t] && same[u]) pairs.push_back({t, u});
   if (before.deviation.empty()) before = {mesh, far, pairs};
-  return sum + rules::pair_weight * (double)(pairs.size() + folded_edges(s, known).size());
+  for (const auto& pair : pairs) {
+    const double length = std::min(1.0, length_of_contact(mesh, pair) / mean);
+    sum += rules::pair_weight * (1 - rules::length_share * (1 - length));
+  }
+  return sum + rules::pair_weight * (double)folded_edges(s, known).size();
 }
 
 /// As triangles_intersect, without a copy of the mesh.
@@ -176,9 +188,12 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
         (s.mesh.dead(item.other) || !intersect(s, item.t, item.other)))
       return std::vector<int>{};
     std::vector<int> found = triangles_around(s, item.t, thorough ? rules::thorough_rings : rules::rings);
-    if (item.other >= 0 && !s.mesh.dead(item.other))
+    if (item.other >= 0 && !s.mesh.dead(item.other)) {
       for (int t : triangles_around(s, item.other, rules::rings))
         if (std::find(found.begin(), found.end(), t) == found.end()) found.push_back(t);
+      const auto second = std::find(found.begin(), found.end(), item.other);
+      std::rotate(found.begin() + 1, second, second + 1);
+    }
     if ((int)found.size() > rules::largest_patch || in_vain.tried.count(print_of(item, found))) found.clear();
     return found;
   };
@@ -189,7 +204,7 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
                            {[&](const State& patch) {
                               return objective(patch) + faultiness(patch, item.missed, mean, known, before);
                             },
-                            true});
+                            true, triangles.size() > 1 && triangles[1] == item.other ? 2 : 1});
     if (!better) {
       const std::lock_guard lock(one_at_a_time);
       in_vain.tried.insert(print_of(item, triangles));

@@ -45,6 +45,7 @@ bool try_edit(State& s, const Edit& edit, bool may_fold) {
   if (edit.kind == Edit::split)
     return split_edge(s, edit.h, edit.at) || (may_fold && split_edge(s, edit.h, edit.at, true));
   if (edit.kind == Edit::release) return release(s, edit.end, edit.at);
+  if (edit.kind == Edit::reach) return reach(s, edit);
   if (edit.kind == Edit::slide) return slide_end(s, edit.h, edit.end, edit.at);
   if (edit.kind == Edit::collapse)
     return (may_fold || may_thin(s, edit.h) || is_shared(s, edit.end)) &&
@@ -92,6 +93,7 @@ std::vector<Edit> edits_around(const State& s, int t, bool wide, const Judge& ju
       if (!wide && g >= 0) halfedges.insert(halfedges.end(), {next(g), prev(g)});
     }
   std::vector<Edit> edits;
+  if (judge.may_fold) edits = edits_to_bends(s, t);
   add_aligned_splits(s, t, judge.may_fold, edits);
   add_slides_at_corners(s, t, edits);
   for (int h = 3 * t; h < 3 * t + 3; ++h)
@@ -216,7 +218,12 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   if (s.acute && !given.may_fold)
     judge.of = [&](const State& patch) { return stays_near(before, patch) ? given.of(patch) : 1e300; };
   const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
-  const std::vector<Trial> trials = try_all(before, edits_around(before, 0, thorough, judge), judge);
+  std::vector<Edit> edits;
+  for (int t = 0; t < judge.at; ++t) {
+    const std::vector<Edit> more = edits_around(before, t, thorough, judge);
+    edits.insert(edits.end(), more.begin(), more.end());
+  }
+  const std::vector<Trial> trials = try_all(before, edits, judge);
   if (trials.empty()) return {};
   Trial best = trials.front();
   for (std::size_t i = 0; i < rules::promising_pairs && i < trials.size() && thorough; ++i) {

@@ -18,9 +18,9 @@ struct Repairs {
   bool forced = false;  ///< do the model or a kept border force most of the bad triangles?
 };
 
-/// Tries each edit around the first of these triangles on a copy of the neighborhood, optimized there.
-/// Returns the best if it improves on `s` by the judge. `thorough`: also pairs of edits, the second where the
-/// first leaves its worst triangle.
+/// Tries each edit around the first of these triangles (Judge::at) on a copy of the neighborhood, optimized
+/// there. Returns the best if it improves on `s` by the judge. `thorough`: also pairs of edits, the second
+/// where the first leaves its worst triangle.
 std::optional<State> repaired(const State& s, const std::vector<int>& triangles, bool thorough,
                               const Judge& judge = {});
 
@@ -29,6 +29,16 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
 /// Only where something has changed after `since`, on the clock of `s`. From `most_live` triangles on
 /// none are added, except for needles.
 void repair_worst(State& s, Repairs& memory, int since = -1, int most_live = INT_MAX);
+
+// --- bends.cc ---
+
+/// Returns whether a walk from v, or a slide along its line, ends at p.
+bool reaches(const State& s, int v, Vec3 p, bool on_line);
+/// Returns edits that put corners of t, or new vertices on its edges, where the reference bends near it.
+std::vector<Edit> edits_to_bends(const State& s, int t);
+/// Makes such an edit, and holds the vertex there. Returns false, and changes nothing, if no walk leads
+/// there.
+bool reach(State& s, const Edit& edit);
 
 // --- missed_features.cc ---
 

@@ -130,6 +130,15 @@ constexpr double reduced_growth = 0.5;                      // of the triangles:
 constexpr double most_left = 150;  // sum of faults: of 77 begun again none with over 78 became good
 constexpr int most_restarts = 3;   // each takes as long as the first time
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
+constexpr double length_share = 0.5;  // of a pair's weight: by how far it intersects, up to the mean size
+
+// bends (bends.cc)
+constexpr double near_bend = 0.6;   // of the longest edge: how far a vertex goes to where the reference bends
+constexpr double same_bend = 0.05;  // of it: places that differ by less are tried once
+constexpr double end_of_edge = 0.1;  // of an edge: nearer to an end there is no room for another vertex
+constexpr int bends_tried = 5;       // for a vertex or an edge, the nearest
+constexpr int faces_of_bends = 300;  // of the reference are looked at around a triangle
+constexpr int steps_to_passing = 5;  // of projections from one segment on the other
 
 // missed features (missed_features.cc)
 constexpr double bent = 10 * std::numbers::pi / 180;  // from there on edges have samples

@@ -56,10 +56,11 @@ struct Reference {
 
 /// A change of connectivity: of the edge of half-edge h.
 struct Edit {
-  enum Kind { flip, split, collapse, slide, release } kind;
+  enum Kind { flip, split, collapse, slide, release, reach } kind;
   int h;
   int end = -1;     ///< the vertex that a collapse takes out, that slides, or that is no longer anchored
   double at = 0.5;  ///< where a split is tried, as in split_edge; how far a slide goes, see slide_end
+  Place place{};    ///< that a vertex reaches, `end` or, if that is -1, a new one on the edge
 };
 
 /// Times at which vertices changed, by one clock: what has not changed is not tried again.

@@ -164,6 +164,21 @@ TEST(check, cuts_are_undone) {
   EXPECT_EQ(c.loops, 0);
 }
 
+//         3
+//       / | \        two triangles around 0-2, cut at 4 in its middle, with others around. 0 2 3 has
+//  5---0--4--2---6   hardly any area, and 4 is rounded: only the pieces of 0 1 2 make a triangle again, but
+//       \ | /        that opens no border
+//         1
+TEST(check, what_cannot_be_recovered_opens_no_border) {
+  Surface s;
+  s.points = {{0, 0, 0}, {0.5, -1, 0}, {1, 0, 0}, {0.5, 1e-9, 0}, {0.5, 2e-10, 0}, {-1, 0, 0}, {2, 0, 0}};
+  s.tris = {{0, 1, 4}, {1, 2, 4}, {0, 4, 3}, {4, 2, 3}, {5, 1, 0}, {1, 6, 2}, {0, 3, 5}, {2, 6, 3}};
+  s.vertex.rows = 7, s.face.rows = 8;
+  s.face.set("origin", std::vector<int>{0, 0, 1, 1, 2, 3, 4, 5});
+  ASSERT_EQ(soundness_of(original_mesh(s)).loops, 2);
+  EXPECT_EQ(examine(s, s, nullptr, 10).reference.loops, 1);
+}
+
 //   3 - 2     two pieces of one triangle, by what a damaged stream may say of them
 //   | / |
 //   0 - 1

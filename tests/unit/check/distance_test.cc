@@ -64,6 +64,31 @@ double one_sided(const Mesh& from, const Mesh& to) {
   return largest;
 }
 
+// a reference of height 0.4 over a large triangle, and a small one nearer to its tip than that
+TEST(distance, small_triangles_of_another_sheet_do_not_judge) {
+  Mesh mesh{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}}};
+  auto add_small = [&](double height) {
+    const int n = (int)mesh.points.size();
+    for (Vec3 p : {Vec3{1, 1, height}, Vec3{1.1, 1, height}, Vec3{1, 1.1, height}}) mesh.points.push_back(p);
+    mesh.tris.push_back({n, n + 1, n + 2});
+  };
+  const Mesh tip{{{1, 1, 0.4}, {1.02, 1, 0.4}, {1, 1.02, 0.4}}, {{0, 1, 2}}};
+  auto worst = [&] {
+    const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
+    const std::vector<double> allowed{1, 0.05};
+    return distance_from(tip, std::vector<int>{0}, {mesh, opposite}, Bvh(mesh), {10, 10, 4, 0, false},
+                         allowed)
+        .deviation;
+  };
+  add_small(0.65);  // 0.25 from the tip, which is 0.4 from the large one
+  EXPECT_NEAR(worst().worst, 0.4, 1e-9);
+  EXPECT_EQ(worst().triangle, 0);
+  mesh.points.resize(3), mesh.tris.resize(1);
+  add_small(0.55);  // with the large one more than twice as far as this, the tip is of the small one
+  EXPECT_NEAR(worst().worst, 3, 1e-9);
+  EXPECT_EQ(worst().triangle, 1);
+}
+
 TEST(distance, the_truth_is_between_the_bounds) {
   Random random(1);
   for (double noise : {0.0, 0.01, 0.3}) {
