@@ -9,27 +9,6 @@ using namespace meshpipe;
 
 namespace {
 
-/// A roof with the ridge c-d at height 0 above y = 1; its eaves go through a and b.
-Surface roof(double drop) {
-  Surface s = drawn_surface({"    b    ",  //
-                             "c       d",  //
-                             "    a    "},
-                            "adc bcd");
-  for (char v : {'a', 'b'}) {
-    Vec3& p = s.points[v - 'a'];
-    p = {p.x, 0.5 * p.y, -drop};
-  }
-  for (char v : {'c', 'd'}) s.points[v - 'a'].y = 1;
-  return s;
-}
-
-/// The mesh that goes across below the ridge of `m`'s roof: its vertices are at those of the roof.
-void put_at_corners(Drawn& m, const Surface& reference) {
-  for (int t = 0; t < (int)reference.tris.size(); ++t)
-    for (int i = 0; i < 3; ++i)
-      m.s.place[reference.tris[t][i]] = {t, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2)};
-}
-
 TEST(Bends, ANewVertexGoesToTheRidgeThatAnEdgePasses) {
   const Surface reference = roof(2);
   Surface across = reference;

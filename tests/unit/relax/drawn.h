@@ -69,6 +69,20 @@ inline Surface drawn_surface(const std::vector<std::string>& rows, const std::st
   return s;
 }
 
+/// A roof with the ridge c-d at height 0 above y = 1; its eaves go through a and b.
+inline Surface roof(double drop) {
+  Surface s = drawn_surface({"    b    ",  //
+                             "c       d",  //
+                             "    a    "},
+                            "adc bcd");
+  for (char v : {'a', 'b'}) {
+    Vec3& p = s.points[v - 'a'];
+    p = {p.x, 0.5 * p.y, -drop};
+  }
+  for (char v : {'c', 'd'}) s.points[v - 'a'].y = 1;
+  return s;
+}
+
 /// The state of a drawn surface, which is its own reference.
 struct Drawn {
   explicit Drawn(Surface of, const Surface* mesh = nullptr)
@@ -95,5 +109,12 @@ struct Drawn {
   LiftedMesh lifted;
   State s;
 };
+
+/// Puts the vertices of a mesh at those of its reference, which has other triangles.
+inline void put_at_corners(Drawn& m, const Surface& reference) {
+  for (int t = 0; t < (int)reference.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i)
+      m.s.place[reference.tris[t][i]] = {t, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2)};
+}
 
 }  // namespace meshpipe

@@ -107,21 +107,11 @@ TEST(Faults, ANeedleAtACornerIsNoWorseThanTheContractAllows) {
 
 TEST(Faults, AFarPlaceBetweenSamplesIsFound) {
   // a roof, and a mesh that goes across below the middle of its ridge c-d
-  Surface roof = drawn_surface({"    b    ",  //
-                                "c       d",  //
-                                "    a    "},
-                               "adc bcd");
-  for (char v : {'a', 'b'}) {
-    Vec3& p = roof.points[v - 'a'];
-    p = {p.x, 0.5 * p.y, -2.63};
-  }
-  for (char v : {'c', 'd'}) roof.points[v - 'a'].y = 1;
-  Surface across = roof;
+  const Surface reference = roof(2.63);
+  Surface across = reference;
   across.tris = {{0, 1, 2}, {1, 0, 3}};
-  Drawn m(roof, &across);
-  for (int t = 0; t < 2; ++t)
-    for (int i = 0; i < 3; ++i)
-      m.s.place[roof.tris[t][i]] = {t, i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+  Drawn m(reference, &across);
+  put_at_corners(m, reference);
   Samples samples{feature_samples(m.reference, 10), {}}, dense{feature_samples(m.reference, 0.5), {}};
   auto most = [](const std::vector<double>& d) { return *std::max_element(d.begin(), d.end()); };
   const double size = 4, far = 2.2;
