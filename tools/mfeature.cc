@@ -122,20 +122,15 @@ void report(Io& io, const FeatureReport& r) {
     io.report[key] = n;
 }
 
-/// Removes what is narrower than the tolerance. Returns whether the surface has changed: then its edges are
-/// to be marked again. `before`, by face, and `given`, by half-edge, follow.
-bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<int>& before,
-               std::vector<int>& given) {
+/// Removes what is narrower than the tolerance, and adds it to `all`. Returns whether the surface has
+/// changed: then its edges are to be marked again. `before`, by face, and `given`, by half-edge, follow.
+bool defeature(Stream& stream, const DefeatureOptions& o, std::vector<int>& before, std::vector<int>& given,
+               DefeatureReport& all) {
   const DefeatureReport r = remove_small_features(stream.surface, o, &given);
-  report_removed(io, r, o.tolerance, stream);
+  all.removed.insert(all.removed.end(), r.removed.begin(), r.removed.end());
+  all.vanished.insert(all.vanished.end(), r.vanished.begin(), r.vanished.end());
+  all.moved += r.moved, all.merged += r.merged, all.stopped = all.stopped || r.stopped;
   if (r.removed.empty()) return false;
-  auto vanished = [&](int patch) { return std::binary_search(r.vanished.begin(), r.vanished.end(), patch); };
-  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && vanished(n.tag); });
-  if (has_sheets(stream)) {
-    std::vector<SheetPatch> sheets = read_sheets(stream);
-    std::erase_if(sheets, [&](const SheetPatch& s) { return vanished(s.patch); });
-    stream.set(sheet_table(sheets));
-  }
   stream.remarks.push_back(remark_of(r));
   drop_downstream(stream, Stage::parts);
   for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
@@ -146,6 +141,16 @@ bool defeature(Io& io, Stream& stream, const DefeatureOptions& o, std::vector<in
   for (int t : r.face) labels.push_back(before.empty() ? 0 : before[t]);
   if (!before.empty()) before = std::move(labels);
   return true;
+}
+
+/// Removes the names of these patches, and what they bound.
+void forget(Stream& stream, const std::vector<int>& patches) {
+  auto gone = [&](int patch) { return std::find(patches.begin(), patches.end(), patch) != patches.end(); };
+  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && gone(n.tag); });
+  if (patches.empty() || !has_sheets(stream)) return;
+  std::vector<SheetPatch> sheets = read_sheets(stream);
+  std::erase_if(sheets, [&](const SheetPatch& s) { return gone(s.patch); });
+  stream.set(sheet_table(sheets));
 }
 
 /// Flags the triangles that are not removed with fragments: those between two regions, and of patches with
@@ -240,12 +245,20 @@ void mark(Io& io, Options& o) {
   FeatureReport marked = features();
   // a border that moved would part from those of the other sheets that meet there
   DefeatureOptions narrow{tolerance_of(o, length, diagonal(surface)), o.keep_boundary || has_sheets(stream)};
-  if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
-  narrow.kept = kept_triangles(stream, o.keep_boundary);
-  if (defeature(io, stream, narrow, before, given)) {
+  const double tolerance = narrow.tolerance;
+  DefeatureReport removed;
+  for (int pass = 0; pass < 2; ++pass) {  // without a strip creases may go on to another narrow place
+    narrow.tolerance = tolerance - removed.moved;
+    if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
+    narrow.kept = kept_triangles(stream, o.keep_boundary);
+    if (!defeature(stream, narrow, before, given, removed)) break;
     o.again = true;
     marked = features();
   }
+  std::stable_sort(removed.removed.begin(), removed.removed.end(),
+                   [](const RemovedFeature& a, const RemovedFeature& b) { return a.width > b.width; });
+  report_removed(io, removed, tolerance, stream);
+  forget(stream, removed.vanished);
   report(io, marked);
   io.write(stream);
 }

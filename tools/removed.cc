@@ -44,7 +44,7 @@ void report_removed(Io& io, const DefeatureReport& r, double tolerance, const St
     list.size() < most_lines ? io.say(line) : io.detail(line);
     list.push_back({{"width", f.width}, {"length", f.length}, {"at", {f.at.x, f.at.y, f.at.z}}});
   }
-  if (list.size() > most_lines) io.say("  and others, narrower; -v lists them");
+  if (list.size() > most_lines && !io.verbose) io.say("  and others, narrower; -v lists them");
   std::vector<std::string> vanished;
   std::string names;
   for (int label : r.vanished) {

@@ -119,7 +119,8 @@ Vec3 Zipper::normal_beyond(int h) const {
 
 bool Zipper::folded(const Side& s) const { return turn(normal_beyond(s.a), normal_beyond(s.b)) > fold_angle; }
 
-/// Is the edge of h a rung between two lines that may be joined?
+/// Is the edge of h a rung between two lines that may be joined? So is one to a corner or to the end of a
+/// line.
 bool Zipper::is_strip(int h) const {
   bool any = false;
   for (int e : {h, mesh.opp[h]}) {
@@ -128,7 +129,7 @@ bool Zipper::is_strip(int h) const {
     if (folded(s)) return false;
     any = true;
   }
-  return any || mesh.hard[h];
+  return any || mesh.hard[h] || is_corner(mesh.from(h)) || is_corner(mesh.to(h));
 }
 
 /// The strengths of the lines at both ends of h: of those that bound the strip with rung h, so that one of
@@ -309,13 +310,17 @@ void Zipper::consider(std::vector<Candidate>& heap, int t) const {
     if (region_[a] >= 0 && region_[a] == region_[b]) return true;
     return mesh.hard[h] ? lines.open[l] && lines.length[l] <= options_.tolerance : on_line(a) && on_line(b);
   };
+  // a rung of a strip, though it may be a part of a long line
+  auto is_end_of_strip = [&](int h) {
+    return mesh.hard[h] && (side_of(h).parallel() || side_of(mesh.opp[h]).parallel());
+  };
   for (int h = 3 * t; h < 3 * t + 3; ++h) {
     Candidate c{length(h), h, mesh.from(h), mesh.to(h), -1};
     if (length(h) > options_.tolerance) {
       c.width = norm(normal(t)) / length(h), c.apex = mesh.apex(h);
       if (!mesh.hard[h] || c.width > options_.tolerance || !on_line(c.apex)) continue;
       if (is_short(next(h)) || is_short(prev(h))) continue;
-    } else if (!is_short(h)) {
+    } else if (!is_short(h) && !is_end_of_strip(h)) {
       continue;
     }
     heap.push_back(c);

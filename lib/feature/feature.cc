@@ -26,7 +26,8 @@ constexpr double plane_share = 0.8;          ///< of the area, in plane faces of
 constexpr double many_share = 0.1;           ///< the same of eight or more: parts 0.17, figures up to 0.03
 constexpr double noise = 2.5;  ///< edges between weak and strong over the strong: parts up to 2, scans 3.2
 constexpr double most_between = 0.7;  ///< the same: polyhedra up to 0.7, scans however rough from 0.9
-constexpr double least_edge = 0.4;    ///< target lengths, of the mean edge: finer polyhedra are as others
+constexpr double least_edge = 0.4;    ///< target lengths, of the mean edge: finer polyhedra are as others,
+constexpr int few_triangles = 24;     ///< unless they have no more: a mesh without their edges has no fewer
 constexpr double step_share = 0.85;   ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
 constexpr double gap = 0.05;  ///< edges between weak and strong, as a share of the strong ones' length
 constexpr double spacing = 1.5, dense = 0.85;  ///< target lengths between creases, on average; struts: 0.75
@@ -268,12 +269,14 @@ struct Components {
   std::vector<double> on_patches{};        ///< of the strong edges
   std::vector<double> area{};
   std::vector<double> edge{};  ///< mean length, over the target
+  std::vector<int> triangles{};
   std::vector<PlaneShares> planes{};
 
-  /// Whether it is a polyhedron, however rough, and the target short enough for its edges: noise has every
-  /// angle, and segmented images have steps.
+  /// Whether it is a polyhedron, however rough, and the target short enough for its edges, or these few:
+  /// noise has every angle, and segmented images have steps.
   bool angular(int c) const {
-    return between[c] < most_between * sharp[c] && planes[c].steps < step_share && edge[c] > least_edge;
+    return between[c] < most_between * sharp[c] && planes[c].steps < step_share &&
+           (edge[c] > least_edge || triangles[c] <= few_triangles);
   }
 };
 
@@ -281,13 +284,13 @@ Components look_at(const Network& net, double strong, double weak) {
   Components look;
   const int n = look.n = components(net.opposite, look.of), m = (int)net.opposite.size();
   for (auto* sum : {&look.sharp, &look.between, &look.on_patches, &look.area, &look.edge}) sum->assign(n, 0);
-  std::vector<int> triangles(n, 0);
+  look.triangles.assign(n, 0);
   for (int t = 0; t < m / 3; ++t) {
-    ++triangles[look.of[t]];
+    ++look.triangles[look.of[t]];
     look.area[look.of[t]] += triangle_area(net.s, t);
     for (int h = 3 * t; h < 3 * t + 3; ++h) look.edge[look.of[t]] += net.length(h) / (3 * net.size);
   }
-  for (int c = 0; c < n; ++c) look.edge[c] /= triangles[c];
+  for (int c = 0; c < n; ++c) look.edge[c] /= look.triangles[c];
   for (int h = 0; h < m; ++h) {
     if (net.opposite[h] < h || net.cap[h]) continue;
     const int c = look.of[h / 3];
@@ -306,7 +309,7 @@ Components look_at(const Network& net, double strong, double weak) {
 /// and more space; or if it did, as `known` says.
 void keep_designed(Network& net, const Components& look, const std::vector<std::uint8_t>& known) {
   const int m = (int)net.opposite.size();
-  const auto& [component, n, sharp, between, on_patches, area, edge, planes] = look;
+  const auto& [component, n, sharp, between, on_patches, area, edge, triangles, planes] = look;
   std::vector<double> smooth = on_patches;
   for (const Chain& chain : chains_of(net)) {
     // a rim of many edges is long, however long edges are elsewhere

@@ -285,7 +285,7 @@ TEST(Defeature, ASliverBetweenWallsCloses) {
 ///     a --------------------- b
 Surface with_sliver(double x, double y) {  // c
   Surface s;
-  s.points = {{0, 0, 0}, {4, 0, 0}, {x, y, 0}, {0, 0, -2}, {4, 0, -2}, {-3, 3, 0}, {4, 3, 0}};
+  s.points = {{0, 0, 0}, {4, 0, 0}, {x, y, 0}, {0, 0, -2}, {4, 0, -2}, {-3, 0.2, 0}, {4, 3, 0}};
   enum { a, b, c, a1, b1, a2, b2 };
   s.tris = {{a, b, c}, {b, a, a1}, {b, a1, b1}, {c, b, b2}, {c, b2, a2}, {a, c, a2}};
   s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
@@ -306,6 +306,51 @@ TEST(Defeature, ASliverBetweenCreasesThatMeetClosesAtTheNearestPoint) {
 TEST(Defeature, NoVertexIsMadeNextToTheEndOfAnEdge) {
   Surface s = with_sliver(0.2 * width, 0.99 * width);  // a-c is longer than the tolerance
   EXPECT_TRUE(removed(s, width).removed.empty());
+}
+
+/// A wall below the crease a-b, and two decks that slope down from the crease c-d, which ends near it:
+///
+///     e ------- d ------- f
+///     |         |         |
+///     |         |         |       the sliver a-b-c is no strip: no line runs along a-b
+///     |    __---c---__    |
+///     a ----------------- b
+TEST(Defeature, ALineThatEndsNextToAnotherGoesOnToIt) {
+  Surface s;
+  s.points = {{0, 0, 0},    {4, 0, 0},    {2, 0.5 * width, 0}, {2, 3, 0},
+              {0, 3, -1.4}, {4, 3, -1.4}, {0, 0, -2},          {4, 0, -2}};
+  enum { a, b, c, d, e, f, a1, b1 };
+  s.tris = {{a, b, c}, {b, a, a1}, {b, a1, b1}, {a, c, e}, {c, d, e}, {c, f, d}, {b, f, c}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("model", std::vector<std::uint8_t>{1, 1, 0, 0, 1, 4, 0});
+  EXPECT_TRUE(removed(s, 0.49 * width).removed.empty());
+  const DefeatureReport r = removed(s, width);
+  ASSERT_EQ(r.removed.size(), 1u);
+  EXPECT_NEAR(r.removed[0].width, 0.5 * width, 1e-9);
+  EXPECT_EQ(s.points.size(), 8u);  // c is on a-b
+  for (const Tri& t : s.tris)
+    for (int v : t)
+      if (s.points[v].z == 0 && s.points[v].y < 1) EXPECT_EQ(s.points[v].y, 0);
+}
+
+/// A wall below the crease a-b and a deck behind the crease a-p-b, which turns by 33 degrees at p:
+///
+///     u ------------------- v
+///     |   __________-----p  |     p-b is a part of a long line, and the only short edge of the strip
+///     a ------------------- b
+TEST(Defeature, AStripClosesAtAnEdgeOfALongLine) {
+  const double turn = 33 * std::numbers::pi / 180, l = 0.28 * width;
+  Surface s;
+  s.points = {
+      {0, 0, 0}, {4 + l * std::cos(turn), 0, 0}, {4, l * std::sin(turn), 0}, {0, 3, 3}, {5, 3, 3}, {0, 0, -2},
+      {4, 0, -2}};
+  enum { a, b, p, u, v, a1, b1 };
+  s.tris = {{a, b, p}, {b, a, a1}, {b, a1, b1}, {a, p, u}, {p, v, u}, {p, b, v}};
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("model", std::vector<std::uint8_t>{7, 1, 0, 1, 0, 1});
+  ASSERT_EQ(removed(s, width).removed.size(), 1u);
+  EXPECT_EQ(s.points.size(), 6u);
+  EXPECT_EQ(s.tris.size(), 4u);
 }
 
 /// Three faces of a sheared box at its corner o, with a vertex v on one of the edges:

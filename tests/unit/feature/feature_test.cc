@@ -72,6 +72,9 @@ TEST(Feature, TinyComponentsKeepTheirCreases) {
   }
   s.face.rows = s.tris.size();
   EXPECT_EQ(mark_features(s, {}).crease_edges, 18);
+  FeatureOptions coarse;  // without their edges they would shrink to a blob of as many triangles
+  coarse.size = 20;
+  EXPECT_EQ(mark_features(s, coarse).crease_edges, 18);
 }
 
 TEST(Feature, PatchBordersAreModelEdgesInEveryMode) {
