@@ -9,6 +9,7 @@
 #include "formats/foreign/number_source.h"
 #include "formats/foreign/polygons.h"
 #include "formats/foreign/rows.h"
+#include "formats/foreign/volumes.h"
 #include "formats/stream/model_lines.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
@@ -23,11 +24,15 @@ enum Keyword {
   edges = 5,
   triangles = 6,
   quadrilaterals = 7,
+  tetrahedra = 8,
+  prisms = 9,
+  hexahedra = 10,
   corners = 13,
   ridges = 14,
   required_vertices = 15,
   required_edges = 16,
   required_triangles = 17,
+  pyramids = 49,
   file_end = 54,
   solution = 62
 };
@@ -38,6 +43,10 @@ constexpr std::pair<const char*, Keyword> keywords[] = {
     {"edges", edges},
     {"triangles", triangles},
     {"quadrilaterals", quadrilaterals},
+    {"tetrahedra", tetrahedra},
+    {"prisms", prisms},
+    {"hexahedra", hexahedra},
+    {"pyramids", pyramids},
     {"corners", corners},
     {"ridges", ridges},
     {"requiredvertices", required_vertices},
@@ -221,10 +230,22 @@ class InriaReader {
         numbers(required_edges_, "the number of required edges");
         break;
       case triangles:
-        faces(3);
+        cells(3, false);
         break;
       case quadrilaterals:
-        faces(4);
+        cells(4, false);
+        break;
+      case tetrahedra:
+        cells(4, true);
+        break;
+      case pyramids:
+        cells(5, true);
+        break;
+      case prisms:
+        cells(6, true);
+        break;
+      case hexahedra:
+        cells(8, true);
         break;
       case corners:
         marks("corner");
@@ -264,13 +285,22 @@ class InriaReader {
       add_columns(stream_, stream_.surface.vertex, ref.size(), {"ref", 1, std::move(ref)});
   }
 
-  void faces(int n_corners) {
-    const int n = in_.count(n_corners == 3 ? "the number of triangles" : "the number of quadrilaterals",
+  void cells(int n_corners, bool solid) {
+    const int n = in_.count(solid            ? "the number of volumes"
+                            : n_corners == 3 ? "the number of triangles"
+                                             : "the number of quadrilaterals",
                             static_cast<std::size_t>(n_corners) + 1);
     if (n_corners == 3) first_triangle_ = polygons_.ends.size(), n_triangles_ = n;
     for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < n_corners; ++k) polygons_.corners.push_back(vertex());
-      polygons_.patch.push_back(in_.integer("a reference"));
+      int corner[8];
+      for (int k = 0; k < n_corners; ++k) corner[k] = vertex();
+      const int reference = in_.integer("a reference");
+      if (solid) {
+        if (polygons_.ends.empty()) add_volume(volumes_, corner, n_corners, reference);
+        continue;
+      }
+      polygons_.corners.insert(polygons_.corners.end(), corner, corner + n_corners);
+      polygons_.patch.push_back(reference);
       polygons_.ends.push_back(polygons_.corners.size());
     }
   }
@@ -306,6 +336,7 @@ class InriaReader {
   }
 
   void finish() {
+    for (int reference : add_outer_faces(polygons_, volumes_, stream_)) polygons_.patch.push_back(reference);
     if (!required_triangles_.empty()) {
       std::vector<std::uint8_t> required(polygons_.ends.size(), 0);
       for (int t : required_triangles_) {
@@ -333,6 +364,7 @@ class InriaReader {
   int dimension_ = 3;
   Stream stream_;
   Polygons polygons_;
+  Volumes volumes_;
   bool has_vertices_ = false;
   std::size_t first_triangle_ = 0;
   int n_triangles_ = 0;

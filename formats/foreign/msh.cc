@@ -9,6 +9,7 @@
 #include "formats/foreign/number_source.h"
 #include "formats/foreign/numbers.h"
 #include "formats/foreign/polygons.h"
+#include "formats/foreign/volumes.h"
 #include "formats/stream/model_lines.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
@@ -18,19 +19,21 @@ namespace meshpipe {
 namespace {
 
 /// Number of corners and nodes of the elements that are read: lines (2) and surface elements (3 or 4) of any
-/// order, corners first. Other elements have 0 corners.
+/// order, corners first. Volumes have 0 of these corners, and their own; other elements have none.
 struct Kind {
-  int corners = 0, nodes = 0;
+  int corners = 0, nodes = 0, of_volume = 0;
 };
 Kind kind_of(int type) {
   static constexpr Kind kinds[] = {
-      {},      {2, 2},  {3, 3},  {4, 4},  {0, 4},  {0, 8},  {0, 6},   {0, 5},  {2, 3},  {3, 6},  {4, 9},
-      {0, 10}, {0, 27}, {0, 18}, {0, 14}, {0, 1},  {4, 8},  {0, 20},  {0, 15}, {0, 13}, {3, 9},  {3, 10},
-      {3, 12}, {3, 15}, {3, 15}, {3, 21}, {2, 4},  {2, 5},  {2, 6},   {0, 20}, {0, 35}, {0, 56}, {0, 22},
-      {0, 28}, {},      {},      {4, 16}, {4, 25}, {4, 36}, {4, 12},  {4, 16}, {4, 20}, {3, 28}, {3, 36},
-      {3, 45}, {3, 55}, {3, 66}, {4, 49}, {4, 64}, {4, 81}, {4, 100}, {4, 121}};
-  if (type == 92) return {0, 64};
-  if (type == 93) return {0, 125};
+      {},         {2, 2},     {3, 3},     {4, 4},     {0, 4, 4},  {0, 8, 8},  {0, 6, 6},  {0, 5, 5},
+      {2, 3},     {3, 6},     {4, 9},     {0, 10, 4}, {0, 27, 8}, {0, 18, 6}, {0, 14, 5}, {0, 1},
+      {4, 8},     {0, 20, 8}, {0, 15, 6}, {0, 13, 5}, {3, 9},     {3, 10},    {3, 12},    {3, 15},
+      {3, 15},    {3, 21},    {2, 4},     {2, 5},     {2, 6},     {0, 20, 4}, {0, 35, 4}, {0, 56, 4},
+      {0, 22, 4}, {0, 28, 4}, {},         {},         {4, 16},    {4, 25},    {4, 36},    {4, 12},
+      {4, 16},    {4, 20},    {3, 28},    {3, 36},    {3, 45},    {3, 55},    {3, 66},    {4, 49},
+      {4, 64},    {4, 81},    {4, 100},   {4, 121}};
+  if (type == 92) return {0, 64, 8};
+  if (type == 93) return {0, 125, 8};
   return type >= 1 && type < static_cast<int>(std::size(kinds)) ? kinds[type] : Kind{};
 }
 
@@ -115,9 +118,13 @@ struct Element {
   int physical, elementary;
 };
 
-/// The lines and surface elements of a file, with their tags and data.
+/// The lines and surface elements of a file, with their tags and data; without surface elements, its volumes.
 class Elements {
  public:
+  /// Is an element of this kind wanted?
+  bool takes(const Kind& kind) const {
+    return kind.corners > 0 || (kind.of_volume > 0 && polygons_.ends.empty());
+  }
   /// Adds an element by the rows of its nodes; `again`: the one before, in another physical group.
   void add(const Element& element, const std::vector<int>& nodes, bool again);
   /// Returns the physical tags of the lines (dim 1) or surface elements (2), sorted.
@@ -137,7 +144,8 @@ class Elements {
   static std::vector<int> labels(const std::vector<Tags>& tags, const NumberSource& in);
 
   Polygons polygons_;
-  std::vector<Tags> surfaces_, lines_;  ///< tags by surface element, and by edge of a line
+  Volumes volumes_;
+  std::vector<Tags> surfaces_, lines_;  ///< tags by surface element or volume, and by edge of a line
   std::vector<int> element_, row_;      ///< of each polygon: surface element, and row of its data
   std::vector<LineEdge> line_edges_;
 };
@@ -150,12 +158,20 @@ std::vector<int> Elements::physical_tags(int dim) const {
 }
 
 std::string Elements::next_name(const Element& element) const {
-  return element.kind.corners == 2 ? "line element " + std::to_string(lines_.size())
-                                   : "surface element " + std::to_string(surfaces_.size());
+  return element.kind.corners == 2
+             ? "line element " + std::to_string(lines_.size())
+             : (element.kind.of_volume ? "volume " : "surface element ") + std::to_string(surfaces_.size());
 }
 
 void Elements::add(const Element& element, const std::vector<int>& nodes, bool again) {
+  if (element.kind.of_volume) {
+    numbers.add(element.number);
+    add_volume(volumes_, nodes.data(), element.kind.of_volume, static_cast<int>(surfaces_.size()));
+    surfaces_.push_back({element.physical, element.elementary});
+    return;
+  }
   if (element.kind.corners != 2) {
+    if (volumes_.count > 0) volumes_ = {}, numbers = {}, surfaces_.clear();  // there are faces after all
     const int added = add_element(polygons_, nodes.data(), element.kind.corners, element.kind.nodes);
     if (!again) numbers.add(element.number);
     element_.insert(element_.end(), added, static_cast<int>(surfaces_.size()));
@@ -191,6 +207,8 @@ std::vector<int> Elements::labels(const std::vector<Tags>& tags, const NumberSou
 }
 
 void Elements::finish(Stream& stream, const NumberSource& in) {
+  for (int volume : add_outer_faces(polygons_, volumes_, stream))
+    element_.push_back(volume), row_.push_back(volume);
   polygons_.patch = std::get<std::vector<int>>(gather({"", 1, labels(surfaces_, in)}, element_).data);
   for (Column& c : data.columns)
     std::visit(
@@ -409,7 +427,7 @@ class MshReader {
       text.need_line("element", i, n);
       const long long number = text.wide("an element number");
       const Kind kind = kind_of(text.integer("an element type"));
-      if (kind.corners == 0) continue;
+      if (!elements_.takes(kind)) continue;
       // version 1 has two tags and the number of nodes, version 2 the number of tags and the tags
       const int tags = version_ < 2 ? 2 : text.integer("a number of tags");
       int tag[2] = {0, 0};
@@ -443,7 +461,7 @@ class MshReader {
         const int physical = tags > 0 ? in_.integer("a tag") : 0,
                   elementary = tags > 1 ? in_.integer("a tag") : 0;
         in_.skip(4 * static_cast<std::size_t>(std::max(tags - 2, 0)), "a tag");
-        if (kind.corners)
+        if (elements_.takes(kind))
           element({number, kind, 0, elementary}, {physical}, false);
         else
           in_.skip(4 * static_cast<std::size_t>(kind.nodes), "a node number");
@@ -464,20 +482,22 @@ class MshReader {
       if (!is_wide) std::swap(dim, tag);
       const int type = in_.integer("an element type");
       const Kind kind = kind_of(type);
-      const std::vector<int> groups = entities_.physical_of(kind.corners == 2 ? 1 : 2, tag);
+      const std::vector<int> groups =
+          kind.of_volume ? std::vector<int>{0} : entities_.physical_of(kind.corners == 2 ? 1 : 2, tag);
       const int in_block = in_.count("the count of elements", true, 8, 4);
       if (in_block > left)
         in_.fail("a block of " + std::to_string(in_block) + " elements, but " + std::to_string(left) +
                  " are left");
       left -= in_block;
-      if (in_.binary && kind.corners == 0) {
+      const bool takes = elements_.takes(kind);
+      if (in_.binary && !takes) {
         if (kind.nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
         in_.skip((is_wide ? 8 : 4) * static_cast<std::size_t>(kind.nodes + 1) * in_block, "an element");
         continue;
       }
       for (int i = 0; i < in_block; ++i) {
         next_row(in_, "element", i, in_block);
-        if (kind.corners == 0) continue;
+        if (!takes) continue;
         const long long number_of_element = number(in_, "an element number", is_wide);
         element({number_of_element, kind, 0, tag}, groups, is_wide);
       }

@@ -7,9 +7,10 @@ namespace meshpipe {
 
 bool is_msh(std::string_view bytes);
 /// Reads versions 1, 2, 4.0 and 4.1, text and binary: triangles and quadrilaterals of any order
-/// (add_element), and line elements along their edges as lines of the model. The patch, or the label of a
-/// line, is the physical tag; elements without one have their elementary tag, counted on from the largest
-/// physical one. $NodeData and $ElementData become columns if all nodes or faces have a value.
+/// (add_element), without these the outer faces of volumes, and line elements along edges as lines of the
+/// model. The patch, or the label of a line, is the physical tag; elements without one have their elementary
+/// tag, counted on from the largest physical one. $NodeData and $ElementData become columns if all nodes or
+/// faces have a value.
 Stream read_msh(std::string_view bytes, const std::string& where);
 /// Writes version 2.2, or 4.1. Patches become physical and elementary tags with their names, shifted so that
 /// the smallest is at least 1; so do labels of lines above 0. Columns become $NodeData and $ElementData.

@@ -11,6 +11,36 @@ namespace {
 constexpr const char* labels[] = {"patch",       "gmsh:physical", "medit:ref",       "CellEntityIds",
                                   "ModelFaceID", "PhysicalIds",   "gmsh:geometrical"};
 
+/// The corners of a volume of this type in the order of add_volume; none of other types. A voxel has its
+/// corners in rows, and a prism the first base as seen from outside.
+std::vector<int> volume_corners(int type) {
+  switch (type) {
+    case 10:
+    case 24:
+    case 71:
+      return {0, 1, 2, 3};
+    case 11:
+      return {0, 1, 3, 2, 4, 5, 7, 6};
+    case 12:
+    case 25:
+    case 29:
+    case 33:
+    case 72:
+      return {0, 1, 2, 3, 4, 5, 6, 7};
+    case 13:
+    case 26:
+    case 32:
+    case 73:
+      return {0, 2, 1, 3, 5, 4};
+    case 14:
+    case 27:
+    case 74:
+      return {0, 1, 2, 3, 4};
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
 void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::string& place) {
@@ -80,7 +110,12 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       expect(4, max_corners);
       element(4);
       break;
-    default:  // vertices, lines and volumes
+    default:  // volumes, vertices and lines
+      if (std::vector<int> nodes = volume_corners(type); !nodes.empty() && polygons.ends.empty()) {
+        expect(nodes.size(), max_corners);
+        for (int& v : nodes) v = corners[v];
+        add_volume(volumes, nodes.data(), static_cast<int>(nodes.size()), cells);
+      }
       for (int curved : {30, 36, 61, 62, 63, 76, 77})
         if (type == curved)
           fail("is of type " + std::to_string(type) + ", a kind of curved cells that is not read");
@@ -93,6 +128,8 @@ Stream vtk_surface(VtkData data) {
   Stream stream;
   Surface& s = stream.surface;
   s.points = std::move(data.points);
+  if (std::vector<int> cells = add_outer_faces(data.polygons, data.volumes, stream); !cells.empty())
+    data.cell = std::move(cells);
   const std::size_t n_polygons = data.polygons.ends.size();
   std::vector<int> patch;
   for (const char* label : labels)

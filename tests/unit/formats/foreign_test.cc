@@ -72,6 +72,74 @@ TEST(Curved, VtkHasTheSameKinds) {
             "in:7: cell 0 is of type 77, a kind of curved cells that is not read");
 }
 
+//      4--------7
+//     /|       /|     on the cube 0 ... 7 there is a pyramid with apex 8 = (1, 1, 4), and at its right face
+//    5--------6 |     a prism up to the edge from 9 = (4, 0, 1) to 10 = (4, 2, 1); the tetrahedron 11 ... 14
+//    | 0------|-3     is far away
+//    |/       |/
+//    1--------2
+static const char* const solid =
+    "0 0 0  2 0 0  2 2 0  0 2 0  0 0 2  2 0 2  2 2 2  0 2 2  1 1 4  4 0 1  4 2 1  9 0 0  9 1 0  9 0 1  8 0 0";
+static std::string vtk_cells(const std::string& cells, const std::string& types,
+                             const std::string& data = "") {
+  const long n = std::count(types.begin(), types.end(), ' ') + 1;
+  return "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 15 float\n" +
+         std::string(solid) + "\nCELLS " + std::to_string(n) + " " +
+         std::to_string(std::count(cells.begin(), cells.end(), ' ') + 1) + "\n" + cells + "\nCELL_TYPES " +
+         std::to_string(n) + "\n" + types + "\n" + data;
+}
+static double volume(const Mesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.tris)
+    sum += dot(mesh.points[a], cross(mesh.points[b], mesh.points[c])) / 6;
+  return sum;
+}
+
+TEST(Volumes, TheirOuterFacesAreTheSurfaceWhereThereIsNone) {
+  const std::string cells = "8 0 1 2 3 4 5 6 7 5 4 5 6 7 8 6 1 9 5 2 10 6 4 11 13 12 14",
+                    types = "12 14 13 10";
+  const Stream s = read_any(
+      vtk_cells(cells, types, "CELL_DATA 4\nSCALARS patch int 1\nLOOKUP_TABLE default\n1 2 3 4\n"), "in");
+  EXPECT_EQ(s.surface.tris.size(), 2u * 4 + 4 + 2u * 2 + 2 + 4);  // 2 faces of the cube are inside
+  EXPECT_NEAR(volume(s.surface), 8 + 8.0 / 3 + 4 + 1.0 / 6, 1e-6);
+  const std::vector<int>& patch = s.surface.face.get<int>("patch");
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 2), 4);
+  EXPECT_EQ(std::count(patch.begin(), patch.end(), 4), 4);
+  EXPECT_EQ(s.remarks,
+            std::vector<std::string>{"no faces, but 4 volume cells: their 16 outer faces are the surface"});
+  // any face is the surface, before the volumes or after them
+  for (const auto& [with, kinds] :
+       {std::pair{cells + " 3 0 1 2", types + " 5"}, {"3 0 1 2 " + cells, "5 " + types}}) {
+    const Stream face = read_any(vtk_cells(with, kinds), "in");
+    EXPECT_EQ(face.surface.tris, (std::vector<Tri>{{0, 1, 2}}));
+    EXPECT_TRUE(face.remarks.empty());
+  }
+  EXPECT_EQ(failure(vtk_cells("3 11 12 13", "10")), "in:7: cell 0 of type 10 has 3 points, expected 4");
+}
+
+TEST(Volumes, OfMshAndInria) {
+  // two tetrahedra with the triangle 1 2 3 between them
+  const std::string points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n";
+  auto gmsh = [&](const std::string& elements) {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n" + points + "$EndNodes\n$Elements\n" +
+           elements + "$EndElements\n";
+  };
+  const std::string two = "7 4 2 6 1 1 2 3 4\n8 4 2 7 1 1 3 2 5\n";
+  const std::string data = "$ElementData\n1\n\"d\"\n1\n0\n3\n0\n1\n2\n8 0.5\n7 0.25\n$EndElementData\n";
+  const Stream s = read_any(gmsh("2\n" + two) + data, "in");
+  EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{6, 6, 6, 7, 7, 7}));
+  EXPECT_EQ(s.surface.face.get<double>("d"), (std::vector<double>{0.25, 0.25, 0.25, 0.5, 0.5, 0.5}));
+  EXPECT_NEAR(volume(s.surface), 1.0 / 3, 1e-12);
+  EXPECT_EQ(read_any(gmsh("3\n" + two + "9 2 2 5 1 1 2 3\n"), "in").surface.face.get<int>("patch"),
+            std::vector<int>{5});
+  std::string inria =
+      "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 0 0 -1 0\n"
+      "Tetrahedra 2\n1 2 3 4 6\n1 3 2 5 7\n";
+  EXPECT_EQ(read_any(inria + "End\n", "in").surface.tris, s.surface.tris);
+  EXPECT_EQ(read_any(inria + "End\n", "in").surface.face.get<int>("patch"), s.surface.face.get<int>("patch"));
+  EXPECT_EQ(read_any(inria + "Triangles 1\n1 2 3 5\nEnd\n", "in").surface.tris.size(), 1u);
+}
+
 //  3---2   5---4
 //  | 1/|   | 3/|
 //  |/0 |   |/2 |
