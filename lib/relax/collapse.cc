@@ -21,7 +21,7 @@ bool makes_chord(const State& s, int h, int gone, int kept) {
 }
 
 /// May `gone` go as far as the connectivity and what is held are concerned?
-bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
+bool may_collapse(const State& s, int h, int gone, int kept, bool merge, bool at_fault = false) {
   const EditMesh& m = s.mesh;
   if (s.hold[kept] == frozen) return false;  // may be joined outside the patch
   if (merge ? s.hold[gone] != fixed : s.hold[gone] >= fixed || (s.hold[gone] == slides && !m.hard[h]))
@@ -32,7 +32,7 @@ bool may_collapse(const State& s, int h, int gone, int kept, bool merge) {
   if (g < 0) return true;
   const int c = m.apex(h), d = m.apex(g);
   return m.valence(gone) + m.valence(kept) - 4 <= rules::largest_valence &&
-         (m.valence(gone) == 3 || !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]));
+         (at_fault || m.valence(gone) == 3 || !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]));
 }
 
 /// Does the line through `gone` hardly change when it goes straight to p, where `kept` will be?
@@ -124,7 +124,7 @@ bool collapse_edge(State& s, int h, int gone, const rules::Collapse& limits, boo
   if (is_shared(s, gone)) return !merge && collapse_copies(s, h, gone, limits);
   const EditMesh& m = s.mesh;
   const int kept = m.from(h) == gone ? m.to(h) : m.from(h);
-  if (!may_collapse(s, h, gone, kept, merge) || doubles_edges(s, h, gone)) return false;
+  if (!may_collapse(s, h, gone, kept, merge, limits.may_fold) || doubles_edges(s, h, gone)) return false;
   Kept at{s.place[kept], s.points[kept], s.normal[kept]};
   if (s.hold[kept] == loose) {
     at.place = s.reference->walk.closest(s.place[kept], lerp(s.points[gone], at.p, 0.5));

@@ -4,8 +4,7 @@
 #include <mutex>
 #include <unordered_set>
 
-#include "lib/core/intersect.h"
-#include "lib/relax/faults.h"
+#include "lib/relax/faultiness.h"
 
 namespace meshpipe {
 namespace {
@@ -45,91 +44,6 @@ void refine_at(State& s, const Fault& fault) {
   flip_to_shape(s);
   for (int repeat = 0; repeat < rules::sweeps_to_settle; ++repeat)
     for (int v : around) improve_vertex(s, v);
-}
-
-/// A patch as it was first, and what was found of it: an edit changes few of its triangles.
-struct Before {
-  Mesh mesh{};
-  std::vector<double> deviation{};
-  std::vector<std::pair<int, int>> pairs{};
-
-  bool has(const Mesh& now, int t) const {
-    if (t >= (int)mesh.tris.size() || now.tris[t] != mesh.tris[t]) return false;
-    const Tri& v = now.tris[t];
-    return std::all_of(v.begin(), v.end(), [&](int i) { return now.points[i] == mesh.points[i]; });
-  }
-};
-
-/// How far two triangles intersect.
-double length_of_contact(const Mesh& mesh, const std::pair<int, int>& pair) {
-  const std::vector<Vec3> contact = contacts(mesh, {pair}).points;
-  double length = 0;
-  for (Vec3 p : contact) length = std::max(length, norm(p - contact[0]));
-  return length;
-}
-
-/// How far a patch is from good: folds and pairs that intersect where the reference does not, distances over
-/// what is bearable, there and from places of the reference, and 1/kappa of needles. The first patch that
-/// is asked for becomes `before`.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
-                  Before& before) {
-  double sum = 0;
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0);
-  const Mesh mesh{s.points, s.mesh.tris};
-  std::vector<Box> box(mesh.tris.size());
-  std::vector<char> same(mesh.tris.size(), 0);
-  std::vector<int> seen, changed;  // triangles before t
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t)) continue;
-    const auto [a, b, c] = mesh.tris[t];
-    same[t] = before.has(mesh, t);
-    const double most = bearable_distance(s, t, mean);
-    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
-    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
-    sum += rules::far_weight * std::max(0.0, there / most - 1);
-    if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
-        k <= rules::bearable_kappa && !is_forced(s, t, k, known))
-      sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
-    box[t] = box_of(mesh, t);
-    for (int u : same[t] ? changed : seen)
-      if (overlap(box[t], box[u]) && triangles_intersect(mesh, u, t)) pairs.push_back({u, t});
-    seen.push_back(t);
-    if (!same[t]) changed.push_back(t);
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-      const Vec3 reach = (1 + 2 * rules::as_near) * distance[i] * Vec3{1, 1, 1};
-      if (!overlap(box[t], {missed[i] - reach, missed[i] + reach})) continue;
-      const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
-      if (d > (1 + rules::as_near) * distance[i]) continue;
-      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
-      distance[i] = std::min(d, distance[i]);
-    }
-  }
-  for (std::size_t i = 0; i < missed.size(); ++i)
-    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
-  if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
-  for (auto [t, u] : chords_of(s))
-    if (!(same[t] && same[u])) pairs.push_back({t, u});
-  sort_unique(pairs);
-  if (known.contact_tree) pairs = new_intersections(mesh, pairs, *known.contact_tree);
-  for (auto [t, u] : before.pairs)
-    if (same[t] && same[u]) pairs.push_back({t, u});
-  if (before.deviation.empty()) before = {mesh, far, pairs};
-  for (const auto& pair : pairs) {
-    const double length = std::min(1.0, length_of_contact(mesh, pair) / mean);
-    sum += rules::pair_weight * (1 - rules::length_share * (1 - length));
-  }
-  return sum + rules::pair_weight * (double)folded_edges(s, known).size();
-}
-
-/// As triangles_intersect, without a copy of the mesh.
-bool intersect(const State& s, int t, int u) {
-  Mesh pair{{}, {{0, 1, 2}, {3, 4, 5}}};
-  for (int w : {t, u})
-    for (int v : s.mesh.tris[w]) pair.points.push_back(s.points[v]);
-  for (int i = 0; i < 9; ++i)
-    if (s.mesh.tris[t][i / 3] == s.mesh.tris[u][i % 3]) pair.tris[1][i % 3] = i / 3;
-  return triangles_intersect(pair, 0, 1);
 }
 
 /// The neighborhoods that repair has tried in vain, by their fingerprints, at this mean size.
@@ -199,7 +113,7 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   };
   std::mutex one_at_a_time;
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
-    Before before;
+    PatchBefore before{surroundings(s, triangles, mean)};
     auto better = repaired(s, triangles, thorough,
                            {[&](const State& patch) {
                               return objective(patch) + faultiness(patch, item.missed, mean, known, before);

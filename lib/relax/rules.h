@@ -130,7 +130,9 @@ constexpr double reduced_growth = 0.5;                      // of the triangles:
 constexpr double most_left = 150;  // sum of faults: of 77 begun again none with over 78 became good
 constexpr int most_restarts = 3;   // each takes as long as the first time
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
-constexpr double length_share = 0.5;  // of a pair's weight: by how far it intersects, up to the mean size
+constexpr double reach_of_patch = 0.3;  // mean sizes: how far from it a change of a patch may meet others
+constexpr int most_around = 300;        // triangles: more of them would take longer than the patch
+constexpr double length_share = 0.5;    // of a pair's weight: by how far it intersects, up to the mean size
 
 // bends (bends.cc)
 constexpr double near_bend = 0.6;   // of the longest edge: how far a vertex goes to where the reference bends

@@ -69,6 +69,8 @@ TEST(Collapse, AVertexOfThreeEdgesGoesAlsoBetweenLines) {
                             "a       b"},
                            "abe bce cde dae"));
   EXPECT_FALSE(collapse_edge(four.s, four.edge('e', 'a'), 'e' - 'a', {20, 3}));
+  EXPECT_TRUE(collapse_edge(four.s, four.edge('e', 'a'), 'e' - 'a', rules::at_fault));
+  EXPECT_DOUBLE_EQ(four.area(), 64);
 }
 
 TEST(Collapse, FromALineNothingGoesInside) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lib/relax/faultiness.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/relax/drawn.h"
+
+using namespace meshpipe;
+
+namespace {
+
+/// A flat sheet of four triangles around e, and this many more above it, each `gap` over the last.
+Surface sheets(int more, double gap) {
+  Surface s = drawn_surface({"d       c",  //
+                             "         ",  //
+                             "    e    ",  //
+                             "         ",  //
+                             "a       b"},
+                            "abe bce cde dae");
+  for (int i = 1; i <= more; ++i) {
+    for (int v = 0; v < 5; ++v) s.points.push_back(s.points[v] + Vec3{0, 0, i * gap});
+    for (int t = 0; t < 4; ++t)
+      s.tris.push_back({s.tris[t][0] + 5 * i, s.tris[t][1] + 5 * i, s.tris[t][2] + 5 * i});
+  }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.vertex.set("size", std::vector<double>(s.points.size(), 4));
+  s.face.set("model", std::vector<std::uint8_t>(s.tris.size(), 0));
+  return s;
+}
+
+TEST(Surroundings, AreWhatIsNearAndNotOfThePatch) {
+  Drawn near(sheets(1, 0.2));
+  EXPECT_EQ(surroundings(near.s, {3, 0, 2, 1}, 4).mesh.tris.size(), 4u);
+  EXPECT_EQ(surroundings(near.s, {0}, 4).mesh.tris.size(), 7u);
+  Drawn far(sheets(1, 2));
+  EXPECT_TRUE(surroundings(far.s, {0, 1, 2, 3}, 4).box.empty());
+}
+
+TEST(Surroundings, TooManyAreNotLookedAt) {
+  Drawn m(sheets(75, 0.01));
+  EXPECT_EQ(surroundings(m.s, {0, 1, 2, 3}, 4).box.size(), 300u);
+  Drawn more(sheets(76, 0.01));
+  EXPECT_TRUE(surroundings(more.s, {0, 1, 2, 3}, 4).box.empty());
+}
+
+// e rises through the sheet above
+TEST(Faultiness, PairsWithTheSurroundingsCount) {
+  Drawn m(sheets(1, 0.2));
+  const std::vector<int> triangles{0, 1, 2, 3};
+  Samples samples{feature_samples(m.reference, 10), {}};
+  Known known{m.reference.surface, samples};
+  State patch = extract(m.s, triangles);
+  PatchBefore alone, before{surroundings(m.s, triangles, 4)};
+  EXPECT_EQ(faultiness(patch, {}, 4, known, before), 0);
+  EXPECT_EQ(faultiness(patch, {}, 4, known, alone), 0);
+  patch.points[4].z = 0.4;
+  EXPECT_GT(faultiness(patch, {}, 4, known, before), faultiness(patch, {}, 4, known, alone));
+}
+
+}  // namespace
