@@ -56,7 +56,7 @@ std::vector<int> add_outer_faces(Polygons& polygons, const Volumes& volumes, Str
     polygons.ends.push_back(polygons.corners.size());
     cells.push_back(volumes.cell[f]);
   }
-  stream.remarks.push_back("no faces, but " + std::to_string(volumes.count) + " volume cells: their " +
+  stream.remarks.push_back("no faces, but " + std::to_string(volumes.count) + " volume elements: their " +
                            std::to_string(outer.size()) + " outer faces are the surface");
   return cells;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volume cells of foreign files: where a file has no faces, the outer faces of its cells are the surface.
+// Volume elements of foreign files: where a file has no faces, their outer faces are the surface.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace meshpipe {
 
-/// The faces of volume cells, as in Polygons, and the number that was given for the cell of each.
+/// The faces of volume elements, as in Polygons, and the number that was given for the cell of each.
 struct Volumes {
   std::vector<int> corners;
   std::vector<std::size_t> ends;

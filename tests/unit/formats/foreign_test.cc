@@ -105,8 +105,8 @@ TEST(Volumes, TheirOuterFacesAreTheSurfaceWhereThereIsNone) {
   const std::vector<int>& patch = s.surface.face.get<int>("patch");
   EXPECT_EQ(std::count(patch.begin(), patch.end(), 2), 4);
   EXPECT_EQ(std::count(patch.begin(), patch.end(), 4), 4);
-  EXPECT_EQ(s.remarks,
-            std::vector<std::string>{"no faces, but 4 volume cells: their 16 outer faces are the surface"});
+  EXPECT_EQ(s.remarks, std::vector<std::string>{
+                           "no faces, but 4 volume elements: their 16 outer faces are the surface"});
   // any face is the surface, before the volumes or after them
   for (const auto& [with, kinds] :
        {std::pair{cells + " 3 0 1 2", types + " 5"}, {"3 0 1 2 " + cells, "5 " + types}}) {
