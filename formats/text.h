@@ -52,6 +52,10 @@ class Text {
   /// Returns the number of bytes left in the current line, and the bytes after the line.
   std::size_t rest_size() const { return left_.size(); }
   std::string_view after() const { return bytes_; }
+  /// Returns "WHERE:LINE: what".
+  std::string here(const std::string& what) const {
+    return where_ + ':' + std::to_string(line_) + ": " + what;
+  }
   [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
   [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 

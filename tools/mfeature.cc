@@ -34,6 +34,9 @@ constexpr double default_tolerance = 0.06;
 constexpr double most_of_diagonal = 0.01;
 /// Of the distance of --max-error: the rest is for the mesh.
 constexpr double error_share = 0.25;
+/// Without a strip creases may go on to another narrow place, for which the rest of the tolerance is left;
+/// after that there is little.
+constexpr int most_removals = 2;
 /// Of the tolerance, for folds: what lies flat on itself bounds no volume.
 constexpr double fold_share = 4;
 
@@ -124,18 +127,15 @@ void report(Io& io, const FeatureReport& r) {
 
 /// Removes what is narrower than the tolerance, and adds it to `all`. Returns whether the surface has
 /// changed: then its edges are to be marked again. `before`, by face, and `given`, by half-edge, follow.
-bool defeature(Stream& stream, const DefeatureOptions& o, std::vector<int>& before, std::vector<int>& given,
+bool defeature(Surface& surface, const DefeatureOptions& o, std::vector<int>& before, std::vector<int>& given,
                DefeatureReport& all) {
-  const DefeatureReport r = remove_small_features(stream.surface, o, &given);
+  const DefeatureReport r = remove_small_features(surface, o, &given);
+  if (all.removed.empty()) all.stopped = r.stopped;
   all.removed.insert(all.removed.end(), r.removed.begin(), r.removed.end());
   all.vanished.insert(all.vanished.end(), r.vanished.begin(), r.vanished.end());
-  all.moved += r.moved, all.merged += r.merged, all.stopped = all.stopped || r.stopped;
+  all.moved += r.moved;
   if (r.removed.empty()) return false;
-  stream.remarks.push_back(remark_of(r));
-  drop_downstream(stream, Stage::parts);
-  for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
-  for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
-  write_model_edges(stream, moved_segments(read_model_edges(stream), given, stream.surface, r.given));
+  for (const char* column : {"part", "origin"}) surface.face.erase(column);
   given = r.given;
   std::vector<int> labels;
   for (int t : r.face) labels.push_back(before.empty() ? 0 : before[t]);
@@ -143,13 +143,20 @@ bool defeature(Stream& stream, const DefeatureOptions& o, std::vector<int>& befo
   return true;
 }
 
-/// Removes the names of these patches, and what they bound.
-void forget(Stream& stream, const std::vector<int>& patches) {
-  auto gone = [&](int patch) { return std::find(patches.begin(), patches.end(), patch) != patches.end(); };
-  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && gone(n.tag); });
-  if (patches.empty() || !has_sheets(stream)) return;
+/// Brings the tables of the stream up to date: lines of the input, which were under the half-edges `before`
+/// and are under those `after`, names of patches that vanished, and what these bounded.
+void follow_removal(Stream& stream, const DefeatureReport& r, const std::vector<int>& before,
+                    const std::vector<int>& after) {
+  const ModelSegments lines = read_model_edges(stream);
+  stream.remarks.push_back(remark_of(r));
+  drop_downstream(stream, Stage::parts);
+  for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
+  write_model_edges(stream, moved_segments(lines, before, stream.surface, after));
+  auto vanished = [&](int patch) { return std::binary_search(r.vanished.begin(), r.vanished.end(), patch); };
+  std::erase_if(stream.names, [&](const Name& n) { return n.dim == 2 && vanished(n.tag); });
+  if (!has_sheets(stream)) return;
   std::vector<SheetPatch> sheets = read_sheets(stream);
-  std::erase_if(sheets, [&](const SheetPatch& s) { return gone(s.patch); });
+  std::erase_if(sheets, [&](const SheetPatch& s) { return vanished(s.patch); });
   stream.set(sheet_table(sheets));
 }
 
@@ -246,19 +253,21 @@ void mark(Io& io, Options& o) {
   // a border that moved would part from those of the other sheets that meet there
   DefeatureOptions narrow{tolerance_of(o, length, diagonal(surface)), o.keep_boundary || has_sheets(stream)};
   const double tolerance = narrow.tolerance;
+  const std::vector<int> first_given = given;
   DefeatureReport removed;
-  for (int pass = 0; pass < 2; ++pass) {  // without a strip creases may go on to another narrow place
+  for (int pass = 0; pass < most_removals; ++pass) {
     narrow.tolerance = tolerance - removed.moved;
     if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
     narrow.kept = kept_triangles(stream, o.keep_boundary);
-    if (!defeature(stream, narrow, before, given, removed)) break;
+    if (!defeature(surface, narrow, before, given, removed)) break;
     o.again = true;
     marked = features();
   }
   std::stable_sort(removed.removed.begin(), removed.removed.end(),
                    [](const RemovedFeature& a, const RemovedFeature& b) { return a.width > b.width; });
+  sort_unique(removed.vanished);
   report_removed(io, removed, tolerance, stream);
-  forget(stream, removed.vanished);
+  if (!removed.removed.empty()) follow_removal(stream, removed, first_given, given);
   report(io, marked);
   io.write(stream);
 }

@@ -290,13 +290,18 @@ class InriaReader {
                             : n_corners == 3 ? "the number of triangles"
                                              : "the number of quadrilaterals",
                             static_cast<std::size_t>(n_corners) + 1);
+    if (solid && !polygons_.ends.empty()) {  // they are not needed
+      for (std::size_t i = 0; i < static_cast<std::size_t>(n) * (n_corners + 1); ++i) in_.integer("a number");
+      return;
+    }
+    if (!solid) volumes_ = {};
     if (n_corners == 3) first_triangle_ = polygons_.ends.size(), n_triangles_ = n;
     for (int i = 0; i < n; ++i) {
       int corner[8];
       for (int k = 0; k < n_corners; ++k) corner[k] = vertex();
       const int reference = in_.integer("a reference");
       if (solid) {
-        if (polygons_.ends.empty()) add_volume(volumes_, corner, n_corners, reference);
+        add_volume(volumes_, corner, n_corners, n_corners, reference);
         continue;
       }
       polygons_.corners.insert(polygons_.corners.end(), corner, corner + n_corners);

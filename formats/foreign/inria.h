@@ -9,8 +9,7 @@ bool is_inria(std::string_view bytes);
 /// Reads triangles and quadrilaterals. References become patches, and column `ref` of vertices; edges become
 /// model edges, labeled by their references (set_model_lines); corners, required vertices and triangles
 /// become columns `corner` and `required`; SolAtVertices becomes `size` if it is one positive number each,
-/// else `sol`. Normals and tangents are left out, and volumes
-/// where there are faces.
+/// else `sol`. Without faces the outer ones of volumes are read. Normals and tangents are left out.
 Stream read_inria(std::string_view bytes, const std::string& where);
 /// Adds the values of a .sol or .solb file to the vertices. Throws: BadInput if there is not one for each
 /// vertex.

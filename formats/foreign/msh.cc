@@ -60,15 +60,15 @@ long long number(NumberSource& in, const char* what, bool is_wide) {
 /// them.
 constexpr std::size_t most_groups = 64;
 
-/// The physical tags of the curves and surfaces of version 4.
+/// The physical tags of the curves, surfaces and volumes of version 4.
 class Entities {
  public:
   void read(NumberSource& in, double version);
-  /// Returns the physical tags of an entity of dimension 1 or 2; only 0 if it has none.
+  /// Returns the physical tags of an entity of dimension 1 to 3; only 0 if it has none.
   std::vector<int> physical_of(int dim, int tag) const;
 
  private:
-  std::vector<std::pair<int, int>> tags_[3];  ///< by dimension: tag of the entity, a physical tag; sorted
+  std::vector<std::pair<int, int>> tags_[4];  ///< by dimension: tag of the entity, a physical tag; sorted
 };
 
 void Entities::read(NumberSource& in, double version) {
@@ -85,7 +85,7 @@ void Entities::read(NumberSource& in, double version) {
       for (int k = 0; k < n; ++k) {
         const int physical = in.integer("a physical tag");
         // a negative tag says that the elements have the opposite orientation
-        if ((dim == 1 || dim == 2) && physical != std::numeric_limits<int>::min())
+        if (dim > 0 && physical != std::numeric_limits<int>::min())
           tags_[dim].push_back({tag, std::abs(physical)});
       }
       if (in.binary && dim > 0)
@@ -125,17 +125,23 @@ class Elements {
   bool takes(const Kind& kind) const {
     return kind.corners > 0 || (kind.of_volume > 0 && polygons_.ends.empty());
   }
+  /// Remembers that there are elements of a type that is not known, perhaps volumes.
+  void skip(int type, const Text& text) {
+    if (volumes_.unread.empty())
+      volumes_.unread =
+          text.here("elements of type " + std::to_string(type) + " are not read, and there are no faces");
+  }
   /// Adds an element by the rows of its nodes; `again`: the one before, in another physical group.
   void add(const Element& element, const std::vector<int>& nodes, bool again);
-  /// Returns the physical tags of the lines (dim 1) or surface elements (2), sorted.
+  /// Returns the physical tags of the lines (dim 1) or of the others (2), sorted.
   std::vector<int> physical_tags(int dim) const;
   /// Names the next element for a message.
   std::string next_name(const Element& element) const;
   /// Sets the faces, patches and lines of the stream. Throws BadInput for tags that are too large.
   void finish(Stream& stream, const NumberSource& in);
 
-  Numbers numbers;            ///< of the surface elements
-  Table data{"face", 0, {}};  ///< of the surface elements
+  Numbers numbers;            ///< of the surface elements, or of the volumes
+  Table data{"face", 0, {}};  ///< of the same
 
  private:
   struct Tags {
@@ -146,7 +152,7 @@ class Elements {
   Polygons polygons_;
   Volumes volumes_;
   std::vector<Tags> surfaces_, lines_;  ///< tags by surface element or volume, and by edge of a line
-  std::vector<int> element_, row_;      ///< of each polygon: surface element, and row of its data
+  std::vector<int> element_, row_;      ///< of each polygon: element, and row of its data
   std::vector<LineEdge> line_edges_;
 };
 
@@ -166,12 +172,13 @@ std::string Elements::next_name(const Element& element) const {
 void Elements::add(const Element& element, const std::vector<int>& nodes, bool again) {
   if (element.kind.of_volume) {
     numbers.add(element.number);
-    add_volume(volumes_, nodes.data(), element.kind.of_volume, static_cast<int>(surfaces_.size()));
+    add_volume(volumes_, nodes.data(), element.kind.of_volume, element.kind.nodes,
+               static_cast<int>(surfaces_.size()));
     surfaces_.push_back({element.physical, element.elementary});
     return;
   }
   if (element.kind.corners != 2) {
-    if (volumes_.count > 0) volumes_ = {}, numbers = {}, surfaces_.clear();  // there are faces after all
+    if (!volumes_.kind.empty()) volumes_ = {}, numbers = {}, surfaces_.clear();  // there are faces after all
     const int added = add_element(polygons_, nodes.data(), element.kind.corners, element.kind.nodes);
     if (!again) numbers.add(element.number);
     element_.insert(element_.end(), added, static_cast<int>(surfaces_.size()));
@@ -207,8 +214,11 @@ std::vector<int> Elements::labels(const std::vector<Tags>& tags, const NumberSou
 }
 
 void Elements::finish(Stream& stream, const NumberSource& in) {
-  for (int volume : add_outer_faces(polygons_, volumes_, stream))
-    element_.push_back(volume), row_.push_back(volume);
+  const std::vector<int> volumes = add_outer_faces(polygons_, volumes_, stream);
+  for (int volume : volumes) element_.push_back(volume), row_.push_back(volume);
+  const int others = volumes.empty() ? 3 : 2;  // the dimension of names that are not of patches
+  std::erase_if(stream.names, [&](const Name& n) { return n.dim == others; });
+  for (Name& n : stream.names) n.dim = std::min(n.dim, 2);
   polygons_.patch = std::get<std::vector<int>>(gather({"", 1, labels(surfaces_, in)}, element_).data);
   for (Column& c : data.columns)
     std::visit(
@@ -319,7 +329,7 @@ class MshReader {
         continue;
       }
       const int tag = text.integer("a physical tag");
-      if (first == 1 || first == 2) stream_.names.push_back({first, tag, unescaped(unquoted(text))});
+      if (first >= 1 && first <= 3) stream_.names.push_back({first, tag, unescaped(unquoted(text))});
     }
   }
 
@@ -400,7 +410,6 @@ class MshReader {
     elements_.numbers.finish();
   }
 
-  /// Adds an element whose nodes come next.
   /// Reads an element of these physical groups: lines are of the first one only.
   void element(Element e, const std::vector<int>& groups, bool is_wide) {
     nodes_.clear();
@@ -413,7 +422,7 @@ class MshReader {
     }
     if (!in_.binary && !in_.text.line_ends())
       in_.fail(elements_.next_name(e) + " has more than its " + std::to_string(e.kind.nodes) + " nodes");
-    for (std::size_t k = 0; k < (e.kind.corners == 2 ? 1 : groups.size()); ++k) {
+    for (std::size_t k = 0; k < (e.kind.corners == 2 || e.kind.of_volume ? 1 : groups.size()); ++k) {
       e.physical = groups[k];
       elements_.add(e, nodes_, k > 0);
     }
@@ -426,7 +435,9 @@ class MshReader {
     for (int i = 0; i < n; ++i) {
       text.need_line("element", i, n);
       const long long number = text.wide("an element number");
-      const Kind kind = kind_of(text.integer("an element type"));
+      const int type = text.integer("an element type");
+      const Kind kind = kind_of(type);
+      if (kind.nodes == 0) elements_.skip(type, in_.text);
       if (!elements_.takes(kind)) continue;
       // version 1 has two tags and the number of nodes, version 2 the number of tags and the tags
       const int tags = version_ < 2 ? 2 : text.integer("a number of tags");
@@ -482,14 +493,17 @@ class MshReader {
       if (!is_wide) std::swap(dim, tag);
       const int type = in_.integer("an element type");
       const Kind kind = kind_of(type);
-      const std::vector<int> groups =
-          kind.of_volume ? std::vector<int>{0} : entities_.physical_of(kind.corners == 2 ? 1 : 2, tag);
+      const std::vector<int> groups = entities_.physical_of(kind.of_volume      ? 3
+                                                            : kind.corners == 2 ? 1
+                                                                                : 2,
+                                                            tag);
       const int in_block = in_.count("the count of elements", true, 8, 4);
       if (in_block > left)
         in_.fail("a block of " + std::to_string(in_block) + " elements, but " + std::to_string(left) +
                  " are left");
       left -= in_block;
       const bool takes = elements_.takes(kind);
+      if (dim == 3 && kind.nodes == 0) elements_.skip(type, in_.text);
       if (in_.binary && !takes) {
         if (kind.nodes == 0) in_.fail("element type " + std::to_string(type) + " is not known");
         in_.skip((is_wide ? 8 : 4) * static_cast<std::size_t>(kind.nodes + 1) * in_block, "an element");

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/foreign/vtk_data.h"
 
+#include <algorithm>
+#include <string_view>
+
 #include "formats/text.h"
 #include "lib/core/error.h"
 
@@ -11,34 +14,40 @@ namespace {
 constexpr const char* labels[] = {"patch",       "gmsh:physical", "medit:ref",       "CellEntityIds",
                                   "ModelFaceID", "PhysicalIds",   "gmsh:geometrical"};
 
-/// The corners of a volume of this type in the order of add_volume; none of other types. A voxel has its
-/// corners in rows, and a prism the first base as seen from outside.
-std::vector<int> volume_corners(int type) {
-  switch (type) {
-    case 10:
-    case 24:
-    case 71:
-      return {0, 1, 2, 3};
-    case 11:
-      return {0, 1, 3, 2, 4, 5, 7, 6};
-    case 12:
-    case 25:
-    case 29:
-    case 33:
-    case 72:
-      return {0, 1, 2, 3, 4, 5, 6, 7};
-    case 13:
-    case 26:
-    case 32:
-    case 73:
-      return {0, 2, 1, 3, 5, 4};
-    case 14:
-    case 27:
-    case 74:
-      return {0, 1, 2, 3, 4};
-    default:
-      return {};
-  }
+/// The corners of volume elements of this type in the order of add_volume, as digits; "" of other types. A
+/// voxel has its corners in rows, and a prism the first base as seen from outside. Quadratic elements,
+/// Lagrange's, Bezier's and others have their corners first.
+const char* volume_corners(int type) {
+  static const std::vector<int> kinds[] = {{10, 24, 64, 71, 78},
+                                           {12, 25, 29, 33, 67, 72, 79},
+                                           {13, 26, 31, 32, 65, 73, 80},
+                                           {14, 27, 37, 66, 74, 81},
+                                           {11}};
+  constexpr const char* corners[] = {"0123", "01234567", "021354", "01234", "01324576"};
+  for (std::size_t k = 0; k < std::size(corners); ++k)
+    if (std::find(kinds[k].begin(), kinds[k].end(), type) != kinds[k].end()) return corners[k];
+  return "";
+}
+
+/// Is it a volume of another kind: a prism over a pentagon or a hexagon, a set of points, a polyhedron?
+bool is_other_volume(int type) { return type == 15 || type == 16 || type == 41 || type == 42; }
+
+/// A cell by its type, number and points.
+struct Cell {
+  int type, number;
+  const int* points;
+  std::size_t n;
+};
+
+/// Adds a cell if it is a volume, whose corners are in this order.
+void add_cell_to(Volumes& volumes, const Cell& cell, std::string_view order, const std::string& place) {
+  if (is_other_volume(cell.type) && volumes.unread.empty())
+    volumes.unread = place + ": cell " + std::to_string(cell.number) + " is a volume of type " +
+                     std::to_string(cell.type) + ", a kind whose faces are not read, and there are no others";
+  if (order.empty()) return;
+  int corners[8];
+  for (std::size_t k = 0; k < order.size(); ++k) corners[k] = cell.points[order[k] - '0'];
+  add_volume(volumes, corners, static_cast<int>(order.size()), static_cast<int>(cell.n), cell.number);
 }
 
 }  // namespace
@@ -111,10 +120,9 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       element(4);
       break;
     default:  // volumes, vertices and lines
-      if (std::vector<int> nodes = volume_corners(type); !nodes.empty() && polygons.ends.empty()) {
-        expect(nodes.size(), max_corners);
-        for (int& v : nodes) v = corners[v];
-        add_volume(volumes, nodes.data(), static_cast<int>(nodes.size()), cells);
+      if (const std::string_view order = volume_corners(type); polygons.ends.empty()) {
+        if (!order.empty()) expect(order.size(), max_corners);
+        add_cell_to(volumes, {type, cells, corners, n}, order, place);
       }
       for (int curved : {30, 36, 61, 62, 63, 76, 77})
         if (type == curved)
@@ -122,14 +130,16 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       break;
   }
   ++cells;
+  if (!polygons.ends.empty() && !volumes.kind.empty()) volumes = {};
 }
 
 Stream vtk_surface(VtkData data) {
   Stream stream;
   Surface& s = stream.surface;
   s.points = std::move(data.points);
-  if (std::vector<int> cells = add_outer_faces(data.polygons, data.volumes, stream); !cells.empty())
-    data.cell = std::move(cells);
+  const std::vector<int> volumes = add_outer_faces(data.polygons, data.volumes, stream);
+  if (!volumes.empty()) data.cell = volumes;
+  const int dimension = volumes.empty() ? 2 : 3;  // of what has the names of patches
   const std::size_t n_polygons = data.polygons.ends.size();
   std::vector<int> patch;
   for (const char* label : labels)
@@ -154,8 +164,8 @@ Stream vtk_surface(VtkData data) {
     if (!a.name.empty() && fits(s.face, a, static_cast<std::size_t>(data.cells)))
       add_columns(stream, data.polygons.columns, n_polygons, gather(a, data.cell));
   for (const Array& a : data.field_data)
-    if (std::vector<int> v; a.size() == 2 && whole_numbers(a.data, v) && (v[1] == 1 || v[1] == 2))
-      stream.names.push_back({v[1], v[0], a.name});
+    if (std::vector<int> v; a.size() == 2 && whole_numbers(a.data, v) && (v[1] == 1 || v[1] == dimension))
+      stream.names.push_back({std::min(v[1], 2), v[0], a.name});
   set_faces(stream, data.polygons);
   return stream;
 }

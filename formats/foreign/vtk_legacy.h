@@ -7,8 +7,8 @@ namespace meshpipe {
 
 bool is_vtk_legacy(std::string_view bytes);
 /// Reads data sets POLYDATA and UNSTRUCTURED_GRID of any version, text or binary: polygons, strips and
-/// surface cells, with their data as columns. Points and lines are left out, and volumes where there
-/// are surface cells.
+/// surface cells, with their data as columns; without these the outer faces of volumes. Points and lines are
+/// left out.
 Stream read_vtk_legacy(std::string_view bytes, const std::string& where);
 /// Writes version 3 with every column as data and names as field data (field_of_names): an UNSTRUCTURED_GRID,
 /// which more programs read, or POLYDATA.

@@ -8,8 +8,7 @@ namespace meshpipe {
 bool is_vtk_xml(std::string_view bytes);
 /// Reads UnstructuredGrid and PolyData: text, base64 or raw bytes, in place or appended, with or without
 /// zlib, in either byte order and any number of pieces. Polygons, strips and surface cells come with their
-/// data as columns; points and lines are left out, and volumes where there
-/// are surface cells.
+/// data as columns, without these the outer faces of volumes; points and lines are left out.
 Stream read_vtk_xml(std::string_view bytes, const std::string& where);
 
 /// Writes triangles with vertex columns as point arrays and face columns as cell arrays; components of an

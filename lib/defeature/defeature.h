@@ -35,11 +35,11 @@ struct DefeatureOptions {
 };
 
 /// Closes strips between two lines (model edges, borders) at most `tolerance` wide, contracts short lines and
-/// small regions between corners, and removes loose fragments: small components with a border, near the rest.
-/// No point moves farther than `tolerance`; other topology stays, and so do strips from which the surface
-/// folds back (the rim of a thin plate, the bottom of a slot). Needs face column `model`; all columns follow.
-/// `given`: per half-edge the number of a line stronger than creases, or -1; or null. Throws: NotAdmissible
-/// at a vertex of several fans, and as opposite_halfedges.
+/// small regions between corners, merges corners with lines next to them, and removes loose fragments: small
+/// components with a border, near the rest. No point moves farther than `tolerance`; other topology stays,
+/// and so do strips from which the surface folds back (the rim of a thin plate, the bottom of a slot). Needs
+/// face column `model`; all columns follow. `given`: per half-edge the number of a line stronger than
+/// creases, or -1; or null. Throws: NotAdmissible at a vertex of several fans, and as opposite_halfedges.
 DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 

@@ -119,8 +119,7 @@ Vec3 Zipper::normal_beyond(int h) const {
 
 bool Zipper::folded(const Side& s) const { return turn(normal_beyond(s.a), normal_beyond(s.b)) > fold_angle; }
 
-/// Is the edge of h a rung between two lines that may be joined? So is one to a corner or to the end of a
-/// line.
+/// Is the edge of h a rung that may go: between two lines, to a corner, or to the end of a line?
 bool Zipper::is_strip(int h) const {
   bool any = false;
   for (int e : {h, mesh.opp[h]}) {

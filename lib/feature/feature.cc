@@ -27,9 +27,9 @@ constexpr double many_share = 0.1;           ///< the same of eight or more: par
 constexpr double noise = 2.5;  ///< edges between weak and strong over the strong: parts up to 2, scans 3.2
 constexpr double most_between = 0.7;  ///< the same: polyhedra up to 0.7, scans however rough from 0.9
 constexpr double least_edge = 0.4;    ///< target lengths, of the mean edge: finer polyhedra are as others,
-constexpr int few_triangles = 24;     ///< unless they have no more: a mesh without their edges has no fewer
-constexpr double step_share = 0.85;   ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
-constexpr double gap = 0.05;  ///< edges between weak and strong, as a share of the strong ones' length
+constexpr int few_triangles = 24;  ///< unless they have no more, as a hexagonal prism: they cost no triangles
+constexpr double step_share = 0.85;  ///< of the creases; segmented images have 0.96 or more, parts up to 0.8
+constexpr double gap = 0.05;         ///< edges between weak and strong, as a share of the strong ones' length
 constexpr double spacing = 1.5, dense = 0.85;  ///< target lengths between creases, on average; struts: 0.75
 /// Target lengths: thinner triangles do not show which way they face, and mfeature removes such features
 /// unasked. (At 0.02, two lines along a needle forced needles: a third of the rounds that CAD had to repeat.)

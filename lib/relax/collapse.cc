@@ -20,8 +20,9 @@ bool makes_chord(const State& s, int h, int gone, int kept) {
   return found;
 }
 
-/// May `gone` go as far as the connectivity and what is held are concerned?
-bool may_collapse(const State& s, int h, int gone, int kept, bool merge, bool at_fault = false) {
+/// May `gone` go as far as the connectivity and what is held are concerned? With `may_fold` also from between
+/// held vertices.
+bool may_collapse(const State& s, int h, int gone, int kept, bool merge, bool may_fold = false) {
   const EditMesh& m = s.mesh;
   if (s.hold[kept] == frozen) return false;  // may be joined outside the patch
   if (merge ? s.hold[gone] != fixed : s.hold[gone] >= fixed || (s.hold[gone] == slides && !m.hard[h]))
@@ -32,7 +33,7 @@ bool may_collapse(const State& s, int h, int gone, int kept, bool merge, bool at
   if (g < 0) return true;
   const int c = m.apex(h), d = m.apex(g);
   return m.valence(gone) + m.valence(kept) - 4 <= rules::largest_valence &&
-         (at_fault || m.valence(gone) == 3 || !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]));
+         (may_fold || m.valence(gone) == 3 || !(s.hold[c] && s.hold[d] && s.hold[kept] && !m.hard[h]));
 }
 
 /// Does the line through `gone` hardly change when it goes straight to p, where `kept` will be?

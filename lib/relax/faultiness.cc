@@ -47,7 +47,7 @@ double pairs_around(const Mesh& mesh, int t, const Box& box, const Surroundings&
 
 }  // namespace
 
-Surroundings surroundings(const State& s, std::vector<int> triangles, double mean) {
+Surroundings surroundings(const State& s, const MeshTree& tree, std::vector<int> triangles, double mean) {
   std::sort(triangles.begin(), triangles.end());
   auto box = [&](int t) {
     const auto [a, b, c] = s.mesh.tris[t];
@@ -58,11 +58,16 @@ Surroundings surroundings(const State& s, std::vector<int> triangles, double mea
   for (int t : triangles) reach = join(reach, box(t));
   const double margin = rules::reach_of_patch * mean;
   reach.lo = reach.lo - Vec3{margin, margin, margin}, reach.hi = reach.hi + Vec3{margin, margin, margin};
+  std::vector<int> around;
+  tree.overlapping(reach, [&](int t) {
+    if ((int)around.size() <= rules::most_around &&
+        !std::binary_search(triangles.begin(), triangles.end(), t))
+      around.push_back(t);
+  });
   Surroundings found;
-  for (int t = 0; t < (int)s.mesh.tris.size(); ++t) {
-    if (s.mesh.dead(t) || !overlap(box(t), reach)) continue;
-    if (std::binary_search(triangles.begin(), triangles.end(), t)) continue;
-    if ((int)found.box.size() == rules::most_around) return {};
+  if ((int)around.size() > rules::most_around) return found;
+  std::sort(around.begin(), around.end());
+  for (int t : around) {
     const int n = (int)found.mesh.points.size();
     for (int v : s.mesh.tris[t]) found.mesh.points.push_back(s.points[v]);
     found.mesh.tris.push_back({n, n + 1, n + 2}), found.box.push_back(box(t));

@@ -11,9 +11,10 @@ struct Surroundings {
   std::vector<Box> box{};
 };
 
-/// Returns the triangles that a change of these might intersect, within 0.3 of the mean size; none if they
-/// are more than 300: each trial looks at all of them.
-Surroundings surroundings(const State& s, std::vector<int> triangles, double mean);
+/// Returns the triangles that a change of these might intersect (rules::reach_of_patch, with this mean size);
+/// none if they are too many for each trial to look at all of them (rules::most_around). Requires: there are
+/// triangles, and the tree is up to date.
+Surroundings surroundings(const State& s, const MeshTree& tree, std::vector<int> triangles, double mean);
 
 /// What is around a patch, the patch as it was first, and what was found of it: an edit changes few of its
 /// triangles. Pairs are of the patch; `meets`: what pairs with the surroundings add, per triangle.

@@ -195,8 +195,8 @@ double triangles_added(const State& s, const std::vector<double>& before) {
 }
 
 /// Removes faults. Where some are left for which mcheck would refuse the mesh, sizes are too large: the mesh
-/// at the `start` is optimized to `goal` again, with smaller ones there, as long as that helps. Returns what
-/// is left, and sets the number of restarts.
+/// at the `start` is optimized to `goal` again, with smaller ones there, as long as that halves them. Returns
+/// what is left, and sets the number of restarts.
 Intersections remove_all_faults(State& s, State start, int sweeps, double goal, Samples& samples,
                                 int& restarts) {
   const std::vector<double> refinement = start.refinement;
@@ -210,12 +210,12 @@ Intersections remove_all_faults(State& s, State start, int sweeps, double goal, 
     optimize(again, sweeps, goal + added, &samples);
     Faults now = remove_faults(again, samples);
     ++restarts;
-    if (now.less_than(left)) {
+    const bool halved = now.lowest < rules::halved * left.lowest;
+    if (now.less_than(left))
       s = std::move(again), left = std::move(now);
-    } else {
-      if (!(now.lowest < rules::less_excess * left.lowest)) break;
+    else
       left.reductions = now.reductions, left.lowest = now.lowest;
-    }
+    if (!halved) break;
   }
   return left;
 }

@@ -52,10 +52,10 @@ struct InVain {
   std::unordered_set<std::uint64_t> tried{};
 };
 
-/// A number from what an attempt to repair depends on: triangles, places of the reference near to them, and
-/// the bits of `how`; not from the mean size, see InVain.
-std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, const std::vector<Vec3>& missed,
-                          unsigned how) {
+/// A number from what an attempt to repair depends on: triangles, those around them, places of the reference
+/// near to them, and the bits of `how`; not from the mean size, see InVain.
+std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, const Surroundings& around,
+                          const std::vector<Vec3>& missed, unsigned how) {
   std::uint64_t sum = how;
   auto add = [&](auto x) {
     sum = (std::rotl(sum, 23) ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
@@ -67,6 +67,7 @@ std::uint64_t fingerprint(const State& s, const std::vector<int>& triangles, con
       add_point(s.points[v]), add(s.refinement[v]);
       add((std::uint64_t)s.hold[v] << 2 | (std::uint64_t)(s.mesh.opp[h] < 0) << 1 | (s.mesh.hard[h] != 0));
     }
+  for (Vec3 p : around.mesh.points) add_point(p);
   for (Vec3 p : missed) add_point(p);
   return sum;
 }
@@ -91,9 +92,10 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   const int begun = s.clocks.now;
   bool thorough = (int)fault.pairs.size() <= rules::many_pairs;
   known.tree(), known.needle_corners();  // before threads ask for them
+  MeshTree& search = known.samples.search;
   auto print_of = [&](const Item& item, const std::vector<int>& triangles) {
     const unsigned contacts = known.contact_tree.has_value();
-    return fingerprint(s, triangles, item.missed,
+    return fingerprint(s, triangles, surroundings(s, search, triangles, mean), item.missed,
                        (unsigned)thorough | (unsigned)s.acute << 1 | contacts << 2);
   };
   auto around = [&](const Item& item, std::vector<int> before) {
@@ -108,12 +110,13 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
       const auto second = std::find(found.begin(), found.end(), item.other);
       std::rotate(found.begin() + 1, second, second + 1);
     }
+    search.renew(s);
     if ((int)found.size() > rules::largest_patch || in_vain.tried.count(print_of(item, found))) found.clear();
     return found;
   };
   std::mutex one_at_a_time;
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
-    PatchBefore before{surroundings(s, triangles, mean)};
+    PatchBefore before{surroundings(s, search, triangles, mean)};
     auto better = repaired(s, triangles, thorough,
                            {[&](const State& patch) {
                               return objective(patch) + faultiness(patch, item.missed, mean, known, before);
@@ -295,7 +298,8 @@ Faults remove_faults(State& s, Samples& samples) {
     const int mild = search.accepted->fault.mild;
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
-  if (!search.accepted && !too_many) search.go_on(s, refused), remove();
+  // limits without a margin allow distances, but no pairs
+  if (!search.accepted && !too_many && search.best->fault.count() == 0) search.go_on(s, refused), remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

@@ -127,8 +127,9 @@ constexpr double reduced_at_distance = 0.27;  // over the distance in sizes: the
 constexpr double least_reduced = 0.25, most_reduced = 0.6;  // within these bounds
 constexpr double reduced_gradation = 0.5;                   // growth of the size per length away from there
 constexpr double reduced_growth = 0.5;                      // of the triangles: what smaller sizes may add
-constexpr double most_left = 150;  // sum of faults: of 77 begun again none with over 78 became good
-constexpr int most_restarts = 3;   // each takes as long as the first time
+constexpr double most_left = 80;  // sum of faults: of 77 begun again none with over 78 became good
+constexpr double halved = 0.5;    // of the sum: starts after one that leaves more have all been in vain
+constexpr int most_restarts = 3;  // each takes as long as the first time
 constexpr double far_weight = 10, pair_weight = 5;  // of the objective
 constexpr double reach_of_patch = 0.3;  // mean sizes: how far from it a change of a patch may meet others
 constexpr int most_around = 300;        // triangles: more of them would take longer than the patch

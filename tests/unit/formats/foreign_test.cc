@@ -117,6 +117,36 @@ TEST(Volumes, TheirOuterFacesAreTheSurfaceWhereThereIsNone) {
   EXPECT_EQ(failure(vtk_cells("3 11 12 13", "10")), "in:7: cell 0 of type 10 has 3 points, expected 4");
 }
 
+// quadratic, collapsed, with nodes of their own, of a kind that is not read
+TEST(Volumes, OfManyKinds) {
+  auto faces = [](const std::string& cells, const std::string& types) {
+    return read_any(vtk_cells(cells, types), "in").surface.tris.size();
+  };
+  EXPECT_EQ(faces("8 0 1 2 3 4 5 6 7", "12"), 12u);
+  EXPECT_EQ(faces("8 0 1 3 2 4 5 7 6", "11"), 12u);
+  EXPECT_EQ(faces("8 0 1 2 3 8 8 8 8", "12"), 6u);  // a pyramid
+  EXPECT_EQ(faces("8 0 1 2 2 8 8 8 8 4 0 2 3 8", "12 10"), 6u);
+  const Stream curved = read_any(vtk_cells("10 0 1 2 4 9 9 9 9 9 9", "24"), "in");
+  EXPECT_EQ(curved.remarks.back(), "read by their corners alone: 1 curved elements of higher order");
+  EXPECT_EQ(failure(vtk_cells("8 0 1 2 3 4 5 6 7 5 4 5 6 7 8", "12 42")),
+            "in:7: cell 1 is a volume of type 42, a kind whose faces are not read, and there are no others");
+  EXPECT_EQ(faces("5 4 5 6 7 8 3 0 1 2", "42 5"), 1u);
+  // two cubes that touch, each with nodes of its own
+  std::string points, cells;
+  for (int cube = 0; cube < 2; ++cube) {
+    for (int z : {cube, cube + 1})
+      for (const char* p : {"0 0 ", "1 0 ", "1 1 ", "0 1 "}) points += p + std::to_string(z) + '\n';
+    cells += "8 ";
+    for (int v = 0; v < 8; ++v) cells += std::to_string(8 * cube + v) + ' ';
+  }
+  const Stream cubes =
+      read_any("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 float\n" + points +
+                   "CELLS 2 18\n" + cells + "\nCELL_TYPES 2\n12 12\n",
+               "in");
+  EXPECT_EQ(cubes.surface.tris.size(), 20u);
+  EXPECT_NEAR(volume(cubes.surface), 2, 1e-12);
+}
+
 TEST(Volumes, OfMshAndInria) {
   // two tetrahedra with the triangle 1 2 3 between them
   const std::string points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n";
@@ -132,6 +162,20 @@ TEST(Volumes, OfMshAndInria) {
   EXPECT_NEAR(volume(s.surface), 1.0 / 3, 1e-12);
   EXPECT_EQ(read_any(gmsh("3\n" + two + "9 2 2 5 1 1 2 3\n"), "in").surface.face.get<int>("patch"),
             std::vector<int>{5});
+  // in two groups, as Gmsh writes it; of a kind that is not known
+  EXPECT_EQ(read_any(gmsh("3\n" + two + "9 4 2 8 1 1 3 2 5\n"), "in").surface.tris, s.surface.tris);
+  EXPECT_EQ(failure(gmsh("3\n" + two + "9 118 2 8 1 1 3 2 5\n")),
+            "in:16: elements of type 118 are not read, and there are no faces");
+  const Stream v4 = read_any(
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 6 \"wall\"\n3 6 "
+      "\"fluid\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 0 1\n3 0 0 0 1 1 1 2 6 7 0\n$EndEntities\n"
+      "$Nodes\n1 4 1 4\n3 3 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n3 3 4 1\n7 1 2 3 4\n$EndElements\n",
+      "in");
+  EXPECT_EQ(v4.surface.face.get<int>("patch"), (std::vector<int>(4, 6)));
+  ASSERT_EQ(v4.names.size(), 1u);
+  EXPECT_EQ(v4.name_of(2, 6), "fluid");
   std::string inria =
       "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 0 0 -1 0\n"
       "Tetrahedra 2\n1 2 3 4 6\n1 3 2 5 7\n";

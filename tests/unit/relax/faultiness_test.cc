@@ -28,19 +28,25 @@ Surface sheets(int more, double gap) {
   return s;
 }
 
+Surroundings around(const State& s, const std::vector<int>& triangles) {
+  MeshTree tree;
+  tree.renew(s);
+  return surroundings(s, tree, triangles, 4);
+}
+
 TEST(Surroundings, AreWhatIsNearAndNotOfThePatch) {
   Drawn near(sheets(1, 0.2));
-  EXPECT_EQ(surroundings(near.s, {3, 0, 2, 1}, 4).mesh.tris.size(), 4u);
-  EXPECT_EQ(surroundings(near.s, {0}, 4).mesh.tris.size(), 7u);
+  EXPECT_EQ(around(near.s, {3, 0, 2, 1}).mesh.tris.size(), 4u);
+  EXPECT_EQ(around(near.s, {0}).mesh.tris.size(), 7u);
   Drawn far(sheets(1, 2));
-  EXPECT_TRUE(surroundings(far.s, {0, 1, 2, 3}, 4).box.empty());
+  EXPECT_TRUE(around(far.s, {0, 1, 2, 3}).box.empty());
 }
 
 TEST(Surroundings, TooManyAreNotLookedAt) {
   Drawn m(sheets(75, 0.01));
-  EXPECT_EQ(surroundings(m.s, {0, 1, 2, 3}, 4).box.size(), 300u);
+  EXPECT_EQ(around(m.s, {0, 1, 2, 3}).box.size(), 300u);
   Drawn more(sheets(76, 0.01));
-  EXPECT_TRUE(surroundings(more.s, {0, 1, 2, 3}, 4).box.empty());
+  EXPECT_TRUE(around(more.s, {0, 1, 2, 3}).box.empty());
 }
 
 // e rises through the sheet above
@@ -50,7 +56,7 @@ TEST(Faultiness, PairsWithTheSurroundingsCount) {
   Samples samples{feature_samples(m.reference, 10), {}};
   Known known{m.reference.surface, samples};
   State patch = extract(m.s, triangles);
-  PatchBefore alone, before{surroundings(m.s, triangles, 4)};
+  PatchBefore alone, before{around(m.s, triangles)};
   EXPECT_EQ(faultiness(patch, {}, 4, known, before), 0);
   EXPECT_EQ(faultiness(patch, {}, 4, known, alone), 0);
   patch.points[4].z = 0.4;
