@@ -26,7 +26,11 @@ LIMITS = {
     "exceptions": (0, "exceptions to those words that match nothing"),
     "names": (0, "names of classes that two headers give"),
     "modules": (0, "modules without a header of their name, or not in the order"),
+    "strays": (0, "files of the repository in other places at its top, as a program left them"),
 }
+
+# what the top of the repository holds, other than names with a dot in front
+TOP = ["CMakeLists.txt", "LICENSE", "README.md", "formats", "lib", "scripts", "tests", "tools"]
 
 # word -> what to write instead
 WORDS = {
