@@ -89,6 +89,19 @@ void expect(Text& text, const char* first, const char* second = nullptr) {
     text.fail(std::string("expected '") + second + "' after '" + first + "', found " + quoted(w));
 }
 
+/// Is the word the end of `what`, as endloop or, of some writers, end loop?
+bool is_end(Text& text, std::string_view word, const char* what) {
+  if (same_word(word, "end")) return same_word(text.word(), what);
+  return same_word(word.substr(0, 3), "end") && same_word(word.substr(3), what);
+}
+
+void expect_end(Text& text, const char* what) {
+  const std::string end = std::string("end") + what;
+  text.need_line(end.c_str());
+  if (const std::string_view w = text.word(); !is_end(text, w, what))
+    text.fail("expected '" + end + "', found " + quoted(w));
+}
+
 Stream read_text(std::string_view bytes, const std::string& where) {
   Text text(bytes, where);
   Stream stream;
@@ -108,8 +121,8 @@ Stream read_text(std::string_view bytes, const std::string& where) {
         expect(text, "vertex");
         q = next_point(text);
       }
-      expect(text, "endloop");
-      expect(text, "endfacet");
+      expect_end(text, "loop");
+      expect_end(text, "facet");
       if (corners.size() == max_facets)
         text.fail("more than " + std::to_string(max_facets) + " triangles, which is the limit");
       corners.add(p);
@@ -120,7 +133,7 @@ Stream read_text(std::string_view bytes, const std::string& where) {
       ++solid;
       if (std::string_view name = text.rest(); !name.empty())
         stream.names.push_back({2, solid, std::string(name)});
-    } else if (same_word(w, "endsolid")) {
+    } else if (is_end(text, w, "solid")) {
       if (!open) text.fail("'endsolid' without a solid");
       open = false;
     } else if (open || solid == 0 || same_word(w, "outer") || same_word(w, "vertex") ||

@@ -236,6 +236,15 @@ TEST(Stl, EachSolidIsAPatch) {
   EXPECT_EQ(s.surface.points[1], (Vec3{1, 0, 0}));
 }
 
+TEST(Stl, EndsMayBeTwoWords) {
+  const std::string f =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nEND LOOP\nend facet\n";
+  EXPECT_EQ(
+      read_any("solid a\n" + f + f + "end solid a\nsolid\n" + f + "end solid\n", "in").surface.tris.size(),
+      3u);
+  EXPECT_EQ(failure("solid\n" + f + "end\n"), "in:9: expected 'solid', 'facet' or 'endsolid', found 'end'");
+}
+
 TEST(Stl, LinesMayEndInCarriageReturns) {
   std::string text = std::string("solid\n") + facet + "endsolid\n";
   std::replace(text.begin(), text.end(), '\n', '\r');
