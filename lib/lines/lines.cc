@@ -535,7 +535,7 @@ Lines make_lines(const Surface& surface, const std::vector<Chart>& charts, const
   std::vector<char> inside(n_vertices, 0);
   for (const Peak& p : peaks) inside[p.vertex] = 1;
   for (int v : chains.vertex) inside[v] = 0;
-  refine_until_noncrossing(chains, charts, inside, division);
+  refine_until_noncrossing(chains, surface.points, charts, inside, division);
   return lines_of(chains, chain_tag, division, keep_border);
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "lib/core/error.h"
+#include "lib/core/number.h"
 #include "lib/core/parallel.h"
 #include "lib/core/segments.h"
 
@@ -76,13 +77,9 @@ struct Finding {
 
 class Refinement {
  public:
-  Refinement(const Chains& chains, const std::vector<Chart>& charts, const std::vector<char>& inside,
-             Division& division)
-      : chains_(chains),
-        n_vertices_((int)inside.size()),
-        division_(division),
-        drawn_(charts.size()),
-        inside_(charts.size()) {
+  Refinement(const Chains& chains, const std::vector<Vec3>& points, const std::vector<Chart>& charts,
+             const std::vector<char>& inside, Division& division)
+      : chains_(chains), points_(points), division_(division), drawn_(charts.size()), inside_(charts.size()) {
     locate_chains(charts);
     for (std::size_t p = 0; p < charts.size(); ++p)
       for (std::size_t i = 0; i < charts[p].uv.size(); ++i)
@@ -109,7 +106,7 @@ class Refinement {
   void keep_graded(int line);
 
   const Chains& chains_;
-  const int n_vertices_;
+  const std::vector<Vec3>& points_;
   Division& division_;
   std::vector<Vec2> uv_;
   std::vector<std::vector<Drawn>> drawn_;  ///< per part
@@ -128,7 +125,7 @@ void Refinement::locate_chains(const std::vector<Chart>& charts) {
     }
   }
   uv_.reserve(total);  // Drawn points into it
-  std::vector<int> local(n_vertices_, -1);
+  std::vector<int> local(points_.size(), -1);
   for (int p = 0; p < (int)charts.size(); ++p) {
     const auto& vertex = charts[p].mesh.vertex;
     for (int i = 0; i < (int)vertex.size(); ++i) local[vertex[i]] = i;
@@ -342,7 +339,7 @@ void Refinement::run() {
   std::vector<char> dirty(n_parts, 1), bare(n_lines, 0);
   for (int round = 0;; ++round) {
     std::vector<int> first_key(n_lines);
-    int key = n_vertices_;
+    int key = (int)points_.size();
     for (int l = 0; l < n_lines; ++l) {
       first_key[l] = key;
       key += (int)division_[l].size();
@@ -365,7 +362,8 @@ void Refinement::run() {
         }
       if (hopeless)
         throw GoalMissed("lines " + std::to_string(f.meeting[0]) + " and " + std::to_string(f.meeting[1]) +
-                         " meet in the map of part " + std::to_string(p));
+                         " meet in the map of part " + std::to_string(p) + ", the first begins at (" +
+                         shown(points_[chains_.vertex[chains_.chain[f.meeting[0]].first]]) + ")");
     }
     if (round >= patience)
       for (const SegmentOf& s : refine)
@@ -417,9 +415,10 @@ std::vector<Cut> divide(const Chains& chains, int line, int n) {
   return cuts;
 }
 
-void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts,
-                              const std::vector<char>& inside, Division& division) {
-  Refinement(chains, charts, inside, division).run();
+void refine_until_noncrossing(const Chains& chains, const std::vector<Vec3>& points,
+                              const std::vector<Chart>& charts, const std::vector<char>& inside,
+                              Division& division) {
+  Refinement(chains, points, charts, inside, division).run();
 }
 
 }  // namespace meshpipe

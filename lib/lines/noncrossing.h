@@ -43,9 +43,10 @@ std::vector<Cut> divide(const Chains& chains, int line, int n);
 /// two meet except at common ends, and loops keep their orientation, most of their area, and the lines inside
 /// them. Neighboring segments of a refined line differ by at most a factor of three in measure. Ends, since a
 /// chain cut at all its vertices is drawn as it is. `inside`: flags of vertices, on no line, that must stay
-/// inside the segments around their part. Throws: GoalMissed naming part and lines if a chart is not
+/// inside the segments around their part. Throws: GoalMissed naming part, lines and place if a chart is not
 /// one-to-one.
-void refine_until_noncrossing(const Chains& chains, const std::vector<Chart>& charts,
-                              const std::vector<char>& inside, Division& division);
+void refine_until_noncrossing(const Chains& chains, const std::vector<Vec3>& points,
+                              const std::vector<Chart>& charts, const std::vector<char>& inside,
+                              Division& division);
 
 }  // namespace meshpipe

@@ -461,6 +461,23 @@ TEST(Lines, SaysWhatIsMissing) {
   EXPECT_THROW(make_lines(s, charts), NotAdmissible);
 }
 
+// the map has a corner of the square far beyond the opposite one
+TEST(Lines, LinesThatMeetInAMapAreNamedWithTheirPlace) {
+  Surface s = grid(
+      2, 2, flat, [](int, int) { return 0; }, 0.2);
+  auto charts = flat_charts(s, 1);
+  charts[0].uv[0] = {30, 31};
+  try {
+    make_lines(s, charts);
+    ADD_FAILURE() << "not refused";
+  } catch (const GoalMissed& e) {
+    EXPECT_NE(
+        std::string(e.what()).find("lines 0 and 2 meet in the map of part 0, the first begins at (0 0 0)"),
+        std::string::npos)
+        << e.what();
+  }
+}
+
 // Doubles near 1e14 are 1/64 apart, 16 of them a quarter.
 TEST(Lines, RefusesSizesBelowTheSpacingOfCoordinates) {
   const Mesh mesh{{{1e14, 0, 0}, {1e14 + 1, 0, 0}, {1e14, 1, 0}}, {{0, 1, 2}}};
