@@ -328,9 +328,10 @@ TEST(Defeature, ALineThatEndsNextToAnotherGoesOnToIt) {
   ASSERT_EQ(r.removed.size(), 1u);
   EXPECT_NEAR(r.removed[0].width, 0.5 * width, 1e-9);
   EXPECT_EQ(s.points.size(), 8u);  // c is on a-b
-  for (const Tri& t : s.tris)
-    for (int v : t)
-      if (s.points[v].z == 0 && s.points[v].y < 1) EXPECT_EQ(s.points[v].y, 0);
+  for (Vec3 p : s.points)
+    if (p.z == 0 && p.y < 1) {
+      EXPECT_EQ(p.y, 0);
+    }
 }
 
 /// A wall below the crease a-b and a deck behind the crease a-p-b, which turns by 33 degrees at p:
