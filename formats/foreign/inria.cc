@@ -230,22 +230,14 @@ class InriaReader {
         numbers(required_edges_, "the number of required edges");
         break;
       case triangles:
-        cells(3, false);
-        break;
       case quadrilaterals:
-        cells(4, false);
+        cells(keyword == triangles ? 3 : 4, false);
         break;
       case tetrahedra:
-        cells(4, true);
-        break;
       case pyramids:
-        cells(5, true);
-        break;
       case prisms:
-        cells(6, true);
-        break;
       case hexahedra:
-        cells(8, true);
+        cells(keyword == tetrahedra ? 4 : keyword == pyramids ? 5 : keyword == prisms ? 6 : 8, true);
         break;
       case corners:
         marks("corner");

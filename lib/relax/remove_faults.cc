@@ -93,9 +93,9 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   bool thorough = (int)fault.pairs.size() <= rules::many_pairs;
   known.tree(), known.needle_corners();  // before threads ask for them
   MeshTree& search = known.samples.search;
-  auto print_of = [&](const Item& item, const std::vector<int>& triangles) {
+  auto print_of = [&](const Item& item, const std::vector<int>& triangles, const Surroundings& around) {
     const unsigned contacts = known.contact_tree.has_value();
-    return fingerprint(s, triangles, surroundings(s, search, triangles, mean), item.missed,
+    return fingerprint(s, triangles, around, item.missed,
                        (unsigned)thorough | (unsigned)s.acute << 1 | contacts << 2);
   };
   auto around = [&](const Item& item, std::vector<int> before) {
@@ -111,7 +111,9 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
       std::rotate(found.begin() + 1, second, second + 1);
     }
     search.renew(s);
-    if ((int)found.size() > rules::largest_patch || in_vain.tried.count(print_of(item, found))) found.clear();
+    if ((int)found.size() > rules::largest_patch ||
+        in_vain.tried.count(print_of(item, found, surroundings(s, search, found, mean))))
+      found.clear();
     return found;
   };
   std::mutex one_at_a_time;
@@ -124,7 +126,7 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
                             true, triangles.size() > 1 && triangles[1] == item.other ? 2 : 1});
     if (!better) {
       const std::lock_guard lock(one_at_a_time);
-      in_vain.tried.insert(print_of(item, triangles));
+      in_vain.tried.insert(print_of(item, triangles, before.around));
     }
     return better;
   };
