@@ -290,10 +290,17 @@ Faults remove_faults(State& s, Samples& samples) {
   search.look(s);
   const bool too_many =
       (double)search.now.pairs.size() > std::max(rules::most_pairs, rules::most_pairs_share * s.mesh.live);
+  // in turns, each from the mesh with the lowest sum: refinement only adds faults where many are left
   auto remove = [&] {
-    if (too_many) return;
-    if (!search.best->fault.none()) refine(s, search, most);
-    if (!search.best->fault.none()) repair(s, search);
+    double before = infinity;
+    while (!too_many && !search.best->fault.none() &&
+           search.lowest->fault.sum() < rules::worth_a_turn * before) {
+      before = search.lowest->fault.sum();
+      search.go_to(s, search.lowest);
+      refine(s, search, most);
+      if (!search.best->fault.none()) repair(s, search);
+      if (search.accepted) break;
+    }
   };
   remove();
   if (search.accepted) {
@@ -301,7 +308,9 @@ Faults remove_faults(State& s, Samples& samples) {
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
   // limits without a margin allow distances, but no pairs
-  if (!search.accepted && !too_many && search.best->fault.count() == 0) search.go_on(s, refused), remove();
+  if (!search.accepted && !too_many && search.best->fault.count() == 0 &&
+      search.best->fault.sum() < rules::nearly_accepted)
+    search.go_on(s, refused), remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

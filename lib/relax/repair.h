@@ -105,7 +105,7 @@ struct Faults : Intersections {
 
 /// Repairs pairs of triangles that intersect where the reference does not; refines there, where the mesh
 /// folds, at needles, and where mesh and reference are almost half the size apart; then repairs there. Goes
-/// on until rounds no longer help, then, if mcheck accepts none and no pairs are left, without a margin. If
+/// on as long as this helps, then, if mcheck accepts none and few needles are left, without a margin. If
 /// mcheck accepts one of the meshes seen, leaves the best of these, with its mild needles repaired; else the
 /// one with the fewest faults, which it returns. With more than 400 pairs at first, and one for 100
 /// triangles, it changes nothing.

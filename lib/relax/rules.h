@@ -114,8 +114,10 @@ constexpr double pair_excess =
 constexpr double less_excess = 0.99;       // of that and the sum of distances over the bearable: a gain
 constexpr double stale_share = 0.1;        // of the triangles: more that are new are worth a new search tree
 constexpr double growth = 1.6, few = 300;  // of the triangles, and triangles: what removal of faults may add
-constexpr double much_worse = 4;  // than the best seen: what is wrong does not go away at smaller sizes
-constexpr int fault_rounds = 24, useless_rounds = 6;
+constexpr double much_worse = 2;  // than the best seen: what is wrong does not go away at smaller sizes
+constexpr int fault_rounds = 24, useless_rounds = 3;
+constexpr double worth_a_turn = 0.7;    // of the sum: what a turn has to leave at most for another
+constexpr double nearly_accepted = 30;  // sum of faults: with more, limits without a margin do not help
 constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
