@@ -177,7 +177,10 @@ void set_model_lines(Stream& stream, const std::vector<LineEdge>& edges) {
   const std::vector<Tri>& tris = stream.surface.tris;
   const std::vector<LineEdge> sorted = sorted_by_ends(edges);
   std::vector<char> found(sorted.size(), 0);
-  Bits model(tris.size(), 0);
+  // edges without a label are in the column only
+  const Column* column = stream.surface.face.find("model");
+  const Bits* before = column ? std::get_if<Bits>(&column->data) : nullptr;
+  Bits model = before ? *before : Bits(tris.size(), 0);
   for (int h = 0; h < 3 * static_cast<int>(tris.size()); ++h)
     if (const LineEdge* e = find_edge(sorted, origin(tris, h), target(tris, h))) {
       model[h / 3] |= static_cast<std::uint8_t>(1 << h % 3);

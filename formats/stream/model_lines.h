@@ -13,7 +13,7 @@ struct LineEdge {
   bool ridge = true, required = false;
 };
 
-/// Marks edges in face column `model`, on both sides. If any has a label, or is not just a ridge, the tables
+/// Adds edges to face column `model`, on both sides. If any has a label, or is not just a ridge, the tables
 /// line and line_vertex get them too: consecutive edges of equal label and marks as one line, with columns
 /// `ridge` and `required` where these distinguish lines. Edges of no triangle are left out, with a remark.
 /// Requires the faces.

@@ -253,6 +253,8 @@ TEST(Lines, OfARemeshedSurfaceAreFoundByItsVertices) {
   const Stream back = read_any(write_as(s, "a.msh", false), "in");
   EXPECT_EQ(back.find("line")->get<int>("tag"), std::vector<int>{6});
   EXPECT_EQ(back.name_of(1, 6), "crease");
+  // an edge without a label is a model edge all the same
+  EXPECT_EQ(back.surface.face.get<std::uint8_t>("model"), s.surface.face.get<std::uint8_t>("model"));
 }
 
 TEST(Colors, OfObjAndOffAreKept) {
