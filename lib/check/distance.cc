@@ -77,6 +77,7 @@ class OneSided : public OneWay {
            double diagonal, const Allowed& allowed)
       : from_(from), order_(order), to_(to), to_tree_(to_tree), diagonal_(diagonal), allowed_(allowed) {
     deviation.ratio.assign(allowed.at.size(), 0);
+    for (double a : allowed.at) most_allowed_ = std::max(most_allowed_, a);
   }
 
   double known = 0;  ///< found on either side: what is not beyond it need not be known any better
@@ -101,7 +102,9 @@ class OneSided : public OneWay {
     if (allowed_.at.empty()) return;
     int t = allowed_.from_mesh ? face : near.face;
     double r = near.distance / allowed_.at[t];
-    if (r > 1 && !allowed_.from_mesh) judge_by_others(p, near.distance, r, t);
+    // no other triangle allows more than `most_allowed_`: a search that far may meet all of them
+    if (r > 1 && !allowed_.from_mesh && near.distance <= most_allowed_)
+      judge_by_others(p, near.distance, r, t);
     deviation.ratio[t] = std::max(deviation.ratio[t], r);
     if (r > deviation.worst) deviation.worst = r, deviation.triangle = t, deviation.place = p;
   }
@@ -135,6 +138,7 @@ class OneSided : public OneWay {
   const Bvh& to_tree_;
   const double diagonal_;
   const Allowed allowed_;
+  double most_allowed_ = 0;
 };
 
 void OneSided::sample(int samples) {
