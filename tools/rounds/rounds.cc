@@ -67,9 +67,7 @@ bool has_outgrown(std::string_view verdict, double triangles, double next) {
 }
 
 bool another_round(const std::vector<Score>& rounds, int most) {
-  const Score& last = rounds.back();
-  if ((int)rounds.size() >= most || (last.requirement == "intersections" && -last.value > many_intersections))
-    return false;
+  if ((int)rounds.size() >= most) return false;
   std::map<std::string, double> best;
   int vain = 0;
   for (const Score& s : rounds) {
@@ -86,6 +84,7 @@ bool another_round(const std::vector<Score>& rounds, int most) {
 
 bool is_repeated(std::string_view verdict, const Outcome& outcome) {
   if (!(outcome.refined > 0) || outcome.failures.empty()) return false;
+  if (!outcome.bounded_distance && outcome.faulty > many_faulty) return false;
   if (outcome.bounded_distance
           ? outcome.refined > std::max(most_refined, most_refined_at_once * outcome.triangles)
           : has_outgrown(verdict, outcome.triangles, outcome.refined))

@@ -57,12 +57,15 @@ TEST(rounds, fewer_pairs_are_progress_and_requirements_are_compared_with_themsel
   EXPECT_FALSE(asks_for_another(verdict_of(more)));
 }
 
-TEST(Rounds, ManyCrossingsAreTheLast) {
-  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 1}, {"intersections", 90}})));
-  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 60}, {"intersections", 110}})));
-  EXPECT_TRUE(asks_for_another(verdict_of({{"intersections", 90}})));
-  EXPECT_FALSE(asks_for_another(verdict_of({{"intersections", 110}})));
-  EXPECT_FALSE(asks_for_another(verdict_of({{"kappa", 0.01}, {"intersections", 110}})));
+TEST(Rounds, ManyFaultyTrianglesAreTheLast) {
+  for (bool bounded : {false, true}) {
+    Outcome o = outcome_missing("kappa", 0.01);
+    o.bounded_distance = bounded;
+    o.faulty = 30;
+    EXPECT_TRUE(is_repeated("", o));
+    o.faulty = 31;
+    EXPECT_EQ(is_repeated("", o), bounded);
+  }
 }
 
 TEST(rounds, a_difference_beyond_six_digits_is_no_progress) {
