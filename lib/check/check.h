@@ -31,6 +31,7 @@ struct Findings {
   int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
   int reference_proper_intersections = 0;              ///< of these, pairs without a corner in the same place
   std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
+  std::vector<int> cut_creases;                        ///< the same, see find_cut_creases
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
   int farthest = -1;             ///< the vertex with the largest `off`
@@ -69,6 +70,13 @@ void cut_examination(const Surface& result, const Surface& reference, int triang
 
 /// Returns the smaller half-edge of each edge at which the result is folded (lib/core/fold.h).
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
+
+/// Returns the smaller half-edge of each edge inside of the result that cuts off a crease: its ends are on
+/// both sides of a model edge of more than 60 degrees, it is off the surface between, and the other diagonal
+/// is on that edge. `marked`: the reference with its model edges (face column `model`, if any). `tree`: of
+/// the reference.
+std::vector<int> find_cut_creases(const Connectivity& result, const Surface& marked, const Mesh& reference,
+                                  const Bvh& tree);
 
 /// One figure of the report; NaN where a mesh has none.
 struct Figure {
@@ -118,7 +126,8 @@ enum Offense {
   offends_kappa = 8,
   offends_vertices = 16,
   offends_deviation = 32,
-  offends_patches = 64
+  offends_patches = 64,
+  offends_creases = 128
 };
 /// Returns the faces of the result at which the contract fails, with face columns int `triangle` (row in the
 /// result) and uchar `fault` (bits of Offense). Vertices stay, some unused.

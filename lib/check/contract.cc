@@ -12,9 +12,9 @@ namespace {
 
 constexpr double nan = no_figure;
 // Requirements without a limit. topology: sound, components, genus and loops of the reference, no sheets
-// apart; intersections: none where the reference has none; folds: none; patches: all of the reference's;
+// apart; intersections: none where the reference has none; folds, creases: none is cut; patches: as they are;
 // regions: sheets that meet do so as in the reference, and enclose the same (topology requires it, too).
-constexpr const char* flags[] = {"topology", "intersections", "folds", "patches", "regions"};
+constexpr const char* flags[] = {"topology", "intersections", "folds", "creases", "patches", "regions"};
 // Lower limits: kappa (of triangles that are not forced), kappa_off_wedges, kappa_mean, angle (degrees).
 // Upper limits: hausdorff (of its bound), mean, rms, boundary, features (over the diagonal), vertices (of
 // Findings::off), deviation (of the local size), size (edge deviation), trace (kappa_elsewhere -
@@ -107,6 +107,12 @@ void judge_regions(const Findings& f, Facts& facts) {
 }
 
 void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Facts& facts) {
+  auto count_edges = [&](const std::vector<int>& edges, const char* one, const char* many) {
+    if (!edges.empty())
+      facts.push_back(std::to_string(edges.size()) + (edges.size() == 1 ? one : many) + ", the first in " +
+                          edge(mesh, edges[0]),
+                      (double)edges.size(), edges[0] / 3);
+  };
   if (name == "topology") {
     judge_topology(f, mesh, facts);
     judge_regions(f, facts);
@@ -120,19 +126,15 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
                           triangle(mesh, f.new_intersections[0].first),
                       (double)n, f.new_intersections[0].first);
   } else if (name == "folds") {
-    if (!f.folds.empty())
-      facts.push_back(std::to_string(f.folds.size()) + (f.folds.size() == 1 ? " edge is" : " edges are") +
-                          " folded, the first in " + edge(mesh, f.folds[0]),
-                      (double)f.folds.size(), f.folds[0] / 3);
+    count_edges(f.folds, " edge is folded", " edges are folded");
+  } else if (name == "creases") {
+    count_edges(f.cut_creases, " edge cuts off a crease", " edges cut off creases");
   } else if (name == "regions") {
     judge_regions(f, facts);
   } else {
     for (const PatchFault& fault : f.patch_faults) facts.push_back(fault.fact, (double)f.patch_faults.size());
-    if (!f.unmarked_borders.empty())
-      facts.push_back(std::to_string(f.unmarked_borders.size()) +
-                          " edges between patches are no model edges, the first in " +
-                          edge(mesh, f.unmarked_borders[0]),
-                      (double)f.unmarked_borders.size(), f.unmarked_borders[0] / 3);
+    count_edges(f.unmarked_borders, " edge between patches is no model edge",
+                " edges between patches are no model edges");
   }
 }
 
@@ -182,8 +184,11 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
     if (r.name == "intersections")
       for (auto [s, t] : f.new_intersections)
         faults[s] |= offends_intersections, faults[t] |= offends_intersections;
-    if (r.name == "folds")
-      for (int h : f.folds) faults[h / 3] |= offends_folds, faults[f.mesh.opposite[h] / 3] |= offends_folds;
+    auto offend = [&](const std::vector<int>& edges, Offense kind) {
+      for (int h : edges) faults[h / 3] |= kind, faults[f.mesh.opposite[h] / 3] |= kind;
+    };
+    if (r.name == "folds") offend(f.folds, offends_folds);
+    if (r.name == "creases") offend(f.cut_creases, offends_creases);
     if (r.name == "patches") {
       std::vector<int> labels;
       for (const PatchFault& fault : f.patch_faults)
@@ -233,7 +238,7 @@ double reached(const Requirement& r, const Findings& f) {
 }
 
 const char* const default_contract =
-    "topology,intersections,folds,patches,vertices=0.1,kappa=0.1,deviation=0.5";
+    "topology,intersections,folds,creases,patches,vertices=0.1,kappa=0.1,deviation=0.5";
 
 Contract parse_contract(const std::string& list) {
   Contract contract;

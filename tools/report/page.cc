@@ -81,6 +81,7 @@ const char* meaning_of(const std::string& requirement) {
       {"topology", "manifold; components, genus and loops of the reference"},
       {"intersections", "none where the reference has none"},
       {"folds", "no folded edges"},
+      {"creases", "no edges that cut off a crease"},
       {"patches", "all patches of the reference, in place"},
       {"vertices", "vertices off the reference, in edges"},
       {"kappa", "smallest kappa, where no corner forces less"},

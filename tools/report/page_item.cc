@@ -144,7 +144,8 @@ std::string offenses(int bits) {
                                                    {offends_kappa, "kappa"},
                                                    {offends_vertices, "vertices off the reference"},
                                                    {offends_deviation, "distance"},
-                                                   {offends_patches, "extent of the patch"}};
+                                                   {offends_patches, "extent of the patch"},
+                                                   {offends_creases, "cut crease"}};
   std::string text;
   for (auto [bit, name] : names)
     if (bits & bit) text += (text.empty() ? "" : ", ") + std::string(name);

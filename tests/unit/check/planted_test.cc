@@ -257,6 +257,25 @@ const std::vector<Kind> geometry{
        const Vec3 center{0, 8, 0}, p = lerp(s.points[v[1]], s.points[v[2]], 0.5);
        s.points[v[0]] = center + normalized(p + 0.6 * (p - s.points[v[0]]) - center);
      }},
+    {"edge across a crease", "creases",
+     [](Scene& s, int i) {
+       const std::vector<int> opposite = soundness_of(s).opposite;
+       std::vector<char> on_crease(s.points.size(), 0);
+       std::vector<int> creases;
+       for (bool count : {false, true})
+         for (int h = 0; h < (int)opposite.size(); ++h) {
+           if (s.of[h / 3] != cube_ || s.patch[h / 3] == s.patch[opposite[h] / 3]) continue;
+           on_crease[origin(s.tris, h)] = 1;
+           const bool free =
+               !on_crease[origin(s.tris, prev(h))] && !on_crease[origin(s.tris, prev(opposite[h]))];
+           if (count && free) creases.push_back(h);
+         }
+       const int h = creases[(std::size_t)i * 7919 % creases.size()], g = opposite[h];
+       const int a = origin(s.tris, h), b = target(s.tris, h), c = origin(s.tris, prev(h)),
+                 d = origin(s.tris, prev(g));
+       s.tris[h / 3] = {c, d, b};
+       s.tris[g / 3] = {d, c, a};
+     }},
     {"intersection", "intersections",
      [](Scene& s, int i) {
        move(s, other_sphere_, [&](Vec3 p) { return p + Vec3{0, -2.2 - 0.02 * i, 0}; });
@@ -338,6 +357,13 @@ void expect_found(const std::vector<Kind>& kinds) {
 TEST(planted, faults_of_connectivity_are_found) { expect_found(connectivity); }
 TEST(planted, faults_of_geometry_are_found) { expect_found(geometry); }
 TEST(planted, faults_of_labels_are_found) { expect_found(labels); }
+
+TEST(planted, a_patch_that_the_reference_lacks_is_found) {
+  const std::vector<Patch> reference{{"inlet", {1}}, {"wall", {2}}}, result{{"inlet", {1}}, {"junk", {3}}};
+  std::vector<std::string> facts;
+  for (const PatchFault& f : compare_patches(reference, result)) facts.push_back(f.fact);
+  EXPECT_EQ(facts, (std::vector<std::string>{"patch wall is lost", "patch junk is not in the reference"}));
+}
 
 TEST(planted, kinds_are_many) { EXPECT_GE(connectivity.size() + geometry.size() + labels.size(), 27u); }
 
