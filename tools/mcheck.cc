@@ -81,6 +81,8 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   verdict.outcome.mean_size = f.mean_size;
   verdict.outcome.triangles = (double)stream.surface.tris.size();
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
+  Surface faulty = offending_faces(contract, f, stream.surface);
+  verdict.outcome.faulty = (double)faulty.tris.size();
   if (!o.refine.empty() && !failures.empty()) {
     std::vector<double> size = smaller_sizes(contract, f, stream.surface, reference);
     if (size != stream.surface.vertex.get<double>("size")) {
@@ -94,9 +96,9 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (last) say(io, f, failures);  // the figures of the last round are those of the result
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.offending.empty()) {
-    Stream faulty;
-    faulty.surface = offending_faces(contract, f, stream.surface);
-    io.write_to(o.offending, std::move(faulty));
+    Stream culprits;
+    culprits.surface = std::move(faulty);
+    io.write_to(o.offending, std::move(culprits));
   }
   if (!last)
     io.json.clear();

@@ -60,9 +60,9 @@ std::vector<PatchFault> compare_patches(const std::vector<Patch>& reference,
                                         const std::vector<Patch>& result) {
   constexpr double rough = 0.5;  // of the area: steps of voxels have up to sqrt(3) times the smooth one
   std::vector<PatchFault> faults;
-  auto before = [](const Patch& p, const std::string& name) { return p.name < name; };
+  auto by_name = [](const Patch& p, const Patch& q) { return p.name < q.name; };
   for (const Patch& p : reference) {
-    const auto q = std::lower_bound(result.begin(), result.end(), p.name, before);
+    const auto q = std::lower_bound(result.begin(), result.end(), p, by_name);
     if (q == result.end() || q->name != p.name) {
       faults.push_back({"patch " + p.name + " is lost"});
       continue;
@@ -76,6 +76,9 @@ std::vector<PatchFault> compare_patches(const std::vector<Patch>& reference,
           {"patch " + p.name + " has area " + shown(q->area) + ", the reference's " + shown(p.area),
            q->labels});
   }
+  for (const Patch& q : result)
+    if (!std::binary_search(reference.begin(), reference.end(), q, by_name))
+      faults.push_back({"patch " + q.name + " is not in the reference", q.labels});
   return faults;
 }
 

@@ -32,9 +32,9 @@ struct PatchFault {
   std::vector<int> labels{};  ///< of the result
 };
 
-/// Returns the patches of the reference that the result lacks or whose extent is another: a bounding box off
-/// by more than the patch's longest edge in the result, or an area off by more than half of the reference's
-/// plus half that edge times the perimeter. Requires: both sorted by name.
+/// Returns the patches that only one of both has, and those whose extent is another: a bounding box off by
+/// more than the patch's longest edge in the result, or an area off by more than half of the reference's plus
+/// half that edge times the perimeter. Requires: both sorted by name.
 std::vector<PatchFault> compare_patches(const std::vector<Patch>& reference,
                                         const std::vector<Patch>& result);
 

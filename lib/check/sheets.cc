@@ -178,6 +178,21 @@ void compare_regions(const Mesh (&joined)[2], const Surface* const (&surface)[2]
 
 }  // namespace
 
+std::vector<int> slits_of(const Mesh& mesh) {
+  std::vector<char> free(3 * mesh.tris.size(), 0);
+  for_each_edge(mesh.tris, (int)mesh.points.size(),
+                [&](std::span<const EdgeUse> uses) { free[half_edge(uses[0])] = uses.size() == 1; });
+  Mesh joined = mesh;
+  join_borders(joined);
+  std::vector<int> slits;
+  for_each_edge(joined.tris, (int)joined.points.size(), [&](std::span<const EdgeUse> uses) {
+    if (uses.size() != 2 || !free[half_edge(uses[0])] || !free[half_edge(uses[1])]) return;
+    for (EdgeUse e : uses) slits.push_back(half_edge(e) / 3);
+  });
+  sort_unique(slits);
+  return slits;
+}
+
 SheetFindings compare_sheets(const Surface& reference, const Surface& result,
                              const std::vector<SheetPatch>& sheets, bool named, bool solid) {
   SheetFindings f;

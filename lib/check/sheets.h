@@ -30,6 +30,9 @@ struct SheetFindings {
   std::vector<int> unmatched;
 };
 
+/// Returns the triangles along slits: pairs of free edges that have one place, and no other edge there.
+std::vector<int> slits_of(const Mesh& mesh);
+
 /// Compares the lines where sheets meet (by their patches, or by the number of sheets if patches are not
 /// `named` alike) and, if `solid`, the regions that they enclose, which are unknown where sheets intersect.
 /// In both surfaces sheets are apart, with the same coordinates where they meet. `sheets`: the regions on

@@ -127,6 +127,7 @@ struct RegionReport {
   std::vector<int> label;                 ///< per region; the first is the outside
   std::vector<double> volume;             ///< per region
   std::vector<std::array<int, 2>> added;  ///< patches: the new one, and the one it was
+  int reversed = 0;                       ///< sheets that had the outside behind them
   int free_edges = 0;                     ///< of one triangle: a sheet ends there
   Vec3 free_at{};                         ///< middle of the first
 };

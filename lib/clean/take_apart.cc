@@ -67,8 +67,8 @@ std::vector<int> open_slits(Surface& s) {
   return parent;
 }
 
-/// Reverses the sheets that have the outside behind them, and a region in front.
-void face_outside(Surface& surface, Solids& solids) {
+/// Reverses the sheets that have the outside behind them, and a region in front. Returns their number.
+int face_outside(Surface& surface, Solids& solids) {
   std::vector<int> component;
   const int n = components(opposite_halfedges(surface), component);
   std::vector<int> balance(n, 0);  // triangles: with the outside in front, less those with it behind
@@ -79,6 +79,7 @@ void face_outside(Surface& surface, Solids& solids) {
       std::swap(surface.tris[t][1], surface.tris[t][2]);
       std::swap(solids.sides[t][0], solids.sides[t][1]);
     }
+  return (int)std::count_if(balance.begin(), balance.end(), [](int b) { return b < 0; });
 }
 
 }  // namespace
@@ -106,7 +107,7 @@ RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given)
   if (!given.empty()) report.label = labels_of(solids, given);
   surface.face.erase("model");
   split_sheets(surface);
-  face_outside(surface, solids);
+  report.reversed = face_outside(surface, solids);
   report.sheets = sheet_patches(surface, solids, report.label, report.added);
   return report;
 }

@@ -41,6 +41,20 @@ TEST(CompareSheets, InsideOfASheetAlongALineIsNoPartOfIt) {
     }
 }
 
+//  3---2---7   two squares; (1 2) and (4 5) are the sides of a slit, in one place, and no sheet
+//  |  /|  /|   ends there
+//  | / | / |
+//  0---1---6
+TEST(CompareSheets, FreeEdgesInOnePlaceAreASlit) {
+  Mesh m{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {2, 1, 0}},
+         {{0, 1, 2}, {0, 2, 3}, {4, 6, 7}, {4, 7, 5}}};
+  EXPECT_EQ(slits_of(m), (std::vector<int>{0, 3}));
+  m.tris[2][0] = m.tris[3][0] = 1, m.tris[3][2] = 2;
+  EXPECT_EQ(slits_of(m), std::vector<int>{});
+  const Surface line = fan_through_square(true);  // where sheets meet, more than two are free
+  EXPECT_EQ(slits_of(line), std::vector<int>{});
+}
+
 TEST(CompareSheets, ALineOfOtherSheetsIsFound) {
   Surface less = fan_through_square(true);
   less.tris.erase(less.tris.begin());

@@ -14,6 +14,7 @@
 #include "lib/core/junctions.h"
 #include "lib/core/topology.h"
 #include "lib/core/weld.h"
+#include "lib/shape/shape.h"
 
 using namespace meshpipe;
 
@@ -294,6 +295,20 @@ TEST(Clean, CutsAMoebiusBandAcross) {
     EXPECT_EQ(t.loops, 1);
     EXPECT_EQ(t.genus, 0);
     EXPECT_EQ(join_borders(s).size(), 5u);
+  }
+}
+
+TEST(TakeApart, CountsTheSheetsThatItReverses) {
+  for (bool inside_out : {false, true}) {
+    Surface s = surface(sphere(80).points, sphere(80).tris);
+    const Mesh inner = sphere(80);
+    const int n = (int)s.points.size();
+    for (const Vec3& p : inner.points) s.points.push_back(0.5 * p);
+    for (const auto& [a, b, c] : inner.tris) s.tris.push_back({a + n, b + n, c + n});
+    if (inside_out)
+      for (int t = 0; t < (int)inner.tris.size(); ++t) std::swap(s.tris[t][0], s.tris[t][1]);
+    s = surface(s.points, s.tris);
+    EXPECT_EQ(take_apart(s).reversed, inside_out);
   }
 }
 
