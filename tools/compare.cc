@@ -29,11 +29,11 @@ bool has_patch_names(const Stream& stream) {
 /// Compares the patches of two files by name, or by number if the result has no names. A reference of one
 /// patch without a name is not divided.
 std::vector<PatchFault> compare_patches(const Io& io, const Stream& reference, const Surface& surface,
-                                        const Stream& result, const std::vector<int>& opposite) {
+                                        const Stream& result, const Findings& f) {
   const bool named = has_patch_names(result), names = has_patch_names(reference);
   auto number = [](int label) { return std::to_string(label); };
   const std::vector<Patch> before = patches_of(surface, {}, named ? namer(reference) : number),
-                           after = patches_of(result.surface, opposite, namer(result));
+                           after = patches_of(result.surface, f.mesh.opposite, namer(result));
   if (before.size() < 2 && !names) return {};
   if (has_no_patches(after)) {
     io.say("the result is not divided into patches: they are not compared");
@@ -98,7 +98,7 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
     f.patch_faults = compare_patches(patches_of(reference, {}, namer(stream)),
                                      patches_of(result, f.mesh.opposite, namer(stream)));
   else if (!meet)
-    f.patch_faults = compare_patches(io, other, reference, stream, f.mesh.opposite);
+    f.patch_faults = compare_patches(io, other, reference, stream, f);
   return f;
 }
 

@@ -96,9 +96,9 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (last) say(io, f, failures);  // the figures of the last round are those of the result
   if (!o.histogram.empty()) Io::write_file(o.histogram, findings_svg(f));
   if (!o.offending.empty()) {
-    Stream culprits;
-    culprits.surface = std::move(faulty);
-    io.write_to(o.offending, std::move(culprits));
+    Stream offending;
+    offending.surface = std::move(faulty);
+    io.write_to(o.offending, std::move(offending));
   }
   if (!last)
     io.json.clear();

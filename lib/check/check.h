@@ -20,6 +20,13 @@
 
 namespace meshpipe {
 
+/// Half-edges of the result, one for each edge at fault.
+struct FaultyEdges {
+  std::vector<int> folds;             ///< see find_folds
+  std::vector<int> cut_creases;       ///< see find_cut_creases
+  std::vector<int> unmarked_borders;  ///< no model edges, where the reference's patches end at model edges
+};
+
 struct Findings {
   Soundness mesh, reference;
   Quality quality, reference_quality;
@@ -30,8 +37,7 @@ struct Findings {
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
   int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
   int reference_proper_intersections = 0;              ///< of these, pairs without a corner in the same place
-  std::vector<int> folds;                              ///< half-edges of the mesh, see find_folds
-  std::vector<int> cut_creases;                        ///< the same, see find_cut_creases
+  FaultyEdges edges;
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge
   int farthest = -1;             ///< the vertex with the largest `off`
@@ -43,7 +49,6 @@ struct Findings {
   /// borders and model edges; none where there are none. Equal where the result shows no trace of the cuts.
   std::optional<double> kappa_by_cuts, kappa_elsewhere;
   std::vector<PatchFault> patch_faults;  ///< see compare_patches
-  std::vector<int> unmarked_borders;     ///< half-edges, where the reference's patches end at model edges
   std::vector<int> reversed;             ///< a triangle of each component
   std::optional<SheetFindings> sheets;   ///< where they meet; see compare_sheets
 };

@@ -126,14 +126,14 @@ void judge_flag(const std::string& name, const Findings& f, const Mesh& mesh, Fa
                           triangle(mesh, f.new_intersections[0].first),
                       (double)n, f.new_intersections[0].first);
   } else if (name == "folds") {
-    count_edges(f.folds, " edge is folded", " edges are folded");
+    count_edges(f.edges.folds, " edge is folded", " edges are folded");
   } else if (name == "creases") {
-    count_edges(f.cut_creases, " edge cuts off a crease", " edges cut off creases");
+    count_edges(f.edges.cut_creases, " edge cuts off a crease", " edges cut off creases");
   } else if (name == "regions") {
     judge_regions(f, facts);
   } else {
     for (const PatchFault& fault : f.patch_faults) facts.push_back(fault.fact, (double)f.patch_faults.size());
-    count_edges(f.unmarked_borders, " edge between patches is no model edge",
+    count_edges(f.edges.unmarked_borders, " edge between patches is no model edge",
                 " edges between patches are no model edges");
   }
 }
@@ -187,8 +187,8 @@ std::vector<std::uint8_t> faults_of(const Contract& contract, const Findings& f,
     auto offend = [&](const std::vector<int>& edges, Offense kind) {
       for (int h : edges) faults[h / 3] |= kind, faults[f.mesh.opposite[h] / 3] |= kind;
     };
-    if (r.name == "folds") offend(f.folds, offends_folds);
-    if (r.name == "creases") offend(f.cut_creases, offends_creases);
+    if (r.name == "folds") offend(f.edges.folds, offends_folds);
+    if (r.name == "creases") offend(f.edges.cut_creases, offends_creases);
     if (r.name == "patches") {
       std::vector<int> labels;
       for (const PatchFault& fault : f.patch_faults)
@@ -330,7 +330,7 @@ std::vector<Figure> figures(const Findings& f) {
       {"self_intersections", "self-intersections", count,
        f.reference_intersections < 0 ? nan : f.reference_intersections, (double)f.intersections.size()},
       {"new_intersections", "where reference has none", count, nan, (double)f.new_intersections.size()},
-      {"folds", "folded edges", count, nan, (double)f.folds.size()},
+      {"folds", "folded edges", count, nan, (double)f.edges.folds.size()},
       {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},
       {"kappa_p01", "kappa 1 %", 4, p.kappa_p01, q.kappa_p01},
       {"kappa_mean", "kappa mean", 4, p.kappa_mean, q.kappa_mean},

@@ -274,8 +274,8 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   find_intersections(f, mesh, tree(mesh_tree), reference, given, tree(reference_tree), sheets_meet,
                      measured ? &*measured : nullptr);
   add_progress(0.3);
-  f.folds = measured ? measured->folds : find_folds(mesh, reference, *reference_tree);
-  if (!measured) f.cut_creases = find_cut_creases(mesh, given, reference, *reference_tree);
+  f.edges.folds = measured ? measured->folds : find_folds(mesh, reference, *reference_tree);
+  if (!measured) f.edges.cut_creases = find_cut_creases(mesh, given, reference, *reference_tree);
   measure_distances(f, result, given, mesh, tree(mesh_tree), before, tree(reference_tree), samples, most,
                     least_size, measured);
   add_progress(0.4);
@@ -286,13 +286,13 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);
   if (f.mesh.sound()) f.reversed = reversed_components(mesh, reference, tree(reference_tree));
   if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
-    f.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));
-    if (!f.unmarked_borders.empty()) {
+    f.edges.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));
+    if (!f.edges.unmarked_borders.empty()) {
       const std::vector<int> opposite = opposite_halfedges(given);
       if (!unmarked_borders({given, opposite, given.face.get<std::uint8_t>("model")},
                             given.face.get<int>("patch"))
                .empty())
-        f.unmarked_borders.clear();  // nothing that one could expect
+        f.edges.unmarked_borders.clear();  // nothing that one could expect
     }
   }
   if (lines) std::tie(f.kappa_by_cuts, f.kappa_elsewhere) = kappa_by_lines(mesh, f.quality, *lines, given);

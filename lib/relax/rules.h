@@ -118,7 +118,7 @@ constexpr double much_worse = 2;  // than the best seen: what is wrong does not 
 constexpr int fault_rounds = 24, useless_rounds = 3;
 constexpr double worth_a_turn = 0.7;    // of the sum: what a turn has to leave at most for another
 constexpr double nearly_accepted = 30;  // sum of faults: with more, limits without a margin do not help
-constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
+constexpr int many_pairs = 30;          // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10,
               few_faults = 300;  // rounds, places: of more, or with half of the triangles, sizes are bad
 constexpr double most_pairs = 400, most_pairs_share = 0.01;  // of the triangles: of 366 meshes none that

@@ -41,7 +41,7 @@ void expect_same(const Surface& result, const Surface& reference) {
     const Findings f = examine(result, reference, nullptr, 10000, 0.01, false, 0, &shares);
     EXPECT_EQ(f.intersections, whole.intersections);
     EXPECT_EQ(f.new_intersections, whole.new_intersections);
-    EXPECT_EQ(f.folds, whole.folds);
+    EXPECT_EQ(f.edges.folds, whole.edges.folds);
     EXPECT_NEAR(f.off[f.farthest], whole.off[whole.farthest], 1e-9);
     const Distance &a = f.distance, &b = whole.distance;
     EXPECT_LE(a.hausdorff, b.hausdorff + b.bound);
