@@ -108,6 +108,7 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
       for (const SheetPatch& s : read_sheets(io.stream)) found.sheets |= s.front > 0 && s.back > 0;
   }
   for (const std::string& remark : io.stream.remarks) found.spikes += Spikes::parse(remark);
+  found.gaps = gaps_of(io.stream.remarks);
   std::vector<Provenance> history = io.stream.history;
   history.push_back({io.program, "", io.arguments});
   const std::optional<WayOut> way = way_out(status, facts, history, found);

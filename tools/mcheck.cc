@@ -5,6 +5,8 @@
 
 #include "formats/stream/check_tables.h"
 #include "lib/check/check.h"
+#include "lib/clean/clean.h"
+#include "lib/core/number.h"
 #include "tools/check_shards.h"
 #include "tools/common.h"
 #include "tools/compare.h"
@@ -32,10 +34,12 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
   const bool resolved = std::any_of(history.begin(), history.end(), [](const Provenance& p) {
     return p.program == "mclean" && p.arguments.find("--resolve") != std::string::npos;
   });
+  const Gaps gaps = gaps_of(io.stream.remarks);
   if (const std::size_t n = f.intersections.size(); n > f.new_intersections.size())
     io.say(std::to_string(n) + " pairs of triangles intersect, as in the input: " +
-           (resolved ? "" : "--resolve outer resolves those of closed components, ") + "mwrap " +
-           (resolved ? "resolves them" : "all of them"));
+           (gaps.closed > 0 ? "try mclean --weld " + shown(gaps.within) + " (" + gaps.text() + ")"
+            : resolved      ? "mwrap resolves them"
+                            : "--resolve outer resolves those of closed components, mwrap all of them"));
   io.report.update(report_of(f, io.stream));
   io.report["failed"] = failures_json(failures);
 }

@@ -163,14 +163,15 @@ void write_offending(const Io& io, const std::string& path, const CleanReport& r
 
 /// What earlier runs of mclean and mfeature have done to a surface that is the input now.
 bool is_of_former_run(const std::string& remark) {
-  return remark.starts_with("clean ") || remark.starts_with("spikes ") || remark.starts_with("removed ");
+  return remark.starts_with("clean ") || remark.starts_with("spikes ") || remark.starts_with("gaps ") ||
+         remark.starts_with("removed ");
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("--weld", o.within,
-                 "merge vertices closer than this: auto (default: the precision of the coordinates), a "
-                 "length, or % of "
-                 "the diagonal")
+  app.add_option(
+         "--weld", o.within,
+         "merge vertices closer than this: auto (default: far below the edges around them), a length, or "
+         "% of the diagonal")
       ->type_name("auto|TOL");
   app.add_option("--keep-components", o.most, "keep the N components of largest area (default: all)")
       ->type_name("N|all");
@@ -212,8 +213,12 @@ int flatten(Io& io, Surface& s, const Options& o) {
   return n;
 }
 
-/// Remarks on vertices that stick out, for programs that fail on them.
-void remark_on_spikes(const Io& io, Stream& stream) {
+/// Remarks on borders that almost fit and on vertices that stick out, for programs that fail on them.
+void remark_on_flaws(const Io& io, Stream& stream) {
+  if (const Gaps gaps = find_gaps(stream.surface); gaps.closed > 0) {
+    stream.remarks.push_back("gaps " + gaps.text());
+    io.say(gaps.text() + ": --weld " + shown(gaps.within) + " joins them");
+  }
   const Spikes spikes = find_spikes(stream.surface);
   if (spikes.count == 0) return;
   stream.remarks.push_back("spikes " + std::to_string(spikes.count));
@@ -281,7 +286,7 @@ int main(int argc, char** argv) {
         if (stream.input_triangles == 0 || !report.nothing) {
           std::erase_if(stream.remarks, is_of_former_run);
           if (const std::string r = remark_of(report); r.size()) stream.remarks.push_back(r);
-          remark_on_spikes(io, stream);
+          remark_on_flaws(io, stream);
         }
         name_patches(stream, report);
         if (!counted) stream.input_triangles = (int)s.tris.size();

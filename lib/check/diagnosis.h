@@ -3,7 +3,7 @@
 #pragma once
 #include <cstddef>
 
-#include "lib/core/mesh.h"
+#include "lib/clean/clean.h"
 
 namespace meshpipe {
 
@@ -15,12 +15,13 @@ struct Diagnosis {
   std::size_t short_edges = 0;    ///< edges no longer than that,
   double next_edge = 0;           ///< and the shortest of all others
   int spikes = 0;                 ///< for the caller: vertices that stick out, as mclean has found them,
+  Gaps gaps;                      ///< borders that almost fit,
   bool sheets = false;            ///< and whether sheets lie between regions, which a wrap would join
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };
 
-/// Measures a surface: all but `spikes` and `sheets`. `place` and `reach`: where something failed, and the
+/// Measures a surface, except what is for the caller. `place` and `reach`: where something failed, and the
 /// edge length there; reach 0: unknown. Reads, where present, face columns `patch` and `model`.
 Diagnosis diagnose(const Surface& surface, Vec3 place, double reach);
 

@@ -112,11 +112,13 @@ std::vector<int> weld_vertices(const Surface& surface, const CleanOptions& optio
   for (int v = 0; v < report.input_vertices; ++v) report.welded += same[v] != v;
   report.tolerance = options.weld < 0 ? coordinate_noise(surface, used) : options.weld;
   report.holes.slit = std::max(slit_of_diagonal * diagonal(surface), report.tolerance);
-  if (options.weld < 0)
-    report.welded_near =
-        merge_noise(surface, ends_of_short_edges(surface, same, report.tolerance), report.tolerance, same);
-  else if (options.weld > 0)
+  if (options.weld < 0) {
+    const double noise = report.tolerance;
+    report.welded_near = merge_noise(surface, ends_of_short_edges(surface, same, noise), noise, same);
+    report.welded_near += merge_clusters(surface, same, report.tolerance);
+  } else if (options.weld > 0) {
     report.welded_near = merge_near(surface.points, used, options.weld, same);
+  }
   return same;
 }
 
@@ -272,13 +274,17 @@ void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
       options = keep;
     }
   }
-  if (options.weld < 0)  // seams
-    if (const int n = merge_noise(surface, border_vertices(r, same.size()), report.tolerance, same); n > 0) {
+  if (options.weld < 0 && has_border(r)) {
+    const double noise = coordinate_noise(surface, used_points(surface));
+    int n = merge_noise(surface, border_vertices(r, same.size()), noise, same);
+    n += merge_seams(surface, same, restart.tolerance);
+    if (n > 0) {
       restart.welded_near += n;
       report = restart;
       r = start(surface, same, report);
       repair(r, surface.points, options, report);
     }
+  }
   if (!options.keep_flat && !options.keep_slits) close_all_slits(surface, same, restart, options, r, report);
   for (std::size_t t = 0; t < r.tris.size(); ++t) {
     if (!r.flipped[t] || r.face[t] < 0) continue;  // triangles that fill a hole had no orientation before

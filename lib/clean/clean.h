@@ -13,7 +13,7 @@ namespace meshpipe {
 
 struct CleanOptions {
   /// Merges vertices this close after the equal ones; 0: only equal ones; negative: those that the precision
-  /// of the coordinates does not separate, where all other edges are much longer.
+  /// of the coordinates does not separate, and clusters and seams, where all other edges are much longer.
   double weld = -1;
   bool drop_nonorientable = false;  ///< leave such components out instead of cutting them open
   bool keep_orientation = false;    ///< reverse no triangle: edges where neighbors disagree are left open
@@ -71,7 +71,7 @@ struct CleanReport {
   int input_vertices = 0, input_triangles = 0;
   int welded = 0;        ///< vertices merged with an equal one
   int welded_near = 0;   ///< vertices merged with one within the tolerance
-  double tolerance = 0;  ///< of welding
+  double tolerance = 0;  ///< of welding: as asked for, else the precision or the largest distance merged
   int unreferenced = 0;  ///< vertices no triangle uses
   int degenerate = 0;    ///< triangles with a repeated vertex, or of zero area: dropped, flipped or collapsed
   int duplicate = 0;     ///< triangles with the same three vertices as an earlier one
@@ -116,6 +116,19 @@ struct Spikes {
 /// Finds the vertices of a welded surface whose neighbors are all farther away than 5 diagonals of the
 /// neighbors' bounding box; none if they are more than 0.1 % of the vertices.
 Spikes find_spikes(const Surface& surface);
+
+/// Borders that would fit others if their points were not off by up to an eighth of an edge.
+struct Gaps {
+  int closed = 0, edges = 0;  ///< border edges that would have a partner, and all
+  double within = 0;          ///< CleanOptions::weld that closes them
+  /// Returns the finding as a clause of a message. A remark of the stream has it after "gaps ".
+  std::string text() const;
+};
+/// Returns what the last such remark says; all 0 if there is none.
+Gaps gaps_of(const std::vector<std::string>& remarks);
+/// Finds such borders if they are at least half of all, and welding them merges no ends of edges; else all
+/// is 0. `surface`: as clean returns it.
+Gaps find_gaps(const Surface& surface);
 
 /// Copies vertices so that sheets and fans no longer share them: an oriented manifold of the same triangles.
 /// Throws: NotAdmissible if the surface needs any other repair.

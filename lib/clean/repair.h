@@ -58,6 +58,16 @@ std::vector<char> ends_of_short_edges(const Mesh& mesh, const std::vector<int>& 
 int merge_noise(const Mesh& mesh, const std::vector<char>& candidates, double tolerance,
                 std::vector<int>& same);
 
+/// Merges clusters of vertices whose bounding box is by many orders of magnitude smaller than all edges that
+/// leave it, and that are no thin part of the surface. Returns the number merged, and raises `within` to the
+/// largest distance of two that are merged. Time O(n log n).
+int merge_clusters(const Mesh& mesh, std::vector<int>& same, double& within);
+
+/// Merges border vertices whose distance is far below all their edges, where that closes border edges and
+/// lays no sheets on each other. Returns the number merged, and raises `within` as merge_clusters does.
+/// Time O(n log n).
+int merge_seams(const Mesh& mesh, std::vector<int>& same, double& within);
+
 /// Merges vertices on both sides of the ends of slits, and divides triangles at edges without a neighbor
 /// where other such edges run along them with vertices in between, as on two sides of a slit of which one has
 /// more vertices: at most HoleCounts::slit away. The report counts both. Returns whether there were any.

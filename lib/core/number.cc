@@ -12,6 +12,11 @@ namespace meshpipe {
 
 std::string shown(const Vec3& place) { return shown(place.x) + ' ' + shown(place.y) + ' ' + shown(place.z); }
 
+double rounded_up(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
+  return std::ceil(x / unit) * unit;
+}
+
 #ifndef __cpp_lib_to_chars
 std::from_chars_result from_chars(const char* first, const char* last, double& value) {
   auto may_belong = [](unsigned char c) { return std::isalnum(c) || c == '.' || c == '+' || c == '-'; };

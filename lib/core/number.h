@@ -14,6 +14,9 @@ inline std::string shown(double x) {
   return text;
 }
 
+/// Returns a positive number of three digits that is not below x.
+double rounded_up(double x);
+
 struct Vec3;
 /// Returns the coordinates as text: "0.25 0 -1".
 std::string shown(const Vec3& place);

@@ -14,11 +14,7 @@ constexpr int not_admissible = 4, goal_missed = 5, contract_missed = 6;
 
 constexpr double beyond_repair = 100;  ///< pairs of triangles that cross, of the input or new ones
 
-/// A number as a message shows it, not below the value: what is at least that large still is.
-std::string at_least(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
-  return shown(std::ceil(x / unit) * unit);
-}
+std::string at_least(double x) { return shown(rounded_up(x)); }
 
 struct Case {
   int status;
@@ -57,6 +53,12 @@ struct Row {
   WayOut (*way)(const Case&);
 };
 const Row table[] = {
+    {[](const Case& c) {
+       return c.found.gaps.within > 0 && c.status >= goal_missed && !c.used("mclean", "--weld");
+     },
+     [](const Case& c) {
+       return WayOut{"mclean --weld " + shown(c.found.gaps.within), c.found.gaps.text()};
+     }},
     {[](const Case& c) {
        const double crossings = c.missed("intersections") ? c.facts.value : 0;
        return std::max(crossings, (double)c.found.intersections) > beyond_repair && !c.ran("mwrap") &&

@@ -57,6 +57,9 @@ TEST(WayOut, ManyCrossingsAreForAWrap) {
   EXPECT_EQ(named(missed, crossings, found), "mclean --drop-spikes 5");
   crossings.value = 1200;
   EXPECT_EQ(named(missed, crossings, found), "mwrap");
+  found.gaps = {3600, 3600, 0.003};  // triangles of a soup cross at their borders
+  EXPECT_EQ(named(missed, crossings, found), "mclean --weld 0.003");
+  found.gaps = {};
   crossings.value = 12;
   found.intersections = 1200;  // of the input
   EXPECT_EQ(named(missed, crossings, found), "mwrap");
