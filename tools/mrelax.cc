@@ -48,6 +48,14 @@ int count_given(const Stream& stream) {
   return 0;
 }
 
+/// The number of triangles of the input if msize took it for want of options; else 0.
+int count_by_default(const Stream& stream) {
+  for (auto p = stream.history.rbegin(); p != stream.history.rend(); ++p)
+    if (p->program == "msize")
+      return p->arguments.find("--") == std::string::npos ? stream.input_triangles : 0;
+  return 0;
+}
+
 /// What is optimized: see relax.
 struct Task {
   LiftedMesh mesh;
@@ -137,8 +145,8 @@ int main(int argc, char** argv) {
     const std::string exceptions = write_on_reference(stream, std::move(task.mesh), reference, second_order);
     if (!exceptions.empty()) io.say(exceptions);
     const std::size_t triangles = stream.surface.tris.size();
-    for (const std::string& line :
-         relax_lines(r, triangles, std::max(stream.asked_triangles, count_given(stream))))
+    for (const std::string& line : relax_lines(
+             r, triangles, std::max(stream.asked_triangles, count_given(stream)), count_by_default(stream)))
       io.say(line);
     io.report.update(relax_record(r, triangles));
     const std::string missed = left_over(r, stream.surface);

@@ -4,18 +4,28 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lib/core/number.h"
+
 namespace meshpipe {
 
-std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles, int asked) {
+std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles, int asked, int by_default) {
   char text[200];
   std::snprintf(text, sizeof text,
                 "%zu triangles, kappa mean %.4f, min %.3f (%d splits, %d collapses, %d flips)", triangles,
                 r.kappa_mean, r.kappa_min, r.splits, r.collapses, r.flips);
   std::vector<std::string> lines{text};
-  constexpr double much = 0.03;
-  if (asked > 0 && std::abs((double)triangles - asked) > much * asked)
-    lines.push_back("narrow places of the model keep it from the " + std::to_string(asked) +
-                    " triangles asked for");
+  constexpr double much = 0.03, promised = 0.2;  // of the number
+  const int wanted = asked > 0 ? asked : by_default;
+  const double surplus = wanted > 0 ? (double)triangles / wanted - 1 : 0;
+  const bool many = surplus > promised;
+  const std::string number = std::to_string(wanted) + " triangles ";
+  if (asked > 0 && std::abs(surplus) > much)
+    lines.push_back(
+        "narrow places of the model keep it from the " + number + "asked for" +
+        (many ? ": there are " + shown(0.01 * std::round(100 * (1 + surplus))) + " times as many" : ""));
+  else if (asked == 0 && many)
+    lines.push_back("narrow places of the model take more than the " + number + "of the input: --triangles " +
+                    std::to_string(wanted) + " has fewer, and worse ones");
   if (r.restarts > 0)
     lines.push_back("begun again " + std::to_string(r.restarts) + (r.restarts == 1 ? " time" : " times") +
                     ", with smaller sizes where faults were left");

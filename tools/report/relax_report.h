@@ -9,8 +9,9 @@
 
 namespace meshpipe {
 
-/// Returns the lines for people. `asked`: number of triangles; 0: none.
-std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles, int asked);
+/// Returns the lines for people. `asked`: number of triangles; 0: none. `by_default`: then that of the input,
+/// if the sizes stand for it.
+std::vector<std::string> relax_lines(const RelaxReport& r, std::size_t triangles, int asked, int by_default);
 
 nlohmann::ordered_json relax_record(const RelaxReport& r, std::size_t triangles);
 

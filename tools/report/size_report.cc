@@ -11,6 +11,9 @@ namespace {
 
 constexpr double met = 0.01;  // of the number of triangles: the search ends within a tenth of it
 constexpr double more = 0.2;  // of the number of triangles: more is reported even if the user asked for none
+/// What mrelax makes over what sizes and lines ask for where places are narrow, since repair splits triangles
+/// there: 26 runs on 14 surfaces have a median of 1.16 and quartiles of 1.05 and 1.27.
+constexpr double repaired = 1.15;
 constexpr double much = 0.1;  // of the number of triangles: a smaller difference is not worth a line
 
 bool within(const SizeReport& r, const SizeOptions& o, double tolerance) {
@@ -53,8 +56,8 @@ std::vector<std::string> size_lines(const SizeReport& r, const SizeOptions& o, b
                     shown(r.narrow.gap) + " apart, it is lowered from " + shown(r.narrow.from) + " to " +
                     shown(r.narrow.to));
   const bool narrow = r.narrow.places + r.lowered.places > 0 || r.least > (1 + more) * r.triangles;
-  if (o.triangles > 0 && narrow && !(o.max > 0) && r.least > (1 + more) * o.triangles)
-    lines.push_back("no fewer than about " + std::to_string(std::llround(r.least)) +
+  if (o.triangles > 0 && narrow && !(o.max > 0) && repaired * r.least > (1 + more) * o.triangles)
+    lines.push_back("no fewer than about " + std::to_string(std::llround(repaired * r.least)) +
                     " triangles are good in narrow places, instead of " +
                     std::to_string(std::llround(o.triangles)));
   else if (counted && !within(r, o, much))
