@@ -2,6 +2,7 @@
 #include "lib/smooth/separate.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 
 #include "lib/core/intersect.h"
@@ -37,6 +38,15 @@ int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held
     }
   }
   return (int)std::count(back.begin(), back.end(), 1);
+}
+
+double default_bound(std::vector<double> lengths) {
+  // of segmentations the mean is 0.9 to 1.2 medians, of CAD with long triangles up to 4
+  constexpr double most_medians = 10;
+  const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / (double)lengths.size();
+  const auto middle = lengths.begin() + (std::ptrdiff_t)lengths.size() / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle > 0 ? std::min(mean, most_medians * *middle) : mean;
 }
 
 }  // namespace meshpipe

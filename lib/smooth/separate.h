@@ -16,4 +16,8 @@ int separate(Mesh& mesh, const std::vector<Vec3>& start, std::vector<char>& held
 /// Returns the root mean square of the angles between adjacent triangles (pairs) as oriented, in degrees.
 double mean_angle(const Mesh& mesh, const std::vector<std::pair<int, int>>& adjacent);
 
+/// Returns how far vertices may move by default: the mean of these edge lengths, but at most ten times their
+/// median, so that one vertex far out does not let all others move across the whole surface.
+double default_bound(std::vector<double> lengths);
+
 }  // namespace meshpipe

@@ -27,7 +27,7 @@ constexpr int volume_rounds = 4;  // of volume: what one holds back leaves the r
 struct Net {
   Lists near;
   std::vector<char> held;
-  double edge = 0;                          ///< mean length
+  double bound = 0;                         ///< of displacements, by default
   std::vector<std::pair<int, int>> smooth;  ///< triangles that are adjacent within a sheet
   std::vector<std::vector<int>> rigid;      ///< vertices of lines of one or two edges, which would vanish
 };
@@ -68,18 +68,19 @@ Net make_net(const Mesh& mesh) {
   const int n = (int)mesh.points.size();
   std::vector<Edge> edges;
   std::vector<int> on_line(n, 0);
+  std::vector<double> lengths;
   Net net;
   net.held.assign(n, 0);
   for_each_edge(mesh.tris, n, [&](std::span<const EdgeUse> uses) {
     const int h = half_edge(uses[0]), a = origin(mesh.tris, h), b = target(mesh.tris, h);
     edges.push_back({a, b, (int)uses.size()});
-    net.edge += norm(mesh.points[a] - mesh.points[b]);
+    lengths.push_back(edge_length(mesh, h));
     if (uses.size() == 2 && a != origin(mesh.tris, half_edge(uses[1])))
       net.smooth.push_back({h / 3, half_edge(uses[1]) / 3});
     if (uses.size() == 1) net.held[a] = net.held[b] = 1;
     if (uses.size() > 2) ++on_line[a], ++on_line[b];
   });
-  net.edge /= (double)edges.size();
+  net.bound = default_bound(std::move(lengths));
   net.rigid = joined_ends(edges, on_line);
   net.near = lists_of(n, [&](auto use) {
     for (const auto& [a, b, uses] : edges) {
@@ -188,7 +189,7 @@ SmoothReport smooth_sheets(Surface& surface, const SmoothOptions& options) {
       if (model[h / 3] >> h % 3 & 1) net.held[origin(joined.tris, h)] = net.held[target(joined.tris, h)] = 1;
   }
   SmoothReport r;
-  r.within = options.within > 0 ? options.within : net.edge;
+  r.within = options.within > 0 ? options.within : net.bound;
   r.angle_before = mean_angle(joined, net.smooth);
   const std::vector<Vec3> start = joined.points;
   const Solids before = find_solids(joined);

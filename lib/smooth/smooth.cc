@@ -242,10 +242,10 @@ double mean_angle(const Connectivity& c) {
   return mean_angle(c.mesh, adjacent);
 }
 
-double mean_edge(const Mesh& mesh) {
-  double sum = 0;
-  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) sum += edge_length(mesh, h);
-  return sum / (3.0 * mesh.tris.size());
+std::vector<double> edge_lengths(const Mesh& mesh) {
+  std::vector<double> lengths;
+  for (int h = 0; h < 3 * (int)mesh.tris.size(); ++h) lengths.push_back(edge_length(mesh, h));
+  return lengths;
 }
 
 /// Throws: GoalMissed if the bound leaves almost nothing of what smoothing does without one, if that is much.
@@ -280,7 +280,7 @@ SmoothReport smooth(Surface& surface, const SmoothOptions& options) {
   const std::vector<int> opposite = opposite_halfedges(surface);
   const auto model = model_of(surface);
   const Connectivity c{surface, opposite, model};
-  const double edge = mean_edge(surface);
+  const double edge = default_bound(edge_lengths(surface));
   if (!(edge > 0)) throw NotAdmissible("the surface has no area");
   SmoothReport r;
   r.within = options.within > 0 ? options.within : edge;

@@ -9,7 +9,7 @@
 namespace meshpipe {
 
 struct SmoothOptions {
-  double within = 0;           ///< no vertex is farther than this from where it was; 0: the mean edge length
+  double within = 0;           ///< no vertex is farther than this from where it was; 0: `default_bound`
   bool keep_features = false;  ///< vertices of model edges (face column `model`) stay
 };
 

@@ -231,6 +231,15 @@ TEST(smooth, CoarseSurfacesDoNotGetRougher) {
   }
 }
 
+TEST(smooth, OneVertexFarOutDoesNotRaiseTheBound) {
+  const Surface plain = surface_of(sphere(500));
+  for (auto smoothed : {smooth, smooth_sheets}) {
+    Surface s = plain, spike = plain;
+    spike.points[7] = 1e23 * spike.points[7];
+    EXPECT_LT(smoothed(spike, {}).within, 15 * smoothed(s, {}).within);
+  }
+}
+
 TEST(smooth, RefusesWhatIsNoSurface) {
   Surface none;
   EXPECT_THROW(smooth(none, {}), NotAdmissible);
