@@ -46,11 +46,11 @@ void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
     const double stretch = std::exp(0.25 * (m.a + m.c) + 0.5 * std::hypot(0.5 * (m.a - m.c), m.b));
     const double spacing = (std::nextafter(far, infinity) - far) * stretch * site.size;
     if (!(site.size < least_spacings * spacing)) continue;
+    const double least = 2 * least_spacings * spacing;  // elsewhere the map may be as coarse, or coarser
     throw Informed<GoalMissed>("vertex " + std::to_string(chart.mesh.vertex[v]) + " has size " +
                                    shown(site.size) + ", but points of the map are " + shown(spacing) +
-                                   " apart there, and sizes of at least " + shown(least_spacings * spacing) +
-                                   " are expected",
-                               sizes_from(2 * least_spacings * spacing));
+                                   " apart there; expected sizes of at least " + shown(least),
+                               sizes_from(least));
   }
 }
 

@@ -545,11 +545,11 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
     const double far = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     const double spacing = std::nextafter(far, infinity) - far;
     if (!(size[v] > 0) || size[v] >= least_spacings * spacing) continue;
+    const double least = 2 * least_spacings * spacing;  // narrow places get less than what is asked for
     throw Informed<GoalMissed>("vertex " + std::to_string(v) + " has size " + shown(size[v]) +
                                    ", but coordinates there are " + shown(spacing) +
-                                   " apart, and sizes of at least " + shown(least_spacings * spacing) +
-                                   " are expected",
-                               {.least_size = 2 * least_spacings * spacing, .far_off = far > diagonal(mesh)});
+                                   " apart; expected sizes of at least " + shown(least),
+                               {.least_size = least, .far_off = far > diagonal(mesh)});
   }
 }
 
