@@ -117,6 +117,13 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
   return "; try " + way->what + " (" + way->why + ")";
 }
 
+/// Returns what a message with places and lengths of the stream has to add to them, or "".
+std::string unit_of(const Io& io) {
+  return io.stream.unit == 0
+             ? ""
+             : " (coordinates and lengths are multiples of 2^" + std::to_string(io.stream.unit) + ')';
+}
+
 /// Throws: BadUsage if a file has another extension than those listed; devices and pipes have none.
 void expect_extension(const std::string& path, std::string_view known) {
   const std::string extension = extension_of(path);
@@ -138,15 +145,15 @@ void run_body(Io& io, const std::function<void(Io&)>& body, const Usage& usage) 
   } catch (const NotAdmissible& e) {
     const std::string way = way_out_of(io, e, 4);
     if (io.report.size() > 1) write_report(io);  // it was measured before
-    throw NotAdmissible(e.what() + way);
+    throw NotAdmissible(e.what() + unit_of(io) + way);
   } catch (const GoalMissed& e) {
     const std::string way = way_out_of(io, e, 5);
     write_report(io);
-    throw GoalMissed(e.what() + way);
+    throw GoalMissed(e.what() + unit_of(io) + way);
   } catch (const ContractMissed& e) {
     const std::string way = way_out_of(io, e, 6);
     write_report(io);
-    throw ContractMissed(e.what() + way);
+    throw ContractMissed(e.what() + unit_of(io) + way);
   }
   write_report(io);
 }
