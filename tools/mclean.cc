@@ -175,11 +175,12 @@ void add_options(CLI::App& app, Options& o) {
       ->type_name("auto|TOL");
   app.add_option("--keep-components", o.most, "keep the N components of largest area (default: all)")
       ->type_name("N|all");
-  app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
-      ->check(CLI::Range(3, 100000))
-      ->type_name("N");
+  auto* fill = app.add_option("--fill-holes", o.fill_holes, "fill border loops of at most N edges")
+                   ->check(CLI::Range(3, 100000))
+                   ->type_name("N");
   app.add_flag("--cap-patches", o.cap_patches,
-               "give each filled hole a separate patch, named cap-1, cap-2 ...");
+               "give each filled hole a separate patch, named cap-1, cap-2 ...")
+      ->needs(fill);
   app.add_flag("--drop-nonorientable", o.drop_nonorientable,
                "drop components that cannot be oriented instead of cutting them open");
   app.add_option(
