@@ -225,6 +225,13 @@ void append_line(const std::string& path, std::string_view heading, std::string_
   if (::close(fd) != 0) throw CannotWrite(path + ": " + last_error());
 }
 
+void expect_heading(const std::string& path, std::string_view heading) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
+  if (!read_bytes(path).starts_with(heading))
+    throw CannotWrite(path + ":1: the table has other columns; give a new file");
+}
+
 void expect_writable(const std::string& name) {
   if (name == "-") return;
   const std::string path = end_of_links(name);

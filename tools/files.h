@@ -74,6 +74,8 @@ void write_atomically(const std::string& path, const std::function<void(const Si
 
 /// Adds a line to a file at once, after the heading if the file is new or empty. Throws CannotWrite.
 void append_line(const std::string& path, std::string_view heading, std::string_view line);
+/// Throws: CannotWrite if a file has another first line than this heading, and is not empty.
+void expect_heading(const std::string& path, std::string_view heading);
 
 /// Checks before the work that write_atomically can write the file. Throws CannotWrite.
 void expect_writable(const std::string& path);

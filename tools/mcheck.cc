@@ -65,7 +65,7 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   if (!o.histogram.empty()) io.expect_report("--histogram", o.histogram);
   if (!o.offending.empty()) io.expect_report("--culprits", o.offending, true);
   if (!o.refine.empty()) io.expect_report("--refine", o.refine, true);
-  if (!o.tsv.empty()) io.expect_report("--tsv", o.tsv);
+  if (!o.tsv.empty()) io.expect_report("--tsv", o.tsv), expect_heading(o.tsv, summary_heading());
   if (o.shards.count > 0) expect_only_shards(io);
   // of the result a cut needs its shape only
   Stream& stream = read(io, summary, [&](std::string_view table, std::string_view column) {
