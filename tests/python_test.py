@@ -88,7 +88,7 @@ class Remesh(unittest.TestCase):
             self.assertTrue(np.array_equal(meshpipe.remesh(mesh, size=0.3).points, plain.points))
 
     def test_accept(self):
-        result = meshpipe.remesh(POINTS, FACES, size=0.5, max_error=1e-12, accept=True)
+        result = meshpipe.remesh(POINTS, FACES, size=0.5, max_error=1e-17, accept=True)
         self.assertGreater(len(result.faces), 8)
 
     def test_statuses(self):
@@ -104,7 +104,7 @@ class Remesh(unittest.TestCase):
                 (meshpipe.InputError, 3, {"patch": [1]}),
                 (meshpipe.NotAdmissible, 4, {"points": POINTS * 0}),
                 (meshpipe.UsageError, 2, {"points": POINTS * 1e60}),
-                (meshpipe.ContractMissed, 6, {"size": 0.5, "max_error": 1e-12}),
+                (meshpipe.ContractMissed, 6, {"size": 0.5, "max_error": 1e-17}),
                 (meshpipe.OutputError, 7, {"keep": "/dev/null/x"})):
             with self.subTest(arguments=arguments), self.assertRaises(error) as caught:
                 meshpipe.remesh(**{"points": POINTS, "faces": FACES, "size": 0.5, **arguments})

@@ -109,7 +109,9 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   else if (failures.empty() || o.accept)
     write_result(io, stream);
   if (failures.empty()) return verdict.write();
-  throw Informed<ContractMissed>(summary_of(failures), facts_about(failures[0], stream.surface));
+  FailureFacts facts = facts_about(failures[0], stream.surface);
+  if (facts.requirement == "hausdorff") facts.value = verdict.least_distance(facts.value);
+  throw Informed<ContractMissed>(summary_of(failures), facts);
 }
 
 }  // namespace

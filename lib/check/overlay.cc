@@ -6,7 +6,11 @@
 namespace meshpipe {
 namespace {
 
-constexpr double uncovered = 1e-8;  // of the area: what rounding leaves uncovered is no wider than its root
+/// Of the area: more than this uncovered is no rounding; and what rounding cannot tell from nothing. What is
+/// uncovered is taken to be as wide as its root.
+constexpr double uncovered = 1e-8, rounding = 1e-15;
+/// Of its distance, how far a face that misses the triangle by rounding may reach into it.
+constexpr double overlooked = 1e-12;
 
 /// A triangle in its own plane, and the coordinates of points there: x and y, and z above it.
 struct Frame {
@@ -107,8 +111,9 @@ double sheet_height(const Connectivity& surface, int face, const std::array<Vec3
     Vec3 corner[3];
   } faces[most];
   int n = 0;
-  double highest = 0;
+  double highest = 0, reach = 0;
   auto add = [&](int h, const Vec3& a, const Vec3& b, const Vec3& c) {
+    for (const Vec3& p : {a, b, c}) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
     double height = std::max({std::abs(a.z), std::abs(b.z), std::abs(c.z)});
     if (height > enough) height = plane_height(frame, a, b, c);
     highest = std::max(highest, height);
@@ -131,7 +136,7 @@ double sheet_height(const Connectivity& surface, int face, const std::array<Vec3
       if (std::any_of(faces, faces + n, [&](const Face& f) { return f.entered / 3 == g / 3; })) continue;
       if (n == most || !add(g, to, from, frame(surface.point(surface.apex(g))))) return infinity;
     }
-  return highest + std::sqrt(uncovered * frame.area);
+  return highest + overlooked * reach;
 }
 
 double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec3, 3>& c, double enough) {
@@ -157,9 +162,9 @@ double overlay_height(const Mesh& surface, const Bvh& tree, const std::array<Vec
                        highest = std::max(highest, std::abs(a.z));
                      }
                    });
-  const double area = frame.area;
-  return seen <= most && std::abs(covered - area) <= uncovered * area ? highest + std::sqrt(uncovered * area)
-                                                                      : infinity;
+  const double area = frame.area, gap = std::abs(covered - area);
+  return seen <= most && gap <= uncovered * area ? highest + std::sqrt(std::max(gap, rounding * area))
+                                                 : infinity;
 }
 
 }  // namespace meshpipe

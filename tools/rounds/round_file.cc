@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/rounds/round_file.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -25,6 +26,12 @@ RoundFile::RoundFile(Io& io, std::string file, bool bounded_distance) : file_(st
     }
     return !repeats();
   };
+}
+
+double RoundFile::least_distance(double last) const {
+  for (const Score& s : scores_in(before_))
+    if (s.requirement == "hausdorff") last = std::min(last, -s.value);
+  return last;
 }
 
 void RoundFile::write() const {

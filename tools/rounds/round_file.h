@@ -23,6 +23,9 @@ class RoundFile {
     const std::vector<double> sizes = numbers_in(before_, "size");
     return sizes.empty() ? 0 : sizes[0];
   }
+  /// Returns the smallest bound of the distance that this round, whose is `last`, or one before it has
+  /// reached.
+  double least_distance(double last) const;
   void write() const;
 
   Outcome outcome;

@@ -14,6 +14,12 @@ constexpr int not_admissible = 4, goal_missed = 5, contract_missed = 6;
 
 constexpr double beyond_repair = 100;  ///< pairs of triangles that cross, of the input or new ones
 
+/// Over the best distance of a chain's rounds. Sizes fall less where more is allowed, and so those rounds end
+/// at others: asked for 1.01 times the best, six of seven surfaces missed it, by up to 1.34 times; asked for
+/// 1.5 times, a sphere of 100 triangles did; 3 times sufficed.
+constexpr double distance_margin = 3;
+
+/// A number as a message shows it, not below the value: what is at least that large still is.
 std::string at_least(double x) { return shown(rounded_up(x)); }
 
 struct Case {
@@ -97,7 +103,8 @@ const Row table[] = {
      }},
     {[](const Case& c) { return c.missed("hausdorff") && c.used("mcheck", "--max-error"); },
      [](const Case& c) {
-       return WayOut{"--max-error " + at_least(1.01 * c.facts.value), "the distance that was reached"};
+       return WayOut{"--max-error " + at_least(distance_margin * c.facts.value),
+                     shown(c.facts.value) + " was reached"};
      }},
     {[](const Case& c) {
        return c.status >= goal_missed && c.found.weld > c.facts.narrow_width && !c.used("mclean", "--weld");

@@ -115,6 +115,14 @@ TEST(distance, a_distance_below_what_is_asked_is_bounded_by_it) {
   EXPECT_GE(d.hausdorff, found * (1 - 1e-12));
 }
 
+TEST(distance, of_planes_in_other_triangles_is_bounded_by_rounding) {
+  Mesh a = cube(300), b = cube(1000);
+  for (Mesh* mesh : {&a, &b})
+    for (Vec3& p : mesh->points) p = {0.6 * p.x - 0.8 * p.y + 3, 0.8 * p.x + 0.6 * p.y, p.z};
+  const Distance d = apart(a, b, 10000, 1e-9);
+  EXPECT_LE(d.hausdorff + d.bound, 1e-9);
+}
+
 TEST(distance, a_sheet_over_a_triangle_is_as_high_as_its_highest_part) {
   // a roof of two triangles, its ridge from 0 to 2 half as high as wide, over a triangle in the plane
   Mesh roof{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
