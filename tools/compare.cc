@@ -91,7 +91,7 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
                        required_distance(contract) - removed, meet, least_size, shares);
   f.distance.bound += removed;
   if (meet) {
-    f.sheets = compare_sheets(reference, result, read_sheets(stream), own, f.reference_intersections == 0);
+    f.sheets = compare_sheets(reference, result, read_sheets(stream), own, f.reference_pairs.all == 0);
     f.sheets->faults.insert(f.sheets->faults.end(), faults.begin(), faults.end());
   }
   if (own)

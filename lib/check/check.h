@@ -27,6 +27,13 @@ struct FaultyEdges {
   std::vector<int> unmarked_borders;  ///< no model edges, where the reference's patches end at model edges
 };
 
+/// Pairs of the reference's triangles that intersect, counted when the mesh has some, or sheets meet.
+struct ReferencePairs {
+  int all = -1;      ///< -1: not counted
+  int crossing = 0;  ///< those that do not only touch
+  int apart = 0;     ///< those without a corner in the same place
+};
+
 struct Findings {
   Soundness mesh, reference;
   Quality quality, reference_quality;
@@ -35,8 +42,7 @@ struct Findings {
   std::optional<double> features;  ///< the same of borders and model edges, if both know their model edges
   std::vector<std::pair<int, int>> intersections;      ///< pairs of the mesh's triangles
   std::vector<std::pair<int, int>> new_intersections;  ///< those where the reference has none
-  int reference_intersections = -1;                    ///< counted when the mesh has some, or sheets meet
-  int reference_proper_intersections = 0;              ///< of these, pairs without a corner in the same place
+  ReferencePairs reference_pairs;
   FaultyEdges edges;
   double mean_size = 0;          ///< length of an edge if all triangles were equilateral and equal
   std::vector<double> off;       ///< per vertex: distance to the reference over its mean edge

@@ -328,7 +328,7 @@ std::vector<Figure> figures(const Findings& f) {
        (double)m.misoriented.size()},
       {"pinched_vertices", "pinched vertices", count, (double)r.pinched.size(), (double)m.pinched.size()},
       {"self_intersections", "self-intersections", count,
-       f.reference_intersections < 0 ? nan : f.reference_intersections, (double)f.intersections.size()},
+       f.reference_pairs.all < 0 ? nan : f.reference_pairs.all, (double)f.intersections.size()},
       {"new_intersections", "where reference has none", count, nan, (double)f.new_intersections.size()},
       {"folds", "folded edges", count, nan, (double)f.edges.folds.size()},
       {"kappa_min", "kappa min", 4, p.kappa_min, q.kappa_min},

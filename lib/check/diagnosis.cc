@@ -65,7 +65,7 @@ Diagnosis diagnose(const Surface& surface, Vec3 place, double reach) {
   Diagnosis d;
   if (!has_sound_indices(surface)) return d;
   const Mesh original = original_mesh(surface);
-  if (const auto pairs = self_intersections(original); !pairs.empty()) {
+  if (const auto pairs = crossings(original, self_intersections(original)); !pairs.empty()) {
     d.intersections = pairs.size();
     d.intersection = contacts(original, {pairs[0]}).points.at(0);
   }

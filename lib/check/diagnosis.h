@@ -8,7 +8,7 @@
 namespace meshpipe {
 
 struct Diagnosis {
-  std::size_t intersections = 0;  ///< pairs of triangles that intersect,
+  std::size_t intersections = 0;  ///< pairs of triangles that intersect, and do not only touch,
   Vec3 intersection{};            ///< and where the first of them do
   bool open = false;              ///< there are borders: what crosses may have no inside
   double weld = 0;                ///< tolerance that merges points almost at one place; 0: there are none

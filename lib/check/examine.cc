@@ -156,14 +156,15 @@ void find_intersections(Findings& f, const Connectivity& result, const Bvh* mesh
   if (f.intersections.empty() && chords.empty() && !sheets_meet) return;
   const auto old = before_tree ? find(joined[1], before, *before_tree) : self_intersections(before);
   const Mesh& reference = sheets_meet ? joined[1] : before;
-  f.reference_intersections = (int)old.size();
-  f.reference_proper_intersections = (int)std::count_if(old.begin(), old.end(), [&](const auto& pair) {
+  f.reference_pairs.all = (int)old.size();
+  f.reference_pairs.apart = (int)std::count_if(old.begin(), old.end(), [&](const auto& pair) {
     const Tri &a = reference.tris[pair.first], &b = reference.tris[pair.second];
     return std::none_of(a.begin(), a.end(), [&](int v) {
       return std::any_of(b.begin(), b.end(),
                          [&](int w) { return reference.points[v] == reference.points[w]; });
     });
   });
+  f.reference_pairs.crossing = (int)crossings(reference, old).size();
   const Mesh& mesh = sheets_meet ? joined[0] : result.mesh;
   f.intersections.insert(f.intersections.end(), chords.begin(), chords.end());
   sort_unique(f.intersections);

@@ -35,7 +35,7 @@ std::vector<double> errors_at_faults(const Surface& offending, const Mesh& mesh)
 std::vector<double> smaller_sizes(const Contract& contract, const Findings& findings, const Surface& result,
                                   const Mesh& reference) {
   std::vector<double> size = result.vertex.get<double>("size"), errors;
-  if (findings.reference_proper_intersections > most_pairs * reference.tris.size()) return size;
+  if (findings.reference_pairs.apart > most_pairs * reference.tris.size()) return size;
   auto is_distance = [](const Requirement& r) { return r.name == "hausdorff" || r.name == "deviation"; };
   if (std::any_of(contract.begin(), contract.end(), is_distance))
     errors = triangle_errors(reference, Bvh(reference), result, Bvh(result));

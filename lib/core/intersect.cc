@@ -7,6 +7,7 @@
 #include "lib/core/bvh.h"
 #include "lib/core/connectivity.h"
 #include "lib/core/predicates.h"
+#include "lib/core/weld.h"
 
 namespace meshpipe {
 namespace {
@@ -269,6 +270,12 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh&
   std::erase_if(all, [&](const auto& p) { return !has_area(mesh, p.first) || !has_area(mesh, p.second); });
   std::sort(all.begin(), all.end());
   return all;
+}
+
+std::vector<std::pair<int, int>> crossings(Mesh mesh, std::vector<std::pair<int, int>> pairs) {
+  if (!pairs.empty()) weld(mesh);
+  std::erase_if(pairs, [&](const auto& p) { return !triangles_intersect(mesh, p.first, p.second); });
+  return pairs;
 }
 
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places) {

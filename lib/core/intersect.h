@@ -24,6 +24,10 @@ std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh);
 std::vector<std::pair<int, int>> self_intersections(const Mesh& mesh, const Bvh& bvh,
                                                     int own = std::numeric_limits<int>::max());
 
+/// Returns those of the intersecting pairs that also do if vertices at the same place are one: the others
+/// only touch, as bodies do that share a vertex or an edge.
+std::vector<std::pair<int, int>> crossings(Mesh mesh, std::vector<std::pair<int, int>> pairs);
+
 /// Returns where the triangles of each pair meet, as triangles after `places`: a segment is (first, last,
 /// last); for two triangles in one plane, the polygon that they share.
 Mesh contacts(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs, Mesh places = {});

@@ -209,7 +209,7 @@ TEST(contract, sizes_are_smaller_where_the_distance_is_missed) {
   const std::vector<double> size = smaller_sizes(contract, f, result, spiked);
   EXPECT_LT(size[tip], 0.05);
   EXPECT_GT(std::count(size.begin(), size.end(), 0.1), 900);
-  f.reference_proper_intersections = (int)spiked.tris.size() + 1;
+  f.reference_pairs.apart = (int)spiked.tris.size() + 1;
   EXPECT_EQ(smaller_sizes(contract, f, result, spiked), result.vertex.get<double>("size")) << "a tangle";
 }
 
@@ -234,7 +234,7 @@ TEST(contract, a_crossing_and_a_lost_name) {
   f.patch_faults = {{"patch inlet is lost"}, {"patch 2 is short", {2}}};
   f.intersections = {{4, 9}, {5, 8}};
   f.new_intersections = {{4, 9}};
-  f.reference_intersections = 1;
+  f.reference_pairs.all = 1;
   const Contract contract = parse_contract(default_contract);
   const auto failures = judge(contract, f, good);
   ASSERT_EQ(failures.size(), 3u);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lib/check/check.h"
+#include "lib/core/intersect.h"
 
 using namespace meshpipe;
 
@@ -41,6 +42,13 @@ TEST(Diagnosis, CountsIntersectionsAndSaysWhere) {
   EXPECT_EQ(d.intersections, 1u);
   EXPECT_NEAR(d.intersection.x, 1, 1e-12);
   EXPECT_NEAR(d.intersection.z, 0, 1e-12);
+}
+
+TEST(Diagnosis, BodiesThatTouchDoNotIntersect) {
+  const Surface s =
+      surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 1}, {0, 1, 1}}, {{0, 1, 2}, {3, 4, 5}});
+  ASSERT_EQ(self_intersections(s).size(), 1u);
+  EXPECT_EQ(diagnose(s, {}, 0).intersections, 0u);
 }
 
 TEST(Diagnosis, KnowsTheLinesNextToAPlace) {
