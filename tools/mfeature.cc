@@ -96,17 +96,18 @@ std::vector<int> given_edges(const Io& io, Stream& stream, const std::string& ed
   ModelSegments lines = none ? ModelSegments() : read_model_edges(stream);
   const std::size_t n_own = lines.tris.size();
   if (other) append(lines, segments_of(io.read(edge_file)));
+  const std::size_t n_other = lines.tris.size() - n_own;
+  if (other && n_other == 0) throw NotAdmissible(edge_file + ": expected lines, found none");
   drop_downstream(stream, Stage::features);
   write_model_edges(stream, lines);
   const std::vector<int> given = segments_under(stream.surface, lines);
   std::vector<char> used(lines.tris.size());
   for (int segment : given)
     if (segment >= 0) used[segment] = 1;
-  if (const std::size_t n = lines.tris.size() - n_own; other)
-    io.say(edge_file + ": " + std::to_string(n) + " lines" + (n ? ", " : "") +
-           (n ? std::to_string(std::count(used.begin() + n_own, used.end(), 1)) +
-                    " of them under edges of the surface"
-              : ""));
+  if (other)
+    io.say(edge_file + ": " + std::to_string(n_other) + " lines, " +
+           std::to_string(std::count(used.begin() + (std::ptrdiff_t)n_own, used.end(), 1)) +
+           " of them under edges of the surface");
   return given;
 }
 

@@ -83,8 +83,8 @@ Stream ObjReader::read() {
     else if (w == "usemtl")
       materials_.enter(text_.rest());
   }
-  // the format has no mark of its own: a file without a face is probably another one
-  if (polygons_.ends.empty()) text_.fail("the file ends without a face");
+  // the format has no mark of its own: a file without a face or line is probably another one
+  if (polygons_.ends.empty() && lines_.empty()) text_.fail("the file ends without a face");
   const std::size_t n = stream_.surface.points.size();
   if (largest_ >= static_cast<int>(n))
     text_.fail_at(largest_line_, "a face or line uses vertex " + std::to_string(largest_ + 1LL) +

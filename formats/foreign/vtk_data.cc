@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "formats/stream/model_lines.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
 
@@ -50,6 +51,18 @@ void add_cell_to(Volumes& volumes, const Cell& cell, std::string_view order, con
   add_volume(volumes, corners, static_cast<int>(order.size()), static_cast<int>(cell.n), cell.number);
 }
 
+/// Makes model edges of the lines of a file without faces, with labels by cell array `tag`, which
+/// write_feature_edges writes.
+void set_lines(Stream& stream, const VtkData& data) {
+  std::vector<int> tag(static_cast<std::size_t>(data.cells), 0), given;
+  for (const Array& a : data.cell_data)
+    if (a.name == "tag" && a.components == 1 && a.rows() == tag.size() && whole_numbers(a.data, given))
+      tag = given;
+  std::vector<LineEdge> edges;
+  for (const auto& [a, b, cell] : data.lines) edges.push_back({a, b, tag[static_cast<std::size_t>(cell)]});
+  set_model_lines(stream, edges);
+}
+
 }  // namespace
 
 void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::string& place) {
@@ -69,7 +82,8 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       fail("of type " + std::to_string(type) + " has " + std::to_string(n) + " points, expected " +
            std::to_string(n < least ? least : most));
   };
-  auto element = [&](int n_corners) {
+  auto element = [&](int n_corners, std::size_t least, std::size_t most) {
+    expect(least, most);
     const int added = add_element(polygons, corners, n_corners, static_cast<int>(n));
     cell.insert(cell.end(), added, cells);
   };
@@ -96,30 +110,28 @@ void VtkData::add_cell(int type, const int* corners, std::size_t n, const std::s
       add({corners[0], corners[1], corners[2], corners[3]});
       break;
     case 22:  // quadratic triangles and quadrilaterals, with or without a node in the middle
-      expect(6, 6);
-      element(3);
+      element(3, 6, 6);
       break;
     case 23:
-      expect(8, 8);
-      element(4);
+      element(4, 8, 8);
       break;
     case 28:
-      expect(9, 9);
-      element(4);
+      element(4, 9, 9);
       break;
     case 34:
-      expect(7, 7);
-      element(3);
+      element(3, 7, 7);
       break;
     case 69:  // Lagrange's triangles and quadrilaterals of any order
-      expect(3, max_corners);
-      element(3);
+      element(3, 3, max_corners);
       break;
     case 70:
-      expect(4, max_corners);
-      element(4);
+      element(4, 4, max_corners);
       break;
-    default:  // volumes, vertices and lines
+    case vtk_line:
+    case vtk_polyline:
+      for (std::size_t i = 1; i < n; ++i) lines.push_back({corners[i - 1], corners[i], cells});
+      break;
+    default:  // volumes and vertices
       if (const std::string_view order = volume_corners(type); polygons.ends.empty()) {
         if (!order.empty()) expect(order.size(), max_corners);
         add_cell_to(volumes, {type, cells, corners, n}, order, place);
@@ -137,6 +149,7 @@ Stream vtk_surface(VtkData data) {
   Stream stream;
   Surface& s = stream.surface;
   s.points = std::move(data.points);
+  if (data.polygons.ends.empty() && data.volumes.kind.empty()) set_lines(stream, data);
   const std::vector<int> volumes = add_outer_faces(data.polygons, data.volumes, stream);
   if (!volumes.empty()) data.cell = volumes;
   const int dimension = volumes.empty() ? 2 : 3;  // of what has the names of patches

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What legacy and XML files of VTK share: points, cells by type, arrays of data.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,15 @@
 
 namespace meshpipe {
 
-constexpr int vtk_triangle = 5, vtk_strip = 6, vtk_polygon = 7, vtk_quadratic_triangle = 22;
+constexpr int vtk_line = 3, vtk_polyline = 4, vtk_triangle = 5, vtk_strip = 6, vtk_polygon = 7,
+              vtk_quadratic_triangle = 22;
 
 /// A data set of VTK while it is read.
 struct VtkData {
   std::vector<Vec3> points;
   Polygons polygons;
-  std::vector<int> cell;  ///< of each polygon
+  std::vector<int> cell;                  ///< of each polygon
+  std::vector<std::array<int, 3>> lines;  ///< from point to point, and the cell
   Volumes volumes;
   int cells = 0;
   std::vector<Array> point_data, cell_data, field_data;
@@ -28,9 +31,10 @@ struct VtkData {
   void add_cell(int type, const int* corners, std::size_t n, const std::string& place);
 };
 
-/// Returns the surface, or that of the volumes, with one column per array (add_columns). The patch is cell
-/// array `patch`, or else the first array by which other programs label surfaces; names are field data as in
-/// field_of_names. Arrays whose number of rows is not that of points or cells are left out, with a remark.
+/// Returns the surface, or that of the volumes, or else the lines, with one column per array (add_columns).
+/// The patch is cell array `patch`, or else the first array by which other programs label surfaces; names are
+/// field data as in field_of_names. Arrays whose number of rows is not that of points or cells are left out,
+/// with a remark.
 Stream vtk_surface(VtkData data);
 
 /// Returns names of patches and lines as meshio has them: per name an array of that name with the tag and the

@@ -22,11 +22,15 @@ void add(ModelSegments& s, Vec3 a, Vec3 b, int tag, int ridge, int required) {
 
 }  // namespace
 
-ModelSegments segments_of(const Stream& mesh) {
+ModelSegments segments_between(const std::vector<Vec3>& points, const std::vector<LineEdge>& edges) {
   ModelSegments s;
-  for (const LineEdge& e : model_lines(mesh))
-    add(s, mesh.surface.points[e.a], mesh.surface.points[e.b], e.tag, e.ridge, e.required);
+  for (const LineEdge& e : edges) add(s, points[e.a], points[e.b], e.tag, e.ridge, e.required);
   return s;
+}
+
+ModelSegments segments_of(const Stream& mesh) {
+  if (mesh.surface.tris.empty()) return read_model_edges(mesh);
+  return segments_between(mesh.surface.points, model_lines(mesh));
 }
 
 ModelSegments read_model_edges(const Stream& stream) {

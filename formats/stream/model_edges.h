@@ -2,11 +2,16 @@
 // The stream's table model_edge: model edges by the coordinates of their ends, which survive renumbering.
 #pragma once
 #include "formats/stream.h"
+#include "formats/stream/model_lines.h"
 #include "lib/feature/feature.h"
 
 namespace meshpipe {
 
-/// Returns the model edges of a mesh that was just read (set_model_lines).
+/// Returns edges as segments.
+ModelSegments segments_between(const std::vector<Vec3>& points, const std::vector<LineEdge>& edges);
+
+/// Returns the model edges of a mesh that was just read (set_model_lines), or the lines of a file without
+/// faces.
 ModelSegments segments_of(const Stream& mesh);
 
 /// Reads the table; returns no segments without it.

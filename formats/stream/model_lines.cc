@@ -175,6 +175,7 @@ class LinesOfVertices {
 void set_model_lines(Stream& stream, const std::vector<LineEdge>& edges) {
   if (edges.empty()) return;
   const std::vector<Tri>& tris = stream.surface.tris;
+  if (tris.empty()) return write_model_edges(stream, segments_between(stream.surface.points, edges));
   const std::vector<LineEdge> sorted = sorted_by_ends(edges);
   std::vector<char> found(sorted.size(), 0);
   // edges without a label are in the column only

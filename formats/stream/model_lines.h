@@ -15,8 +15,8 @@ struct LineEdge {
 
 /// Adds edges to face column `model`, on both sides. If any has a label, or is not just a ridge, the tables
 /// line and line_vertex get them too: consecutive edges of equal label and marks as one line, with columns
-/// `ridge` and `required` where these distinguish lines. Edges of no triangle are left out, with a remark.
-/// Requires the faces.
+/// `ridge` and `required` where these distinguish lines. Edges of no triangle are left out, with a remark; if
+/// there are no triangles at all, table model_edge gets the edges. Requires the faces.
 void set_model_lines(Stream& stream, const std::vector<LineEdge>& edges);
 
 /// Returns every model edge of the surface once, and border edges with a label. Labels come from the tables

@@ -11,6 +11,7 @@
 #include "formats/foreign/numbers.h"
 #include "formats/foreign/stl.h"
 #include "formats/formats.h"
+#include "formats/stream/model_edges.h"
 #include "formats/text.h"
 #include "lib/core/error.h"
 #include "tests/unit/formats/failure.h"
@@ -532,6 +533,12 @@ TEST(FeatureEdges, AreLinesWithTheirLabels) {
   EXPECT_NE(write_feature_edges(s, "a.eMesh")
                 .find("3\n(\n(0 0 0)\n(1 1 0)\n(0 1 0.5)\n)\n\n2\n(\n(0 1)\n(1 2)\n)\n"),
             std::string::npos);
+  for (const char* path : {"a.obj", "a.vtk"}) {
+    const ModelSegments back = segments_of(read_any(write_feature_edges(s, path), "in"));
+    ASSERT_EQ(back.tris.size(), 2u) << path;
+    EXPECT_EQ(back.points[back.tris[1][1]], (Vec3{0, 1, 0.5})) << path;
+    EXPECT_EQ(back.tag, extension_of(path) == ".vtk" ? (std::vector<int>{2, 7}) : (std::vector<int>{0, 0}));
+  }
   EXPECT_THROW(write_feature_edges(s, "a.stl"), BadUsage);
   Stream plain = s;
   plain.tables.clear();

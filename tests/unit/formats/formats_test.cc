@@ -293,7 +293,7 @@ TEST(Obj, LinesAreModelEdges) {
   EXPECT_FALSE(read_any(square, "in").surface.face.has("model"));
   EXPECT_EQ(failure(square + "l 1\n"), "in:7: a line of 1 point, expected at least 2");
   EXPECT_EQ(failure(square + "l 1 9\n"), "in:7: a face or line uses vertex 9, but there are 4");
-  EXPECT_EQ(failure("v 0 0 0\nv 1 0 0\nl 1 2\n"), "in:3: the file ends without a face");
+  EXPECT_EQ(failure("v 0 0 0\nv 1 0 0\n"), "in:2: the file ends without a face");
 }
 
 TEST(Obj, BadCornersNameTheLine) {
