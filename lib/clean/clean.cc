@@ -253,36 +253,43 @@ bool keep_sheets(const Surface& surface, const std::vector<int>& same, const Cle
   return divides_space(find_solids(mesh)) && self_intersections(mesh).empty();
 }
 
-void clean_once(Surface& surface, CleanOptions options, CleanReport& report) {
+/// Repairs a copy of the surface into `r`. Returns the options with sheets as they are treated where the
+/// choice is left. `restart`: what the report begins with.
+CleanOptions repair_sheets(const Surface& surface, const std::vector<int>& same, CleanOptions options,
+                           const CleanReport& restart, Repair& r, CleanReport& report) {
   const bool automatic = options.sheets == CleanOptions::automatic;
   if (automatic) options.sheets = CleanOptions::pair;
+  report = restart;
+  r = start(surface, same, report);
+  repair(r, surface.points, options, report);
+  if (!automatic || !(report.nonmanifold_edges || report.sheets.nested || report.sheets.flips.edges))
+    return options;
+  CleanOptions keep = options;
+  keep.sheets = CleanOptions::keep;
+  CleanReport kept = restart;
+  Repair whole;
+  const bool open = report.opened_edges + report.sheets.flips.edges > 0;
+  if (!keep_sheets(surface, same, keep, open, whole, kept)) return options;
+  r = std::move(whole);
+  report = std::move(kept);
+  return keep;
+}
+
+void clean_once(Surface& surface, const CleanOptions& given, CleanReport& report) {
   report = {};
   report.input_vertices = (int)surface.points.size();
   report.input_triangles = (int)surface.tris.size();
-  std::vector<int> same = weld_vertices(surface, options, report);
-  CleanReport restart = report;  // what repairs begin with
-  Repair r = start(surface, same, report);
-  repair(r, surface.points, options, report);
-  if (automatic && (report.nonmanifold_edges || report.sheets.nested || report.sheets.flips.edges)) {
-    CleanOptions keep = options;
-    keep.sheets = CleanOptions::keep;
-    CleanReport kept = restart;
-    const bool open = report.opened_edges + report.sheets.flips.edges > 0;
-    if (Repair whole; keep_sheets(surface, same, keep, open, whole, kept)) {
-      r = std::move(whole);
-      report = std::move(kept);
-      options = keep;
-    }
-  }
+  std::vector<int> same = weld_vertices(surface, given, report);
+  CleanReport restart = report;
+  Repair r;
+  CleanOptions options = repair_sheets(surface, same, given, restart, r, report);
   if (options.weld < 0 && has_border(r)) {
     const double noise = coordinate_noise(surface, used_points(surface));
     int n = merge_noise(surface, border_vertices(r, same.size()), noise, same);
     n += merge_seams(surface, same, restart.tolerance);
     if (n > 0) {
       restart.welded_near += n;
-      report = restart;
-      r = start(surface, same, report);
-      repair(r, surface.points, options, report);
+      options = repair_sheets(surface, same, given, restart, r, report);
     }
   }
   if (!options.keep_flat && !options.keep_slits) close_all_slits(surface, same, restart, options, r, report);

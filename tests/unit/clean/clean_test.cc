@@ -312,6 +312,29 @@ TEST(TakeApart, CountsTheSheetsThatItReverses) {
   }
 }
 
+TEST(Clean, KeepsAStripWithHalfATwistWhoseEndsAreMerged) {
+  constexpr int n = 40, m = 3;  // the points of both ends are the same except for rounding
+  std::vector<Vec3> points;
+  std::vector<Tri> tris;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= m; ++j) {
+      const double u = 2 * std::numbers::pi * i / n, r = 3 + (j - 0.5 * m) * std::cos(u / 2);
+      points.push_back({r * std::cos(u), r * std::sin(u), (j - 0.5 * m) * std::sin(u / 2)});
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const int a = i * (m + 1) + j, b = a + m + 1;
+      tris.push_back({a, b, b + 1});
+      tris.push_back({a, b + 1, a + 1});
+    }
+  Surface s = surface(points, tris);
+  const CleanReport r = clean(s, {.sheets = CleanOptions::automatic});
+  EXPECT_EQ(r.welded_near, m + 1);
+  EXPECT_EQ(r.sheets.flips.edges, m);
+  EXPECT_TRUE(r.sheets.kept);
+  EXPECT_EQ((int)s.points.size(), n * (m + 1));
+}
+
 TEST(Clean, CutsAKleinBottleAlongAShortLine) {
   // a torus of 30 by 12 quadrangles whose ends are joined mirrored; an immersion in space
   constexpr int n = 30, m = 12;
