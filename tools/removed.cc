@@ -52,7 +52,7 @@ void report_removed(Io& io, const DefeatureReport& r, double tolerance, const St
     vanished.push_back(name.empty() ? std::to_string(label) : name);
     names += (names.empty() ? "" : ", ") + vanished.back();
   }
-  if (!names.empty()) io.say("patches removed with them: " + names);
+  if (!names.empty()) io.warn("patches narrower than the tolerance are removed: " + names);
   io.report["removed"] = list;
   io.report["vanished"] = vanished;
 }
