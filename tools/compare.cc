@@ -7,6 +7,9 @@
 #include "lib/clean/clean.h"
 #include "lib/core/error.h"
 #include "lib/core/junctions.h"
+#include "lib/core/lists.h"
+#include "lib/core/take_rows.h"
+#include "lib/core/union_find.h"
 #include "lib/core/weld.h"
 #include "lib/feature/feature.h"
 #include "tools/report/verdict.h"
@@ -17,45 +20,63 @@ namespace {
 /// Files as STL hold every triangle on its own.
 bool is_soup(const Mesh& m) { return m.points.size() == 3 * m.tris.size() && m.tris.size() > 1; }
 
-/// Is the result of a format without patches? These are read as patch 0 or 1 without a name.
-bool has_no_patches(const std::vector<Patch>& patches) {
-  return patches.empty() || (patches.size() == 1 && (patches[0].name == "0" || patches[0].name == "1"));
-}
-
 bool has_patch_names(const Stream& stream) {
   return std::any_of(stream.names.begin(), stream.names.end(), [](const Name& n) { return n.dim == 2; });
 }
 
-/// Compares the patches of two files by name, or by number if the result has no names. A reference of one
-/// patch without a name is not divided.
+/// Compares the patches of two files by name, or by number unless both have names. A file of one patch may be
+/// of a format without patches.
 std::vector<PatchFault> compare_patches(const Io& io, const Stream& reference, const Surface& surface,
                                         const Stream& result, const Findings& f) {
-  const bool named = has_patch_names(result), names = has_patch_names(reference);
+  const bool named = has_patch_names(result) && has_patch_names(reference);
   auto number = [](int label) { return std::to_string(label); };
-  const std::vector<Patch> before = patches_of(surface, {}, named ? namer(reference) : number),
-                           after = patches_of(result.surface, f.mesh.opposite, namer(result));
-  if (before.size() < 2 && !names) return {};
-  if (has_no_patches(after)) {
+  auto name = [&](const Stream& of) { return named ? namer(of) : number; };
+  const std::vector<Patch> before = patches_of(surface, {}, name(reference)),
+                           after = patches_of(result.surface, f.mesh.opposite, name(result));
+  if (before.size() < 2) return {};
+  if (after.size() < 2) {
     io.say("the result is not divided into patches: they are not compared");
     return {};
   }
-  if (names && !named) io.say("the result has no names of patches: they are compared by their numbers");
+  if (has_patch_names(reference) && !named)
+    io.say("the result has no names of patches: they are compared by their numbers");
   return compare_patches(before, after);
+}
+
+/// Gives each fan of triangles at a vertex a copy of its own, as files do not that merge equal points.
+void part_fans(Surface& s, const Soundness& found) {
+  const std::vector<int>& opposite = found.opposite;
+  UnionFind fan(opposite.size());  // of corners
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] >= 0) fan.join(h, next(opposite[h]));
+  std::vector<int> rows = identity(s.points.size()), first(rows.size(), -1), copy(opposite.size(), -1);
+  for (int h = 0; h < (int)opposite.size(); ++h) {
+    int& v = s.tris[h / 3][h % 3];
+    int &at = copy[fan.find(h)], &taken = first[v];
+    if (at < 0) at = std::exchange(taken, 0) < 0 ? v : (int)rows.size();
+    if (at == (int)rows.size()) rows.push_back(v);
+    v = at;
+  }
+  for (std::size_t i = s.points.size(); i < rows.size(); ++i) s.points.push_back(s.points[rows[i]]);
+  take_rows(s.vertex, rows);
 }
 
 /// Cleans the reference; where its sheets meet, takes those of both surfaces apart. Returns whether they do.
 /// `apart`: are those of the result so already? Adds to `faults` what else would be repaired in the result.
 bool clean_both(Surface& reference, Surface& result, bool apart, std::vector<std::string>& faults) {
   CleanReport report;
+  const bool slit = !slits_of(reference).empty();
   clean(reference, {.sheets = CleanOptions::automatic}, report);
   if (is_soup(result)) weld(result);
-  // some files join the copies of vertices that keep fans apart
-  if (report.nonmanifold_vertices > 0 && !soundness_of(result).pinched.empty()) split_sheets(result);
+  if (report.nonmanifold_vertices > 0)
+    if (const Soundness found = soundness_of(result);
+        !found.pinched.empty() && (int)found.pinched.size() <= report.nonmanifold_vertices)
+      part_fans(result, found);
   if (!report.sheets.kept) return false;
   const bool as_given = take_apart(reference).reversed + report.flipped == 0;
   if (apart)
     join_borders(result);
-  else if (const std::vector<int> slits = slits_of(result); !slits.empty())
+  else if (const std::vector<int> slits = slits_of(result); !slits.empty() && !slit)
     faults.push_back(std::to_string(slits.size()) + " triangles are along slits, the first is triangle " +
                      std::to_string(slits[0]));
   result.vertex = Table{"vertex", result.points.size(), {}};
@@ -63,6 +84,12 @@ bool clean_both(Surface& reference, Surface& result, bool apart, std::vector<std
     faults.push_back(std::to_string(reversed) + (reversed == 1 ? " sheet is" : " sheets are") +
                      " inside out");
   return true;
+}
+
+/// Finds the creases that are cut off; in a file without lines, those that mfeature would find.
+std::vector<int> cut_creases(const Surface& result, const Findings& f, Surface reference, bool own) {
+  if (!own && !reference.face.has("model")) mark_features(reference, {});
+  return find_cut_creases({result, f.mesh.opposite}, reference);
 }
 
 }  // namespace
@@ -84,12 +111,12 @@ Findings compare(const Io& io, Stream& stream, const std::string& file, const Co
     meet = clean_both(reference, result, meet, faults);
   }
   expect_measurable(reference);
-  if (!own && !reference.face.has("model")) mark_features(reference, {});
   if (result.tris.empty()) throw NotAdmissible("the result has no triangles");
   const double removed = own ? moved_in(stream) / diagonal(reference) : 0;
   Findings f = examine(result, reference, own ? &lines : nullptr, samples,
                        required_distance(contract) - removed, meet, least_size, shares);
   f.distance.bound += removed;
+  f.edges.cut_creases = cut_creases(result, f, reference, own);
   if (meet) {
     f.sheets = compare_sheets(reference, result, read_sheets(stream), own, f.reference_pairs.all == 0);
     f.sheets->faults.insert(f.sheets->faults.end(), faults.begin(), faults.end());

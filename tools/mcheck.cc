@@ -35,10 +35,10 @@ void say(Io& io, const Findings& f, const std::vector<Failure>& failures) {
     return p.program == "mclean" && p.arguments.find("--resolve") != std::string::npos;
   });
   const Gaps gaps = gaps_of(io.stream.remarks);
-  const std::size_t n = f.intersections.size();
-  if (n > f.new_intersections.size() && f.reference_pairs.crossing == 0)
+  const std::size_t n = f.intersections.size() - f.new_intersections.size();
+  if (n > 0 && f.reference_pairs.crossing == 0)
     io.say(std::to_string(n) + " pairs of triangles touch, as in the input");
-  else if (n > f.new_intersections.size())
+  else if (n > 0)
     io.say(std::to_string(n) + " pairs of triangles intersect, as in the input: " +
            (gaps.closed > 0 ? "try mclean --weld " + shown(gaps.within) + " (" + gaps.text() + ")"
             : resolved      ? "mwrap resolves them"

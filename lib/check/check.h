@@ -64,12 +64,12 @@ struct Findings {
 /// for a circle deviate by 0.29 of their length.)
 constexpr double most_deviation = 0.5;
 
-/// Measures everything but the extent of patches and the cleaning. Reads, where present, the result's vertex
-/// columns `size` and `ref_face`, and face column `model` of both surfaces; the reference is compared as it
-/// was before cuts (face column `origin`), and as the smooth surface where it has face column `curved`.
-/// `lines`: those that the result was made with, or null. `samples`, `most`: as in distance_between.
-/// `sheets_meet`: border vertices with the same coordinates are one. `least_size`: allowed distances are
-/// those of sizes from it on. `shares`: what was measured in shares, or null.
+/// Measures everything but the extent of patches, cut creases and the cleaning. Reads, where present, the
+/// result's vertex columns `size` and `ref_face`, and face column `model` of both surfaces; the reference is
+/// compared as it was before cuts (face column `origin`), and as the smooth surface where it has face column
+/// `curved`. `lines`: those that the result was made with, or null. `samples`, `most`: as in
+/// distance_between. `sheets_meet`: border vertices with the same coordinates are one. `least_size`: allowed
+/// distances are those of sizes from it on. `shares`: what was measured in shares, or null.
 Findings examine(const Surface& result, const Surface& reference, const Lines* lines, int samples,
                  double most = infinity, bool sheets_meet = false, double least_size = 0,
                  const std::vector<ShareFindings>* shares = nullptr);
@@ -83,11 +83,9 @@ void cut_examination(const Surface& result, const Surface& reference, int triang
 std::vector<int> find_folds(const Connectivity& result, const Mesh& reference, const Bvh& reference_tree);
 
 /// Returns the smaller half-edge of each edge inside of the result that cuts off a crease: its ends are on
-/// both sides of a model edge of more than 60 degrees, it is off the surface between, and the other diagonal
-/// is on that edge. `marked`: the reference with its model edges (face column `model`, if any). `tree`: of
-/// the reference.
-std::vector<int> find_cut_creases(const Connectivity& result, const Surface& marked, const Mesh& reference,
-                                  const Bvh& tree);
+/// both sides of a model edge of more than 60 degrees (face column `model` of the reference), it is off the
+/// surface between, and the other diagonal is on that edge. Throws: as opposite_halfedges.
+std::vector<int> find_cut_creases(const Connectivity& result, const Surface& reference);
 
 /// One figure of the report; NaN where a mesh has none.
 struct Figure {

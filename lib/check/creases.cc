@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "lib/check/check.h"
 #include "lib/core/topology.h"
 
@@ -12,6 +14,7 @@ Mesh sharp_creases(const Surface& surface) {
   Mesh creases{surface.points, {}};
   if (!surface.face.has("model")) return creases;
   const auto& model = surface.face.get<std::uint8_t>("model");
+  if (std::count(model.begin(), model.end(), 0) == (long)model.size()) return creases;
   const std::vector<int> opposite = opposite_halfedges(surface);
   auto normal = [&](int h) { return normalized(area_vector(surface, h / 3)); };
   for (int h = 0; h < (int)opposite.size(); ++h)
@@ -22,13 +25,12 @@ Mesh sharp_creases(const Surface& surface) {
 
 }  // namespace
 
-std::vector<int> find_cut_creases(const Connectivity& result, const Surface& marked, const Mesh& reference,
-                                  const Bvh& tree) {
+std::vector<int> find_cut_creases(const Connectivity& result, const Surface& reference) {
   constexpr double near = 0.6, on = 0.15;  // of the edge
-  const Mesh creases = sharp_creases(marked);
+  const Mesh creases = sharp_creases(reference);
   std::vector<int> cut;
   if (creases.tris.empty()) return cut;
-  const Bvh search(creases);
+  const Bvh search(creases), tree(reference);
   auto meets = [&](Vec3 p, double reach) { return search.nearest_within(p, reach, 0).place.face >= 0; };
   const Mesh& mesh = result.mesh;
   for (int h = 0; h < result.n_half_edges(); ++h) {

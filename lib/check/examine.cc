@@ -276,7 +276,6 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
                      measured ? &*measured : nullptr);
   add_progress(0.3);
   f.edges.folds = measured ? measured->folds : find_folds(mesh, reference, *reference_tree);
-  if (!measured) f.edges.cut_creases = find_cut_creases(mesh, given, reference, *reference_tree);
   measure_distances(f, result, given, mesh, tree(mesh_tree), before, tree(reference_tree), samples, most,
                     least_size, measured);
   add_progress(0.4);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Vertices so close to each other, compared with all around, that they are one.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lib/clean/repair.h"
@@ -11,7 +12,7 @@
 namespace meshpipe {
 namespace {
 
-/// Edges that leave a cluster are at least this many times as long as the diagonal of its bounding box. A
+/// Edges that leave a cluster are at least this many times as long as the sides of its bounding box. A
 /// pole of errors of 1e-9 costs twice the triangles of the whole sphere; a hole of 1e-5 edges may be meant.
 constexpr double cluster_gap = 1e6;
 
@@ -51,7 +52,8 @@ class Clusters {
   }
   /// Makes a set one cluster if edges that leave it, of this length or more, are long enough.
   void merge(int set, double leaving) {
-    if (!(norm(box_[set].hi - box_[set].lo) * cluster_gap <= leaving && std::isfinite(leaving))) return;
+    const Vec3 d = box_[set].hi - box_[set].lo;  // its norm might vanish
+    if (!(std::max({d.x, d.y, d.z}) * cluster_gap <= leaving && std::isfinite(leaving))) return;
     for (int v = next_[set]; v != set; v = next_[v]) merged_.join(set, v);
   }
 
@@ -61,12 +63,37 @@ class Clusters {
   std::vector<Box> box_;   ///< of each set, by its name
 };
 
+/// Leaves out the clusters around which triangles make more than one fan: a ring at a neck, whose two sides
+/// would touch in a point.
+void leave_out_necks(const Mesh& mesh, const std::vector<int>& cluster, std::vector<char>& isolated) {
+  std::vector<std::array<int, 3>> links;  // cluster, and the ends of an edge opposite to it
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) {
+      const int c = cluster[t[i]], a = cluster[t[(i + 1) % 3]], b = cluster[t[(i + 2) % 3]];
+      if (isolated[c] && a != c && b != c && a != b) links.push_back({c, a, b});
+    }
+  std::sort(links.begin(), links.end());
+  for (std::size_t first = 0, end; first < links.size(); first = end) {
+    std::vector<int> around;
+    for (end = first; end < links.size() && links[end][0] == links[first][0]; ++end)
+      around.insert(around.end(), {links[end][1], links[end][2]});
+    sort_unique(around);
+    auto row = [&](int v) { return int(std::lower_bound(around.begin(), around.end(), v) - around.begin()); };
+    UnionFind fan(around.size());
+    for (std::size_t i = first; i < end; ++i) fan.join(row(links[i][1]), row(links[i][2]));
+    for (int i = 0; i < (int)around.size(); ++i)
+      if (fan.find(i) != fan.find(0)) isolated[links[first][0]] = 0;
+  }
+}
+
 /// Flags the clusters, by their first vertices, that are no thin part of the surface, as the end of a needle
-/// or the edge of a thin plate: none is adjacent to another, and most of their triangles go away from them.
-std::vector<char> find_isolated(const Mesh& mesh, const std::vector<int>& cluster) {
+/// or the edge of a thin plate: none is adjacent to another, most of their triangles go away from them, and
+/// these make one fan. `same`: as in merge_clusters.
+std::vector<char> find_isolated(const Mesh& mesh, const std::vector<int>& same,
+                                const std::vector<int>& cluster) {
   std::vector<int> away(cluster.size(), 0);  // triangles with one corner in it, less those within
   std::vector<char> several(cluster.size(), 0);
-  for (std::size_t v = 0; v < cluster.size(); ++v) several[cluster[v]] |= cluster[v] != (int)v;
+  for (std::size_t v = 0; v < cluster.size(); ++v) several[cluster[v]] |= cluster[v] != same[v];
   std::vector<char> isolated = several;
   for (const Tri& t : mesh.tris) {
     const int c[3] = {cluster[t[0]], cluster[t[1]], cluster[t[2]]};
@@ -78,6 +105,7 @@ std::vector<char> find_isolated(const Mesh& mesh, const std::vector<int>& cluste
     }
   }
   for (std::size_t v = 0; v < cluster.size(); ++v) isolated[v] = isolated[v] && away[v] > 0;
+  leave_out_necks(mesh, cluster, isolated);
   return isolated;
 }
 
@@ -106,7 +134,7 @@ int merge_clusters(const Mesh& mesh, std::vector<int>& same, double& within) {
   for (int v = 0; v < (int)same.size(); ++v)
     if (clusters.set_of(v) == v) clusters.merge(v, leaving[v]);
   for (int& v : cluster) v = clusters.cluster_of(v);
-  const std::vector<char> isolated = find_isolated(mesh, cluster);
+  const std::vector<char> isolated = find_isolated(mesh, same, cluster);
   int count = 0;
   for (int v = 0; v < (int)same.size(); ++v) {
     const int kept = cluster[v];

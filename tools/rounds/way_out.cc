@@ -60,7 +60,8 @@ struct Row {
 };
 const Row table[] = {
     {[](const Case& c) {
-       return c.found.gaps.within > 0 && c.status >= goal_missed && !c.used("mclean", "--weld");
+       return c.found.gaps.within > 0 && c.status >= goal_missed && !c.missed("hausdorff") &&
+              !c.used("mclean", "--weld");
      },
      [](const Case& c) {
        return WayOut{"mclean --weld " + shown(c.found.gaps.within), c.found.gaps.text()};

@@ -70,6 +70,7 @@ Surface finished(const Scene& scene, const std::vector<int>& marks) {
 std::vector<Failure> verdict(const Surface& result, const Surface& reference) {
   const auto name = [](int label) { return std::to_string(label); };
   Findings f = examine(result, reference, nullptr, 200);
+  f.edges.cut_creases = find_cut_creases({result, f.mesh.opposite}, reference);
   f.patch_faults =
       compare_patches(patches_of(reference, {}, name), patches_of(result, f.mesh.opposite, name));
   return judge(parse_contract(default_contract), f, result);

@@ -129,6 +129,22 @@ TEST(Clusters, PointsFarBelowAllEdgesAreOne) {
   EXPECT_TRUE(clean(s).nothing);
 }
 
+TEST(Clusters, ANeckStays) {
+  // two cones whose ends are joined by a ring of 4e-7
+  constexpr int n = 12;
+  Mesh m{{{0, 0, -1}, {0, 0, 1}}, {}};
+  for (auto [r, z] : {std::pair{1.0, -1.0}, {4e-7, 0.0}, {1.0, 1.0}})
+    for (int i = 0; i < n; ++i) m.points.push_back({r * std::cos(i / 1.91), r * std::sin(i / 1.91), z});
+  for (int i = 0; i < n; ++i) {
+    const int a = 2 + i, b = 2 + (i + 1) % n;
+    m.tris.insert(m.tris.end(), {{0, b, a}, {a, b, b + n}, {a, b + n, a + n}});
+    m.tris.insert(m.tris.end(), {{a + n, b + n, b + 2 * n}, {a + n, b + 2 * n, a + 2 * n}});
+    m.tris.push_back({1, a + 2 * n, b + 2 * n});
+  }
+  Surface s = surface(m);
+  EXPECT_EQ(clean(s).welded_near, 0);
+}
+
 TEST(Clusters, ThinPartsStay) {
   // a needle from a base of 1e-8, a plate as thin, and a point so far away that all others are near
   const std::vector<Tri> tetra{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
