@@ -87,9 +87,12 @@ bool clean_both(Surface& reference, Surface& result, bool apart, std::vector<std
 }
 
 /// Finds the creases that are cut off; in a file without lines, those that mfeature would find.
-std::vector<int> cut_creases(const Surface& result, const Findings& f, Surface reference, bool own) {
-  if (!own && !reference.face.has("model")) mark_features(reference, {});
-  return find_cut_creases({result, f.mesh.opposite}, reference);
+std::vector<int> cut_creases(const Surface& result, const Findings& f, const Surface& reference, bool own) {
+  const Connectivity mesh{result, f.mesh.opposite};
+  if (own || reference.face.has("model")) return find_cut_creases(mesh, reference);
+  Surface marked = reference;
+  mark_features(marked, {});
+  return find_cut_creases(mesh, marked);
 }
 
 }  // namespace
