@@ -120,6 +120,38 @@ double towards_nearest(const Mesh& mesh, int t, const Mesh& reference, const Bvh
 
 }  // namespace
 
+bool faces_as_labeled(const Surface& result, const std::vector<int>& component, int t,
+                      const Surface& reference) {
+  constexpr double closed = 1e-3;  // of the area: what is left of the sum of area vectors
+  if (!result.face.has("patch") || !reference.face.has("patch")) return false;
+  const auto &patch = result.face.get<int>("patch"), &given = reference.face.get<int>("patch");
+  std::vector<int> labels;
+  for (int u = 0; u < (int)patch.size(); ++u)
+    if (component[u] == component[t]) labels.push_back(patch[u]);
+  sort_unique(labels);
+  auto is_own = [&](int label) { return std::binary_search(labels.begin(), labels.end(), label); };
+  for (int u = 0; u < (int)patch.size(); ++u)
+    if (component[u] != component[t] && is_own(patch[u])) return false;
+  const Vec3 center = result.points[result.tris[t][0]];
+  struct Sum {
+    Vec3 vector{};
+    double area = 0, volume = 0;
+  } sums[2];
+  for (int side : {0, 1}) {
+    const Surface& s = side ? reference : result;
+    for (int u = 0; u < (int)s.tris.size(); ++u) {
+      if (!is_own((side ? given : patch)[u])) continue;
+      const Vec3 v = area_vector(s, u);
+      sums[side].vector = sums[side].vector + v;
+      sums[side].area += norm(v);
+      sums[side].volume += dot(v, s.points[s.tris[u][0]] - center);
+    }
+  }
+  const auto& [a, b] = sums;
+  if (norm(a.vector) <= closed * a.area && norm(b.vector) <= closed * b.area) return a.volume * b.volume > 0;
+  return dot(a.vector, b.vector) > 0;
+}
+
 std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree) {
   std::vector<int> component, reversed, voters;
   constexpr double majority = 0.5;  // less is undecided: between sheets closer than the result is rough
