@@ -65,7 +65,6 @@ void part_fans(Surface& s, const Soundness& found) {
 /// `apart`: are those of the result so already? Adds to `faults` what else would be repaired in the result.
 bool clean_both(Surface& reference, Surface& result, bool apart, std::vector<std::string>& faults) {
   CleanReport report;
-  const bool slit = !slits_of(reference).empty();
   clean(reference, {.sheets = CleanOptions::automatic}, report);
   if (is_soup(result)) weld(result);
   if (report.nonmanifold_vertices > 0)
@@ -73,10 +72,11 @@ bool clean_both(Surface& reference, Surface& result, bool apart, std::vector<std
         !found.pinched.empty() && (int)found.pinched.size() <= report.nonmanifold_vertices)
       part_fans(result, found);
   if (!report.sheets.kept) return false;
-  const bool as_given = take_apart(reference).reversed + report.flipped == 0;
+  // what the reference itself has is no fault of the result
+  const bool as_given = take_apart(reference).reversed + report.flipped + report.welded == 0;
   if (apart)
     join_borders(result);
-  else if (const std::vector<int> slits = slits_of(result); !slits.empty() && !slit)
+  else if (const std::vector<int> slits = slits_of(result); !slits.empty() && as_given)
     faults.push_back(std::to_string(slits.size()) + " triangles are along slits, the first is triangle " +
                      std::to_string(slits[0]));
   result.vertex = Table{"vertex", result.points.size(), {}};

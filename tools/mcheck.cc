@@ -88,7 +88,8 @@ void check(Io& io, const Options& o, RoundFile& verdict, Summary& summary) {
   verdict.outcome.mean_size = f.mean_size;
   verdict.outcome.triangles = (double)stream.surface.tris.size();
   const std::vector<Failure>& failures = verdict.outcome.failures = judge(contract, f, stream.surface);
-  Surface faulty = offending_faces(contract, f, stream.surface);
+  Surface faulty;
+  if (!failures.empty() || !o.offending.empty()) faulty = offending_faces(contract, f, stream.surface);
   verdict.outcome.faulty = (double)faulty.tris.size();
   if (!o.refine.empty() && !failures.empty()) {
     std::vector<double> size = smaller_sizes(contract, f, stream.surface, reference);

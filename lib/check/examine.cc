@@ -286,10 +286,8 @@ Findings examine(const Surface& result, const Surface& given, const Lines* lines
   if (marked) f.kappa_off_corners = kappa_off_corners(mesh, f.quality, f.worst_off_corners);
   if (f.mesh.sound()) {
     f.reversed = reversed_components(mesh, reference, tree(reference_tree));
-    std::vector<int> component;
-    if (!f.reversed.empty()) components(mesh.opposite, component);
     // the nearest sheet may be another one, where a small sheet is folded; labels of files may be others
-    std::erase_if(f.reversed, [&](int t) { return lines && faces_as_labeled(result, component, t, given); });
+    if (lines) leave_out_as_labeled(f.reversed, mesh, result, given);
   }
   if (marked && reference_marked && result.face.has("patch") && given.face.has("patch")) {
     f.edges.unmarked_borders = unmarked_borders(mesh, result.face.get<int>("patch"));

@@ -2,6 +2,7 @@
 #include "lib/check/patches.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -120,36 +121,41 @@ double towards_nearest(const Mesh& mesh, int t, const Mesh& reference, const Bvh
 
 }  // namespace
 
-bool faces_as_labeled(const Surface& result, const std::vector<int>& component, int t,
-                      const Surface& reference) {
+void leave_out_as_labeled(std::vector<int>& reversed, const Connectivity& result, const Surface& labeled,
+                          const Surface& reference) {
   constexpr double closed = 1e-3;  // of the area: what is left of the sum of area vectors
-  if (!result.face.has("patch") || !reference.face.has("patch")) return false;
-  const auto &patch = result.face.get<int>("patch"), &given = reference.face.get<int>("patch");
-  std::vector<int> labels;
-  for (int u = 0; u < (int)patch.size(); ++u)
-    if (component[u] == component[t]) labels.push_back(patch[u]);
-  sort_unique(labels);
-  auto is_own = [&](int label) { return std::binary_search(labels.begin(), labels.end(), label); };
-  for (int u = 0; u < (int)patch.size(); ++u)
-    if (component[u] != component[t] && is_own(patch[u])) return false;
-  const Vec3 center = result.points[result.tris[t][0]];
+  if (reversed.empty() || !labeled.face.has("patch") || !reference.face.has("patch")) return;
+  const std::vector<int>* patch[2] = {&labeled.face.get<int>("patch"), &reference.face.get<int>("patch")};
+  const Mesh* surface[2] = {&result.mesh, &reference};
   struct Sum {
     Vec3 vector{};
     double area = 0, volume = 0;
-  } sums[2];
-  for (int side : {0, 1}) {
-    const Surface& s = side ? reference : result;
-    for (int u = 0; u < (int)s.tris.size(); ++u) {
-      if (!is_own((side ? given : patch)[u])) continue;
-      const Vec3 v = area_vector(s, u);
-      sums[side].vector = sums[side].vector + v;
-      sums[side].area += norm(v);
-      sums[side].volume += dot(v, s.points[s.tris[u][0]] - center);
-    }
+  };
+  std::vector<int> component;
+  std::vector<std::array<Sum, 2>> sums(components(result.opposite, component));
+  std::vector<char> shared(sums.size(), 0);  // has a label that another one has, too
+  std::map<int, int> of_label;
+  for (std::size_t t = 0; t < component.size(); ++t) {
+    const auto at = of_label.try_emplace((*patch[0])[t], component[t]).first;
+    if (at->second != component[t]) shared[at->second] = shared[component[t]] = 1;
   }
-  const auto& [a, b] = sums;
-  if (norm(a.vector) <= closed * a.area && norm(b.vector) <= closed * b.area) return a.volume * b.volume > 0;
-  return dot(a.vector, b.vector) > 0;
+  const Vec3 center = result.mesh.points[result.mesh.tris[0][0]];
+  for (int side : {0, 1})
+    for (int t = 0; t < (int)surface[side]->tris.size(); ++t) {
+      const auto at = of_label.find((*patch[side])[t]);
+      if (at == of_label.end()) continue;
+      Sum& sum = sums[at->second][side];
+      const Vec3 v = area_vector(*surface[side], t);
+      sum.vector = sum.vector + v;
+      sum.area += norm(v);
+      sum.volume += dot(v, surface[side]->points[surface[side]->tris[t][0]] - center);
+    }
+  std::erase_if(reversed, [&](int t) {
+    const auto& [a, b] = sums[component[t]];
+    if (shared[component[t]]) return false;
+    const bool volumes = norm(a.vector) <= closed * a.area && norm(b.vector) <= closed * b.area;
+    return volumes ? a.volume * b.volume > 0 : dot(a.vector, b.vector) > 0;
+  });
 }
 
 std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree) {

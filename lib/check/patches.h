@@ -46,10 +46,10 @@ std::vector<int> unmarked_borders(const Connectivity& surface, const std::vector
 /// near.
 std::vector<int> reversed_components(const Connectivity& result, const Mesh& reference, const Bvh* tree);
 
-/// Returns whether the component of triangle t faces as the reference's triangles of its patches do, by the
-/// sums of their area vectors, or by their volumes where these vanish. False if no labels are known, or one
-/// is of another component, too. Columns: `patch` of both surfaces.
-bool faces_as_labeled(const Surface& result, const std::vector<int>& component, int t,
-                      const Surface& reference);
+/// Leaves out of reversed_components those that face as the reference's triangles of their patches do, by the
+/// sums of area vectors, or by volumes where these vanish; not where another component has one of the
+/// patches. `labeled`: the result with face column `patch`, which the reference has as well, if any.
+void leave_out_as_labeled(std::vector<int>& reversed, const Connectivity& result, const Surface& labeled,
+                          const Surface& reference);
 
 }  // namespace meshpipe

@@ -133,7 +133,9 @@ const Row table[] = {
      [](const Case&) {
        return WayOut{"without --keep-boundary", "the place is next to fixed points of the border"};
      }},
-    {[](const Case& c) { return c.found.at_patch_border && !c.used("mfeature", "--merge-auto"); },
+    {[](const Case& c) {
+       return c.found.at_patch_border && !c.missed("creases") && !c.used("mfeature", "--merge-auto");
+     },
      [](const Case&) {
        return WayOut{"--merge-auto", "the place is next to a border of patches"};
      }},

@@ -361,25 +361,28 @@ TEST(planted, faults_of_labels_are_found) { expect_found(labels); }
 
 TEST(planted, a_sheet_faces_as_its_patch_does) {
   // a sheet of two triangles, and one far away
-  Surface reference;
-  reference.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.9}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
-  reference.tris = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}};
-  reference.face.rows = 3;
+  Surface reference =
+      surface_of({{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.9}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}},
+                  {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}}});
   reference.face.set<int>("patch", {5, 5, 6});
-  const std::vector<int> component{0, 0, 1};
+  auto left = [](const Surface& result, const Surface& given) {
+    const std::vector<int> opposite = opposite_halfedges(result);
+    std::vector<int> reversed{0, (int)result.tris.size() - 1};
+    leave_out_as_labeled(reversed, {result, opposite}, result, given);
+    return reversed;
+  };
   Surface result = reference;
-  EXPECT_TRUE(faces_as_labeled(result, component, 0, reference));
+  EXPECT_EQ(left(result, reference), std::vector<int>{});
   for (int t : {0, 1}) std::swap(result.tris[t][1], result.tris[t][2]);
-  EXPECT_FALSE(faces_as_labeled(result, component, 0, reference));
-  EXPECT_TRUE(faces_as_labeled(result, component, 2, reference));
+  EXPECT_EQ(left(result, reference), std::vector<int>{0});
   result.face.set<int>("patch", {5, 5, 5});  // which is no longer of one sheet
-  EXPECT_FALSE(faces_as_labeled(result, component, 2, reference));
+  EXPECT_EQ(left(result, reference), (std::vector<int>{0, 2}));
   for (double sign : {1.0, -1.0}) {  // closed ones by their volumes
     Scene s;
     s.add(sphere(80), {0, 0, 0}, {}, sphere_);
     Surface ball = finished(s, s.patch), other = ball;
     for (Vec3& p : other.points) p = Vec3{sign * p.x, p.y, p.z};
-    EXPECT_EQ(faces_as_labeled(other, std::vector<int>(other.tris.size(), 0), 0, ball), sign > 0);
+    EXPECT_EQ(left(other, ball).empty(), sign > 0);
   }
 }
 

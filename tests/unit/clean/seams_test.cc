@@ -23,14 +23,6 @@ void add(Mesh& to, int squares, Vec3 corner, bool reversed = false) {
   to.points.insert(to.points.end(), m.points.begin(), m.points.end());
 }
 
-Surface surface(Mesh mesh) {
-  Surface s;
-  static_cast<Mesh&>(s) = std::move(mesh);
-  s.vertex.rows = s.points.size();
-  s.face.rows = s.tris.size();
-  return s;
-}
-
 /// Each triangle on points of its own, which are off by at most `error` in each coordinate.
 Surface soup(const Mesh& mesh, double error) {
   std::mt19937 random(1);
@@ -41,7 +33,7 @@ Surface soup(const Mesh& mesh, double error) {
     for (int v : t) m.points.push_back(mesh.points[v] + Vec3{off(), off(), off()});
     m.tris.push_back({n, n + 1, n + 2});
   }
-  return surface(std::move(m));
+  return surface_of(std::move(m));
 }
 
 int loops(const Surface& s) { return topology_of(s).loops; }
@@ -60,7 +52,7 @@ Surface double_cone(int columns, double radius) {
       m.tris.push_back({a, d, d + columns});
       m.tris.push_back({a, d + columns, a + columns});
     }
-  return surface(std::move(m));
+  return surface_of(std::move(m));
 }
 
 }  // namespace
@@ -83,12 +75,12 @@ TEST(Seams, ASoupWhosePointsAreOffIsWelded) {
 TEST(Seams, BordersOfPatchesThatAlmostFitAreWelded) {
   Mesh m = unit_squares(10);
   add(m, 10, {10 + 1e-5, 0, 0});
-  Surface s = surface(m);
+  Surface s = surface_of(m);
   EXPECT_EQ(clean(s).welded_near, 11);
   EXPECT_EQ(loops(s), 1);
   m = unit_squares(10);
   add(m, 10, {10.01, 0, 0});  // too far for an error
-  s = surface(m);
+  s = surface_of(m);
   EXPECT_TRUE(clean(s).nothing);
 }
 
@@ -97,7 +89,7 @@ TEST(Seams, SheetsThatLieOnEachOtherStayApart) {
     for (double distance : {1e-8, 1e-5}) {
       Mesh m = unit_squares(10);
       add(m, 10, {0, 0, distance}, reversed);
-      Surface s = surface(m);
+      Surface s = surface_of(m);
       EXPECT_TRUE(clean(s).nothing) << distance;
     }
 }
@@ -141,14 +133,14 @@ TEST(Clusters, ANeckStays) {
     m.tris.insert(m.tris.end(), {{a + n, b + n, b + 2 * n}, {a + n, b + 2 * n, a + 2 * n}});
     m.tris.push_back({1, a + 2 * n, b + 2 * n});
   }
-  Surface s = surface(m);
+  Surface s = surface_of(m);
   EXPECT_EQ(clean(s).welded_near, 0);
 }
 
 TEST(Clusters, ThinPartsStay) {
   // a needle from a base of 1e-8, a plate as thin, and a point so far away that all others are near
   const std::vector<Tri> tetra{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  Surface needle = surface({{{0, 0, 0}, {1e-8, 0, 0}, {0, 1e-8, 0}, {0, 0, 1}}, tetra});
+  Surface needle = surface_of({{{0, 0, 0}, {1e-8, 0, 0}, {0, 1e-8, 0}, {0, 0, 1}}, tetra});
   EXPECT_EQ(clean(needle).welded_near, 0);
   Mesh plate = unit_squares(1);
   add(plate, 1, {0, 0, 1e-8}, true);
@@ -156,10 +148,10 @@ TEST(Clusters, ThinPartsStay) {
     plate.tris.push_back({a, b + 4, b});
     plate.tris.push_back({a, a + 4, b + 4});
   }
-  Surface closed = surface(plate);
+  Surface closed = surface_of(plate);
   EXPECT_EQ(loops(closed), 0);
   EXPECT_EQ(clean(closed).welded_near, 0);
-  Surface far = surface(unit_squares(10));
+  Surface far = surface_of(unit_squares(10));
   far.points[60].z = 1e9 + 0.1;  // not in single precision, whose noise would be 100
   EXPECT_EQ(clean(far).welded_near, 0);
 }

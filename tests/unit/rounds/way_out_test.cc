@@ -24,6 +24,9 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   EXPECT_EQ(named(missed, {}, found), "--feature-angle none");
   found.at_patch_border = true;
   EXPECT_EQ(named(missed, {}, found), "--merge-auto");
+  FailureFacts creases;  // which no patch has cut off
+  creases.requirement = "creases";
+  EXPECT_NE(named(missed, creases, found), "--merge-auto");
   found.sheets = true;
   EXPECT_EQ(named(missed, {}, found), "--smooth");
   found.intersections = 3;
