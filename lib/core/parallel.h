@@ -11,14 +11,20 @@ namespace meshpipe {
 template <class F>
 void parallel_for(int n, F f, bool worth = true) {
   std::vector<std::exception_ptr> failed(n);
-#pragma omp parallel for schedule(dynamic) if (worth && n > 1)
-  for (int i = 0; i < n; ++i) {
+  auto call = [&](int i) {
     // nothing may leave a parallel region by an exception
     try {
       f(i);
     } catch (...) {
       failed[i] = std::current_exception();
     }
+  };
+  if (worth && n > 1) {
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < n; ++i) call(i);
+  } else {
+    // no region, in which loops of f would have to start threads of their own
+    for (int i = 0; i < n; ++i) call(i);
   }
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);

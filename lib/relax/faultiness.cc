@@ -81,30 +81,36 @@ bool PatchBefore::has(const Mesh& now, int t) const {
   return std::all_of(v.begin(), v.end(), [&](int i) { return now.points[i] == mesh.points[i]; });
 }
 
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
-                  PatchBefore& before) {
-  double sum = 0;
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<double> distance(missed.size(), 1e300), bearable(missed.size(), 1), far(s.mesh.tris.size(), 0),
-      meets(s.mesh.tris.size(), 0);
+double with_faultiness(const State& s, double sum, double bound, const std::vector<Vec3>& missed, double mean,
+                       Known& known, PatchBefore& before) {
   const Mesh mesh{s.points, s.mesh.tris};
-  std::vector<Box> box(mesh.tris.size());
-  std::vector<char> same(mesh.tris.size(), 0);
-  std::vector<int> seen, changed;  // triangles before t
-  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+  const int n = (int)mesh.tris.size();
+  std::vector<double> far(n, 0), bearable(n, 1), meets(n, 0);
+  std::vector<char> same(n, 0);
+  // what takes the least time first
+  for (int t = 0; t < n && !(sum > bound); ++t) {
     if (s.mesh.dead(t)) continue;
     const auto [a, b, c] = mesh.tris[t];
     same[t] = before.has(mesh, t);
-    const double most = bearable_distance(s, t, mean);
-    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
-    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
-    sum += rules::far_weight * std::max(0.0, there / most - 1);
+    if (same[t]) sum += meets[t] = before.meets[t];
     if (const double k = kappa(s.points[a], s.points[b], s.points[c]);
         k <= rules::bearable_kappa && !is_forced(s, t, k, known))
       sum += rules::far_weight * (std::min(rules::worst_needle, rules::bearable_kappa / k) - 1);
+    bearable[t] = bearable_distance(s, t, mean);
+    far[t] = same[t] ? before.deviation[t] : deviation(s, t);
+    const double there = far[t] * std::max({s.target(a), s.target(b), s.target(c)});
+    sum += rules::far_weight * std::max(0.0, there / bearable[t] - 1);
+  }
+  if (sum > bound) return sum;
+  sum += rules::pair_weight * (double)folded_edges(s, known).size();
+  std::vector<Box> box(n);
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<double> distance(missed.size(), 1e300), bearable_there(missed.size(), 1);
+  std::vector<int> seen, changed;  // triangles before t
+  for (int t = 0; t < n && !(sum > bound); ++t) {
+    if (s.mesh.dead(t)) continue;
     box[t] = box_of(mesh, t);
-    meets[t] = same[t] ? before.meets[t] : pairs_around(mesh, t, box[t], before.around, mean, known);
-    sum += meets[t];
+    if (!same[t]) sum += meets[t] = pairs_around(mesh, t, box[t], before.around, mean, known);
     for (int u : same[t] ? changed : seen)
       if (overlap(box[t], box[u]) && triangles_intersect(mesh, u, t)) pairs.push_back({u, t});
     seen.push_back(t);
@@ -114,12 +120,14 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
       if (!overlap(box[t], {missed[i] - reach, missed[i] + reach})) continue;
       const double d = norm(closest_point(mesh, t, missed[i]) - missed[i]);
       if (d > (1 + rules::as_near) * distance[i]) continue;
-      bearable[i] = d < (1 - rules::as_near) * distance[i] ? most : std::min(most, bearable[i]);
+      bearable_there[i] =
+          d < (1 - rules::as_near) * distance[i] ? bearable[t] : std::min(bearable[t], bearable_there[i]);
       distance[i] = std::min(d, distance[i]);
     }
   }
+  if (sum > bound) return sum;
   for (std::size_t i = 0; i < missed.size(); ++i)
-    sum += rules::far_weight * std::max(0.0, distance[i] / bearable[i] - 1);
+    sum += rules::far_weight * std::max(0.0, distance[i] / bearable_there[i] - 1);
   if (!s.copy.empty()) drop_contacts_of_sheets(s, pairs);
   for (auto [t, u] : chords_of(s))
     if (!(same[t] && same[u])) pairs.push_back({t, u});
@@ -128,8 +136,9 @@ double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, 
   for (auto [t, u] : before.pairs)
     if (same[t] && same[u]) pairs.push_back({t, u});
   if (before.deviation.empty()) before = {before.around, mesh, far, meets, pairs};
-  for (const auto& pair : pairs) sum += weight_of_pair(mesh, pair, mean);
-  return sum + rules::pair_weight * (double)folded_edges(s, known).size();
+  for (const auto& pair : pairs)
+    if (!(sum > bound)) sum += weight_of_pair(mesh, pair, mean);
+  return sum;
 }
 
 bool intersect(const State& s, int t, int u) {

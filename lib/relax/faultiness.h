@@ -28,12 +28,12 @@ struct PatchBefore {
   bool has(const Mesh& now, int t) const;
 };
 
-/// Returns how far a patch is from good: folds and pairs that intersect where the reference does not, also
-/// with the surroundings, distances over what is bearable, there and from the `missed` places of the
-/// reference, and 1/kappa of needles. `mean`: the mean size. The first patch that is asked for becomes
-/// `before`.
-double faultiness(const State& s, const std::vector<Vec3>& missed, double mean, Known& known,
-                  PatchBefore& before);
+/// Adds to `sum` how far a patch is from good: folds and pairs that intersect where the reference does not,
+/// also with the surroundings, distances over what is bearable, there and from the `missed` places of the
+/// reference, and 1/kappa of needles. Ends with what it has when that is over `bound`. `mean`: the mean size.
+/// The first patch that is asked for becomes `before`.
+double with_faultiness(const State& s, double sum, double bound, const std::vector<Vec3>& missed, double mean,
+                       Known& known, PatchBefore& before);
 
 /// Returns what triangles_intersect does, without a copy of the mesh; corners at the same place are one.
 bool intersect(const State& s, int t, int u);

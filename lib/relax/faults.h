@@ -68,14 +68,7 @@ struct Fault : Intersections {
   bool acceptable = true;  ///< to mcheck? Not if it was not looked for all that mcheck looks for
 
   bool none() const { return pairs.empty() && triangles.empty(); }
-  int places() const { return (int)(pairs.size() + triangles.size()); }
   int count() const { return (int)pairs.size() + folds; }
-  int involved() const {  // triangles
-    std::vector<int> all = triangles;
-    for (const auto& [a, b] : pairs) all.insert(all.end(), {a, b});
-    sort_unique(all);
-    return (int)all.size();
-  }
   double sum() const { return rules::pair_excess * count() + excess; }
   bool less_than(const Fault& other) const {
     return Faults{{}, count(), sum()}.less_than({{}, other.count(), other.sum()});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/relax/patch.h"
 
+#include <mutex>
 #include <numbers>
+#include <queue>
 
 #include "lib/core/bvh.h"
 #include "lib/relax/junctions.h"
@@ -197,7 +199,17 @@ void adopt(State& s, const State& patch, std::vector<int> triangles) {
 }
 
 void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge) {
-  for (Trial& t : trials) t.objective = judge.of(t.state);
+  std::priority_queue<double> least;  // of those judged so far, `most` at most
+  std::mutex one_at_a_time;
+  parallel_for((int)trials.size(), [&](int i) {
+    std::unique_lock lock(one_at_a_time);
+    const double bound = least.size() < most ? infinity : least.top();
+    lock.unlock();
+    trials[i].objective = judge.of(trials[i].state, bound);
+    lock.lock();
+    least.push(trials[i].objective);
+    if (least.size() > most) least.pop();
+  });
   std::stable_sort(trials.begin(), trials.end(),
                    [](const Trial& a, const Trial& b) { return a.objective < b.objective; });
   if (trials.size() > most) trials.erase(trials.begin() + (std::ptrdiff_t)most, trials.end());

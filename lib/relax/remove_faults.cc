@@ -119,11 +119,12 @@ void repair_at(State& s, const Fault& fault, Known& known, InVain& in_vain) {
   std::mutex one_at_a_time;
   auto attempt = [&](const Item& item, const std::vector<int>& triangles) {
     PatchBefore before{surroundings(s, search, triangles, mean)};
-    auto better = repaired(s, triangles, thorough,
-                           {[&](const State& patch) {
-                              return objective(patch) + faultiness(patch, item.missed, mean, known, before);
-                            },
-                            true, triangles.size() > 1 && triangles[1] == item.other ? 2 : 1});
+    auto better =
+        repaired(s, triangles, thorough,
+                 {[&](const State& patch, double bound) {
+                    return with_faultiness(patch, objective(patch), bound, item.missed, mean, known, before);
+                  },
+                  true, triangles.size() > 1 && triangles[1] == item.other ? 2 : 1});
     if (!better) {
       const std::lock_guard lock(one_at_a_time);
       in_vain.tried.insert(print_of(item, triangles, before.around));
@@ -152,6 +153,7 @@ struct Seen {
 struct Search {
   Known known;
   InVain in_vain{};
+  Repairs shapes{};  ///< what repair of shapes around refined places remembers
   std::shared_ptr<const Seen> best{}, lowest{}, accepted{}, last{};
   Fault now{};
   int rounds = 0;
@@ -189,8 +191,9 @@ struct Search {
 
 /// Refines as long as it helps. Pairs are repaired first: split they intersect in more places.
 void refine(State& s, Search& search, double most) {
-  Repairs memory;
-  int since = s.clocks.now;  // when all was repaired
+  Repairs& shapes = search.shapes;
+  shapes = {.in_vain = shapes.in_vain};  // times of another mesh say nothing
+  int since = s.clocks.now;              // when all was repaired
   bool repair_helps = true;
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
@@ -207,7 +210,7 @@ void refine(State& s, Search& search, double most) {
     refine_at(s, search.now);
     if (n > 0) {
       reach_features(s, search.known.samples, rules::too_far, n);
-      repair_worst(s, memory, since);
+      repair_worst(s, shapes, since);
       since = s.clocks.now;
     }
     search.look(s), ++search.rounds;
@@ -219,14 +222,16 @@ void refine(State& s, Search& search, double most) {
   }
 }
 
+/// The sum of faults beyond which sizes are bad: it is not worth a try to remove them.
+double most_sum(const State& s) { return std::max(rules::most_sum, rules::most_sum_share * s.mesh.live); }
+
 /// Repairs as long as it helps, from the mesh with the lowest sum, then from the best.
 void repair(State& s, Search& search) {
   std::shared_ptr<const Seen> tried;
   for (const bool from_best : {false, true}) {
     const auto start = from_best ? search.best : search.lowest;
     if (start == tried || search.best->fault.none()) continue;
-    if (start->fault.places() > rules::few_faults || start->fault.involved() > start->mesh.mesh.live / 2)
-      continue;
+    if (start->fault.sum() > rules::repairable * most_sum(start->mesh)) continue;
     search.go_to(s, start), tried = start;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
       repair_at(s, search.now, search.known, search.in_vain);
@@ -288,14 +293,13 @@ Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
   search.look(s);
-  const bool too_many =
-      (double)search.now.pairs.size() > std::max(rules::most_pairs, rules::most_pairs_share * s.mesh.live);
+  const bool too_many = search.now.sum() > most_sum(s);
   // in turns, each from the mesh with the lowest sum: refinement only adds faults where many are left
   auto remove = [&] {
-    double before = infinity;
-    while (!too_many && !search.best->fault.none() &&
-           search.lowest->fault.sum() < rules::worth_a_turn * before) {
-      before = search.lowest->fault.sum();
+    for (double before = infinity; !too_many && !search.best->fault.none();) {
+      const double sum = search.lowest->fault.sum();
+      if (before < infinity && sum > std::min(rules::nearly_accepted, rules::worth_a_turn * before)) break;
+      before = sum;
       search.go_to(s, search.lowest);
       refine(s, search, most);
       if (!search.best->fault.none()) repair(s, search);
@@ -307,10 +311,10 @@ Faults remove_faults(State& s, Samples& samples) {
     const int mild = search.accepted->fault.mild;
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
-  // limits without a margin allow distances, but no pairs
-  if (!search.accepted && !too_many && search.best->fault.count() == 0 &&
-      search.best->fault.sum() < rules::nearly_accepted)
-    search.go_on(s, refused), remove();
+  // limits without a margin allow distances, but no pairs; where they find the same, so do edits
+  const double sum = search.best->fault.sum();
+  if (!search.accepted && !too_many && search.best->fault.count() == 0 && sum < rules::nearly_accepted)
+    if (search.go_on(s, refused); !search.accepted && search.best->fault.sum() < sum) remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

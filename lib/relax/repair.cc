@@ -117,17 +117,19 @@ std::vector<Trial> try_all(State from, const std::vector<Edit>& edits, const Jud
     settle(trials.back().state, rules::sweeps_to_settle);
   }
   rest(from);
-  State copy = from;
-  for (const Edit& e : edits) {
-    if (!try_edit(copy, e, judge.may_fold)) continue;
+  std::vector<std::optional<State>> edited(edits.size());
+  parallel_for((int)edits.size(), [&](int i) {
+    State copy = from;
+    if (!try_edit(copy, edits[i], judge.may_fold)) return;
     flip_to_shape(copy);
     smooth(copy, 1);
-    trials.push_back({0, std::move(copy)});
-    copy = from;
-  }
+    edited[i] = std::move(copy);
+  });
+  for (std::optional<State>& state : edited)
+    if (state) trials.push_back({0, std::move(*state)});
   keep_best(trials, std::max(rules::promising, (int)(rules::promising_at_once * (double)trials.size())),
             judge);
-  for (Trial& t : trials) smooth(t.state, rules::sweeps_to_settle - 1);
+  parallel_for((int)trials.size(), [&](int i) { smooth(trials[i].state, rules::sweeps_to_settle - 1); });
   keep_best(trials, rules::promising, judge);
   for (Trial& t : trials) settle(t.state, 1);
   keep_best(trials, rules::promising, judge);
@@ -216,8 +218,11 @@ std::optional<State> repaired(const State& s, const std::vector<int>& triangles,
   const State before = extract(s, triangles);
   Judge judge = given;
   if (s.acute && !given.may_fold)
-    judge.of = [&](const State& patch) { return stays_near(before, patch) ? given.of(patch) : 1e300; };
-  const double bad = judge.of(before), good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
+    judge.of = [&](const State& patch, double bound) {
+      return stays_near(before, patch) ? given.of(patch, bound) : infinity;
+    };
+  const double bad = judge.of(before, infinity),
+               good_enough = bad - std::min(rules::gain_share * bad, rules::gain);
   std::vector<Edit> edits;
   for (int t = 0; t < judge.at; ++t) {
     const std::vector<Edit> more = edits_around(before, t, thorough, judge);

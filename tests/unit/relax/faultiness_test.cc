@@ -57,10 +57,15 @@ TEST(Faultiness, PairsWithTheSurroundingsCount) {
   Known known{m.reference.surface, samples};
   State patch = extract(m.s, triangles);
   PatchBefore alone, before{around(m.s, triangles)};
-  EXPECT_EQ(faultiness(patch, {}, 4, known, before), 0);
-  EXPECT_EQ(faultiness(patch, {}, 4, known, alone), 0);
+  EXPECT_EQ(with_faultiness(patch, 0, infinity, {}, 4, known, before), 0);
+  EXPECT_EQ(with_faultiness(patch, 0, infinity, {}, 4, known, alone), 0);
   patch.points[4].z = 0.4;
-  EXPECT_GT(faultiness(patch, {}, 4, known, before), faultiness(patch, {}, 4, known, alone));
+  EXPECT_GT(with_faultiness(patch, 0, infinity, {}, 4, known, before),
+            with_faultiness(patch, 0, infinity, {}, 4, known, alone));
+  const double all = with_faultiness(patch, 0, infinity, {}, 4, known, before);
+  const double some = with_faultiness(patch, 0, all / 2, {}, 4, known, before);
+  EXPECT_GT(some, all / 2);
+  EXPECT_LE(some, all);
 }
 
 }  // namespace

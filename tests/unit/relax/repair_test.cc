@@ -74,12 +74,24 @@ TEST(Repair, EndsOfLinesAtASharpCornerBecomeAsFarFromIt) {
   Drawn m(surface);
   for (int v = 0; v < 5; ++v) m.s.hold[v] = v == 2 ? slides : fixed;
   // what is split is not wanted here
-  auto by_corner = [](const State& s) {
+  auto by_corner = [](const State& s, double) {
     return s.mesh.live == 3 ? 1 / kappa(s.points[0], s.points[1], s.points[2]) : 1e3;
   };
   const std::optional<State> best = repaired(m.s, {0, 1, 2}, true, {by_corner, true});
   ASSERT_TRUE(best);
   EXPECT_NEAR(norm(best->points[2]), 10, 1e-9);
+}
+
+// Numbers over the bound stand for what is over it, at any number of threads.
+TEST(Trials, TheBestAreKeptInOrderWhateverIsKnownOfTheOthers) {
+  const Drawn m(drawn_surface(two_centers, eight));
+  std::vector<Trial> trials(50, Trial{0, m.s});
+  for (int i = 0; i < 50; ++i) trials[i].state.points[0].x = i * 7 % 50;
+  const Judge hasty{
+      [](const State& s, double bound) { return s.points[0].x > bound ? bound + 1 : s.points[0].x; }};
+  keep_best(trials, 5, hasty);
+  ASSERT_EQ(trials.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(trials[i].objective, i);
 }
 
 TEST(Repair, NoBadTriangleIsLeft) {
