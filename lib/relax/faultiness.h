@@ -31,7 +31,7 @@ struct PatchBefore {
 /// Adds to `sum` how far a patch is from good: folds and pairs that intersect where the reference does not,
 /// also with the surroundings, distances over what is bearable, there and from the `missed` places of the
 /// reference, and 1/kappa of needles. Ends with what it has when that is over `bound`. `mean`: the mean size.
-/// The first patch that is asked for becomes `before`.
+/// The first call, alone and without a bound, makes its patch `before`; later ones may be at the same time.
 double with_faultiness(const State& s, double sum, double bound, const std::vector<Vec3>& missed, double mean,
                        Known& known, PatchBefore& before);
 

@@ -50,20 +50,21 @@ void settle(State& s, int times);
 void rest(State& s);
 /// Repeats in s the edits of the patch extracted from these triangles, then moves its vertices.
 void adopt(State& s, const State& patch, std::vector<int> triangles);
-/// The objective that trials minimize, or any number over `bound` where it is over that; whether splits may
-/// fold what smoothing may unfold; and around how many triangles of a patch, its first, edits are tried.
+/// The objective that trials minimize, or any number over `bound` where it is over that, asked for by several
+/// threads at once; whether splits may fold what smoothing may unfold; and around how many triangles of a
+/// patch, its first, edits are tried.
 struct Judge {
   std::function<double(const State&, double bound)> of = [](const State& s, double) { return objective(s); };
   bool may_fold = false;
   int at = 1;
 };
-/// Evaluates the trials by the judge and keeps the `most` best, the best first.
+/// Evaluates the trials by the judge and keeps the `most` best, the best first. Requires: most > 0.
 void keep_best(std::vector<Trial>& trials, std::size_t most, const Judge& judge = {});
 
 /// Changes neighborhoods until `most` were adopted or `attempts` were tried. Those that do not overlap are
 /// tried together, in parallel; the rest wait for the next batch.
 ///   around(item, before): the triangles to change; none: it is no longer wanted; `before`: what it returned
-///     for the last batch if none of these has changed since, else empty
+///     for the last batch if no change was adopted since, else empty
 ///   attempt(item, triangles): the patch to adopt, if any
 ///   failed(triangles): called where there was none
 /// Returns: the number adopted.
@@ -94,19 +95,16 @@ int change_neighborhoods(State& s, const std::vector<Item>& items, int most, int
     parallel_for((int)batch.size(),
                  [&](int i) { batch[i].patch = attempt(batch[i].item, batch[i].triangles); });
     ++s.clocks.now;
-    taken.assign(taken.size(), 0);
+    const int before = adopted;
     for (const Change& c : batch)
-      if (c.patch) {
+      if (c.patch)
         adopt(s, *c.patch, c.triangles), ++adopted;
-        for (int t : c.triangles) taken[t] = 1;
-      } else {
+      else
         failed(c.triangles);
-      }
     attempts -= (int)batch.size();
     waiting.swap(rest);
-    for (Change& c : waiting)
-      if (std::any_of(c.triangles.begin(), c.triangles.end(), [&](int t) { return taken[t]; }))
-        c.triangles.clear();
+    if (adopted > before)
+      for (Change& c : waiting) c.triangles.clear();
   }
   return adopted;
 }

@@ -222,16 +222,13 @@ void refine(State& s, Search& search, double most) {
   }
 }
 
-/// The sum of faults beyond which sizes are bad: it is not worth a try to remove them.
-double most_sum(const State& s) { return std::max(rules::most_sum, rules::most_sum_share * s.mesh.live); }
-
 /// Repairs as long as it helps, from the mesh with the lowest sum, then from the best.
 void repair(State& s, Search& search) {
   std::shared_ptr<const Seen> tried;
   for (const bool from_best : {false, true}) {
     const auto start = from_best ? search.best : search.lowest;
     if (start == tried || search.best->fault.none()) continue;
-    if (start->fault.sum() > rules::repairable * most_sum(start->mesh)) continue;
+    if (start->fault.sum() > rules::most_repaired) continue;
     search.go_to(s, start), tried = start;
     for (int repairs = 0; repairs < rules::fault_repairs; ++repairs) {
       repair_at(s, search.now, search.known, search.in_vain);
@@ -293,12 +290,13 @@ Faults remove_faults(State& s, Samples& samples) {
   const double most = rules::growth * s.mesh.live + rules::few;
   Search search{{s.reference->surface, samples}};
   search.look(s);
-  const bool too_many = search.now.sum() > most_sum(s);
+  const bool too_many = search.now.sum() > std::max(rules::most_sum, rules::most_sum_share * s.mesh.live);
   // in turns, each from the mesh with the lowest sum: refinement only adds faults where many are left
   auto remove = [&] {
     for (double before = infinity; !too_many && !search.best->fault.none();) {
       const double sum = search.lowest->fault.sum();
-      if (before < infinity && sum > std::min(rules::nearly_accepted, rules::worth_a_turn * before)) break;
+      if (before < infinity && !(sum <= std::min(rules::nearly_accepted, rules::worth_a_turn * before)))
+        break;
       before = sum;
       search.go_to(s, search.lowest);
       refine(s, search, most);
@@ -311,10 +309,11 @@ Faults remove_faults(State& s, Samples& samples) {
     const int mild = search.accepted->fault.mild;
     if (mild > 0 && mild <= rules::few_faults) repair_mild(s, search);
   }
-  // limits without a margin allow distances, but no pairs; where they find the same, so do edits
-  const double sum = search.best->fault.sum();
-  if (!search.accepted && !too_many && search.best->fault.count() == 0 && sum < rules::nearly_accepted)
-    if (search.go_on(s, refused); !search.accepted && search.best->fault.sum() < sum) remove();
+  // limits without a margin allow distances, but no pairs; at the same triangles nothing else would come out
+  const std::vector<int> faulty = search.best->fault.triangles;
+  if (!search.accepted && !too_many && search.best->fault.count() == 0 &&
+      search.best->fault.sum() < rules::nearly_accepted)
+    if (search.go_on(s, refused); !search.accepted && search.best->fault.triangles != faulty) remove();
   if (search.accepted) {
     search.go_to(s, search.accepted);
     return {{{}, search.now.of_reference}};

@@ -107,8 +107,8 @@ struct Faults : Intersections {
 /// folds, at needles, and where mesh and reference are almost half the size apart; then repairs there. Goes
 /// on as long as this helps, then, if mcheck accepts none and few needles are left, without a margin. If
 /// mcheck accepts one of the meshes seen, leaves the best of these, with its mild needles repaired; else the
-/// one with the fewest faults, which it returns. With more faults at first than rules::most_sum, it changes
-/// nothing.
+/// one with the fewest faults, which it returns. Where their sum is over rules::most_sum at first, it removes
+/// none.
 Faults remove_faults(State& s, Samples& samples);
 
 }  // namespace meshpipe

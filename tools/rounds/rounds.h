@@ -29,8 +29,8 @@ struct Outcome {
   bool bounded_distance = false;  ///< a distance is required: the number of triangles follows from it
 };
 
-/// The number of rounds of a chain at most: the whole takes about three times as long as the first. What is
-/// not met by then hardly ever was, except a distance.
+/// The number of rounds of a chain at most: the whole takes about three times as long as the first at most.
+/// What is not met by then hardly ever was, except a distance.
 constexpr int most_rounds = 3, most_rounds_for_distance = 6;
 /// No other round starts once those after the first have made this many times its triangles (or times
 /// `small_result`, where that is more): sizes that fall and fall do not help.
