@@ -192,8 +192,9 @@ struct Search {
 /// Refines as long as it helps. Pairs are repaired first: split they intersect in more places.
 void refine(State& s, Search& search, double most) {
   Repairs& shapes = search.shapes;
-  shapes = {.in_vain = shapes.in_vain};  // times of another mesh say nothing
-  int since = s.clocks.now;              // when all was repaired
+  const int in_vain = shapes.in_vain;
+  shapes = {}, shapes.in_vain = in_vain;  // times of another mesh say nothing
+  int since = s.clocks.now;               // when all was repaired
   bool repair_helps = true;
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
