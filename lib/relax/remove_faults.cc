@@ -153,7 +153,7 @@ struct Seen {
 struct Search {
   Known known;
   InVain in_vain{};
-  Repairs shapes{};  ///< what repair of shapes around refined places remembers
+  int shapes_in_vain = 0;  ///< places around refined ones where pairs of edits for the shape have failed
   std::shared_ptr<const Seen> best{}, lowest{}, accepted{}, last{};
   Fault now{};
   int rounds = 0;
@@ -191,10 +191,9 @@ struct Search {
 
 /// Refines as long as it helps. Pairs are repaired first: split they intersect in more places.
 void refine(State& s, Search& search, double most) {
-  Repairs& shapes = search.shapes;
-  const int in_vain = shapes.in_vain;
-  shapes = {}, shapes.in_vain = in_vain;  // times of another mesh say nothing
-  int since = s.clocks.now;               // when all was repaired
+  Repairs memory;  // of this mesh: times of another say nothing
+  memory.in_vain = search.shapes_in_vain;
+  int since = s.clocks.now;  // when all was repaired
   bool repair_helps = true;
   for (int useless = 0;
        useless < rules::useless_rounds && search.rounds < rules::fault_rounds && s.mesh.live <= most;) {
@@ -211,7 +210,8 @@ void refine(State& s, Search& search, double most) {
     refine_at(s, search.now);
     if (n > 0) {
       reach_features(s, search.known.samples, rules::too_far, n);
-      repair_worst(s, shapes, since);
+      repair_worst(s, memory, since);
+      search.shapes_in_vain = memory.in_vain;
       since = s.clocks.now;
     }
     search.look(s), ++search.rounds;
@@ -294,11 +294,9 @@ Faults remove_faults(State& s, Samples& samples) {
   const bool too_many = search.now.sum() > std::max(rules::most_sum, rules::most_sum_share * s.mesh.live);
   // in turns, each from the mesh with the lowest sum: refinement only adds faults where many are left
   auto remove = [&] {
-    for (double before = infinity; !too_many && !search.best->fault.none();) {
-      const double sum = search.lowest->fault.sum();
-      if (before < infinity && !(sum <= std::min(rules::nearly_accepted, rules::worth_a_turn * before)))
-        break;
-      before = sum;
+    double worth = infinity;
+    while (!too_many && !search.best->fault.none() && search.lowest->fault.sum() <= worth) {
+      worth = std::min(rules::nearly_accepted, rules::worth_a_turn * search.lowest->fault.sum());
       search.go_to(s, search.lowest);
       refine(s, search, most);
       if (!search.best->fault.none()) repair(s, search);

@@ -121,10 +121,9 @@ constexpr double nearly_accepted =
     30;                         // sum of faults: with more, neither another turn nor other limits help
 constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10, few_faults = 300;  // rounds; places: more take too long
-// Of 435 runs with faults those that removed them began with a sum of 688 at most, and 167 after refinement.
-constexpr double most_sum = 1000,
-                 most_sum_share = 0.01;  // sum, and of the triangles: of more none is removed
-constexpr double most_repaired = 250;    // sum, after refinement
+// of 435 runs, those that left no fault began with a sum of 688 at most, and had 167 at most after refinement
+constexpr double most_sum = 1000, most_sum_share = 0.01;  // and of the triangles: of more none is removed
+constexpr double most_repaired = 250;                     // after refinement: of more none is repaired
 constexpr double reduced_at_pair = 0.35,
                  reduced_at_needle = 0.3;     // of the size, where the mesh is begun again
 constexpr double reduced_at_distance = 0.27;  // over the distance in sizes: the same, well within a half,

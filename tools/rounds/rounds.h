@@ -41,7 +41,8 @@ constexpr double most_refined_growth = 2, most_refined = 1e6, most_refined_at_on
 /// The verdicts of this many rounds keep the number of triangles asked for, so that two rounds aim at it;
 /// later ones give it up: it stands in the way of smaller sizes.
 constexpr int rounds_of_count = 1;
-/// After this many rounds in a row that are no better than an earlier one, there is no further round.
+/// After this many rounds in a row that are no better than an earlier one, there is no further round (which
+/// most_rounds says before it, unless a distance is required).
 constexpr int most_vain_rounds = 2;
 /// Nor is there one where more triangles are faulty, except for a distance: smaller sizes only crumple the
 /// mesh there. Of 25 spoiled surfaces that missed the contract, no later round met it from more than six.
