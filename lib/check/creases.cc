@@ -9,17 +9,27 @@ namespace {
 
 constexpr double sharp = 0.5;  // cosine, 60 degrees: rounder bends are followed by chords across them
 
-/// The model edges at which the surface bends sharply, as triangles without area.
-Mesh sharp_creases(const Surface& surface) {
-  Mesh creases{surface.points, {}};
+/// The model edges at which the surface bends sharply, as triangles without area, and the components of the
+/// surface: of each of its triangles, and of each crease.
+struct Creases {
+  Mesh edges;
+  std::vector<int> component_of_triangle, component;
+};
+
+Creases sharp_creases(const Surface& surface) {
+  Creases creases{{surface.points, {}}, {}, {}};
   if (!surface.face.has("model")) return creases;
   const auto& model = surface.face.get<std::uint8_t>("model");
   if (std::count(model.begin(), model.end(), 0) == (long)model.size()) return creases;
   const std::vector<int> opposite = opposite_halfedges(surface);
+  components(opposite, creases.component_of_triangle);
   auto normal = [&](int h) { return normalized(area_vector(surface, h / 3)); };
   for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] > h && (model[h / 3] >> h % 3 & 1) && dot(normal(h), normal(opposite[h])) < sharp)
-      creases.tris.push_back({origin(surface.tris, h), target(surface.tris, h), target(surface.tris, h)});
+    if (opposite[h] > h && (model[h / 3] >> h % 3 & 1) && dot(normal(h), normal(opposite[h])) < sharp) {
+      const int to = target(surface.tris, h);
+      creases.edges.tris.push_back({origin(surface.tris, h), to, to});
+      creases.component.push_back(creases.component_of_triangle[h / 3]);
+    }
   return creases;
 }
 
@@ -27,22 +37,35 @@ Mesh sharp_creases(const Surface& surface) {
 
 std::vector<int> find_cut_creases(const Connectivity& result, const Surface& reference) {
   constexpr double near = 0.6, on = 0.15;  // of the edge
-  const Mesh creases = sharp_creases(reference);
+  const Creases creases = sharp_creases(reference);
   std::vector<int> cut;
-  if (creases.tris.empty()) return cut;
-  const Bvh search(creases), tree(reference);
-  auto meets = [&](Vec3 p, double reach) { return search.nearest_within(p, reach, 0).place.face >= 0; };
+  if (creases.edges.tris.empty()) return cut;
+  const Bvh search(creases.edges), tree(reference);
   const Mesh& mesh = result.mesh;
   for (int h = 0; h < result.n_half_edges(); ++h) {
     if (result.opposite[h] < h) continue;
     const Vec3 a = mesh.points[origin(mesh.tris, h)], b = mesh.points[target(mesh.tris, h)];
-    const Vec3 middle = lerp(a, b, 0.5);
-    const double length = norm(b - a);
-    if (!meets(middle, near * length) || meets(a, on * length) || meets(b, on * length)) continue;
     const Vec3 c = mesh.points[result.apex(h)], d = mesh.points[result.apex(result.opposite[h])];
-    if (!meets(c, on * length) || !meets(d, on * length) || !meets(lerp(c, d, 0.5), on * length)) continue;
-    auto normal = [&](Vec3 p) { return normalized(area_vector(reference, tree.nearest(p).place.face)); };
-    if (dot(normal(a), normal(b)) < sharp && tree.nearest(middle).distance > on * length) cut.push_back(h);
+    const Vec3 middle = lerp(a, b, 0.5);
+    const double length = norm(b - a), reach = on * length;
+    const int crease = search.nearest_within(c, reach, 0).place.face;
+    if (crease < 0) continue;
+    // of other components creases may pass by
+    const int component = creases.component[crease];
+    auto meets = [&](Vec3 p, double reach) {
+      return search.nearest_of(creases.component, component, p, reach, 0).place.face >= 0;
+    };
+    if (!meets(middle, near * length) || meets(a, reach) || meets(b, reach) || !meets(d, reach) ||
+        !meets(lerp(c, d, 0.5), reach))
+      continue;
+    auto nearest = [&](Vec3 p) {
+      return tree.nearest_of(creases.component_of_triangle, component, p, 1e300, 0);
+    };
+    const Bvh::Hit at_a = nearest(a), at_b = nearest(b);
+    auto normal = [&](const Bvh::Hit& hit) { return normalized(area_vector(reference, hit.place.face)); };
+    if (at_a.distance < reach && at_b.distance < reach && dot(normal(at_a), normal(at_b)) < sharp &&
+        nearest(middle).distance > reach)
+      cut.push_back(h);
   }
   return cut;
 }

@@ -3,6 +3,7 @@
 
 #include "lib/check/check.h"
 #include "lib/core/error.h"
+#include "lib/core/topology.h"
 #include "lib/core/triangle_count.h"
 #include "lib/shape/shape.h"
 
@@ -48,6 +49,35 @@ TEST(contract, thin_bodies_that_are_inside_out_fail) {
     EXPECT_FALSE(fails(verdict(shell(600, gap, false), shell(6000, gap, false)), "topology")) << gap;
     EXPECT_TRUE(fails(verdict(shell(600, gap, true), shell(6000, gap, false)), "topology")) << gap;
   }
+}
+
+//          crease
+//     a ------+.      the edge ab crosses a corner that is cut off at 45 degrees. Only one of 90 degrees
+//              '.     would be a crease, and there is one: near to it, of another component or of this one
+//                |
+//                b
+TEST(contract, creases_of_other_components_are_not_cut) {
+  const Mesh result{{{-0.5, 0, 0}, {0, 0, -0.5}, {-0.05, 0.35, -0.05}, {-0.05, -0.35, -0.05}},
+                    {{0, 1, 2}, {1, 0, 3}}};
+  auto roof = [](std::vector<std::array<double, 2>> profile, Surface s = {}) {
+    const int first = (int)s.points.size();
+    for (const auto& [x, z] : profile)
+      for (double y : {-1.0, 1.0}) s.points.push_back({x, y, z});
+    for (int i = first; i + 3 < (int)s.points.size(); i += 2)
+      s.tris.insert(s.tris.end(), {{i, i + 2, i + 3}, {i, i + 3, i + 1}});
+    return s;
+  };
+  auto cut = [&](Surface reference, int halfedge) {
+    std::vector<std::uint8_t> model(reference.tris.size());
+    const std::vector<int> opposite = opposite_halfedges(reference);
+    for (int h : {halfedge, opposite[halfedge]}) model[h / 3] |= 1 << h % 3;
+    reference.face.set("model", model);
+    const std::vector<int> sides = opposite_halfedges(result);
+    return find_cut_creases({result, sides}, reference).size();
+  };
+  const Surface bevel = roof({{-1, 0}, {-0.1, 0}, {0, -0.1}, {0, -1}});
+  EXPECT_EQ(cut(roof({{-1, 0.02}, {0.02, 0.02}, {0.02, -1}}), 1), 1u);
+  EXPECT_EQ(cut(roof({{0, 1}, {0, 0}, {1, 0}}, bevel), 6 * 3 + 1), 0u);
 }
 
 TEST(contract, lists_are_read_and_refused) {
