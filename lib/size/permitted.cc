@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "lib/core/intersect.h"
 #include "lib/core/normals.h"
@@ -102,6 +103,7 @@ class Search {
   long long work = 0;          ///< triangles that were looked at
   long long section_work = 0;  ///< the same along sections
   std::vector<Boxed> near;     ///< lists of measure_sheets, one after the other
+  std::vector<int> close;      ///< half-edges along which a sheet is within the gap
 
  private:
   const Connectivity& surface_;
@@ -371,6 +373,7 @@ SizeBound Measure::sheet(int h, Vec3 p, Search& search) const {
   const double most = asked(h, p), size = std::max({2 / longest * until_sag(h, p, up, most_sag * gap, search),
                                                     least_width_share * widths, least_share * most});
   if (size > lowered * most) return none;
+  search.close.push_back(h);
   auto is_other = [&](int u) { return u == other; };
   const bool across = std::abs(dot(normal_[other], up)) >= opposed;  // else a line is near, as at a corner
   // what is connected within the size is a fold that a mesh of this size leaves out, unless lines hold it
@@ -519,11 +522,13 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most) {
 }
 
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
-                                       double least, double most_triangles) {
+                                       double least, double most_triangles, std::vector<char>& close) {
   const Measure measure(surface, asked);
   const std::vector<int>& order = measure.tree().order();
   const int n = surface.n_tris();
   std::vector<std::vector<SizeBound>> found((n + chunk - 1) / chunk);
+  const std::vector<char> among = std::exchange(close, std::vector<char>(n, 0));
+  auto may_be_near = [&](int h) { return among.empty() || among[h / 3] || among[surface.opposite[h] / 3]; };
   // both are measured as time permits: of fans of needles each point sees all
   std::vector<SizeBound> all;
   for (bool line : {true, false}) {
@@ -539,8 +544,9 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
           if (measure.is_line(h) != line || (!line && h < surface.opposite[h])) continue;
           if (!line) {
             const Vec3 middle = lerp(surface.point(surface.from(h)), surface.point(surface.to(h)), 0.5);
-            const double size = measure.asked(h, middle),
-                         gap = surface.length(h) > size ? infinity : measure.bend(h, middle).gap;
+            const double size = measure.asked(h, middle);
+            const bool is_long = surface.length(h) > size;
+            const double gap = is_long ? infinity : may_be_near(h) ? measure.bend(h, middle).gap : 0;
             if (gap > 0) edges.push_back({h, middle, size, gap});
             continue;
           }
@@ -550,7 +556,11 @@ std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::v
               if (x.size < infinity) found[c].push_back(x);
         }
         measure_sheets(measure, edges, search, found[c]);
+        if (search.work > most_work)  // not all were measured
+          for (const SizeBound& x : edges) search.close.push_back(x.half_edge);
       }
+#pragma omp critical
+      for (int h : search.close) close[h / 3] = close[surface.opposite[h] / 3] = 1;
     }
     all.clear();
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());

@@ -60,6 +60,7 @@ struct Field {
   double strips = 0;  ///< triangles of strips that were bounded before these
   Surface given{};
   std::vector<int> root{};
+  std::vector<char> close{};  ///< per triangle of `given`, see permitted_sizes; empty: not known
   std::unordered_map<std::uint64_t, double> asked{};  ///< by the two vertices, see there
 };
 
@@ -377,13 +378,13 @@ void refuse_costly_tubes(const Surface& s, const std::vector<int>& opposite, dou
 /// Returns where the surface permits less than `size`; nothing if it permits that everywhere. With a number
 /// of triangles to be met also where it permits less than sizes may grow to elsewhere.
 std::vector<SizeBound> bounds_below(const Surface& s, const std::vector<int>& opposite,
-                                    const std::vector<double>& size, const SizeOptions& o,
-                                    SizeReport& report) {
+                                    const std::vector<double>& size, const SizeOptions& o, SizeReport& report,
+                                    std::vector<char>& close) {
   std::vector<double> most = size;
   if (o.triangles > 0)
     for (double& h : most) h *= most_growth;
   const double triangles = o.triangles > 0 ? o.triangles : count_for_size(s, size);
-  auto bounds = permitted_sizes({s, opposite, model_of(s)}, most, o.min, most_for(triangles));
+  auto bounds = permitted_sizes({s, opposite, model_of(s)}, most, o.min, most_for(triangles), close);
   for (const SizeBound& x : bounds) {
     const double h = value_along(s, size, x.half_edge, x.place);
     if (!(x.size < h)) continue;
@@ -450,7 +451,10 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
 /// within the size asked for need not be within what it is now. The smallest size stays.
 bool bound_again(Field& f, double most_triangles) {
   const double least = *std::min_element(f.size.begin(), f.size.end());
-  auto bounds = permitted_sizes({f.s, f.opposite, model_of(f.s)}, f.size, least, most_triangles);
+  std::vector<char> close;
+  if (!f.close.empty())
+    for (int t : f.root) close.push_back(f.close[t]);
+  auto bounds = permitted_sizes({f.s, f.opposite, model_of(f.s)}, f.size, least, most_triangles, close);
   std::erase_if(bounds, [&](const SizeBound& x) {
     return !(x.size < much_less * value_along(f.s, f.size, x.half_edge, x.place));
   });
@@ -463,9 +467,11 @@ bool bound_again(Field& f, double most_triangles) {
   return true;
 }
 
-/// Makes a field that is not uniform; `bounds` and `triangles` are those of a uniform size, 0: not known.
+/// Makes a field that is not uniform; `bounds`, `triangles` and `close` are those of a uniform size, larger
+/// than those that follow; 0: not known.
 std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, bool may_split,
-                               SizeReport& report, std::vector<SizeBound> bounds = {}, double triangles = 0) {
+                               SizeReport& report, std::vector<SizeBound> bounds = {}, double triangles = 0,
+                               std::vector<char> close = {}) {
   const bool bounds_known = triangles > 0;
   Field f{.s = s, .chart = chart, .o = o, .diagonal = diagonal(s)};
   f.cap = o.max > 0 ? o.max : infinity;
@@ -502,12 +508,14 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   };
   if (bounds.empty()) {
     follow_field();
-    if (!bounds_known) bounds = bounds_below(s, f.opposite, f.size, o, report);
+    if (std::vector<char> unused; !bounds_known)
+      bounds = bounds_below(s, f.opposite, f.size, o, report, unused);
   }
   if (!bounds.empty()) {
     if (!bounds_known) triangles = count_for_size(s, f.size);
     limit = most_for(triangles);
     f.bounds = std::move(bounds);
+    f.close = std::move(close);
     f.given = s;
     f.root = identity(s.tris.size());
     follow_field();
@@ -603,7 +611,8 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     const std::vector<int> opposite = opposite_halfedges(surface);
     const double triangles = area / (0.25 * std::sqrt(3.0) * h * h);
     refuse_costly_tubes(surface, opposite, h, triangles);
-    auto bounds = bounds_below(surface, opposite, size, options, report);
+    std::vector<char> close;
+    auto bounds = bounds_below(surface, opposite, size, options, report, close);
     auto fits = [&] {
       const auto feature = feature_size({surface, opposite, model_of(surface)}, {}, size);
       return std::equal(feature.begin(), feature.end(), size.begin(), std::greater_equal<>());
@@ -611,7 +620,7 @@ SizeReport set_size(Surface& surface, Table* chart, const SizeOptions& options, 
     if (!bounds.empty() || !fits()) {
       SizeOptions o = options;
       o.max = o.max > 0 ? std::min(o.max, most_growth * h) : most_growth * h;
-      size = make_field(surface, chart, o, may_split, report, std::move(bounds), triangles);
+      size = make_field(surface, chart, o, may_split, report, std::move(bounds), triangles, std::move(close));
       report.scale = 1;
     }
   } else {
