@@ -2,6 +2,8 @@
 #include "lib/size/permitted.h"
 
 #include <algorithm>
+#include <bit>
+#include <cfloat>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -46,11 +48,26 @@ constexpr std::size_t most_near = 16;               ///< if it is no more triang
 constexpr double one_way = 0.7;  ///< least cosine between an axis and the normals of a sheet that is a graph
 constexpr double corner_turn = 0.35;  ///< radians: a line that turns by more may come near others there only
 
-/// A triangle and its box.
+using Four = float __attribute__((vector_size(16)));
+
+/// The box of a triangle in single precision, rounded outward, with the number of the triangle.
 struct Boxed {
-  int triangle;
-  Box box;
+  Four lo, hi;
+  int triangle() const { return std::bit_cast<int>((float)lo[3]); }
 };
+
+Boxed boxed(const Box& box, int triangle = 0) {
+  auto down = [](double x) { return std::nextafter((float)x, -FLT_MAX); };
+  auto up = [](double x) { return std::nextafter((float)x, FLT_MAX); };
+  return {Four{down(box.lo.x), down(box.lo.y), down(box.lo.z), std::bit_cast<float>(triangle)},
+          Four{up(box.hi.x), up(box.hi.y), up(box.hi.z), 0}};
+}
+
+/// Whether they have a point in common, or nearly.
+bool overlap(const Boxed& a, const Boxed& b) {
+  const auto apart = (a.lo > b.hi) | (b.lo > a.hi);
+  return (apart[0] | apart[1] | apart[2]) == 0;
+}
 
 /// Looks at what is connected, in one place after the other.
 class Search {
@@ -60,13 +77,13 @@ class Search {
   /// Whether these triangles are one sheet that is a graph over a plane, and have no edge on a line.
   bool one_graph(std::span<const Boxed> triangles, const std::vector<Vec3>& normal) {
     Vec3 axis;
-    for (const Boxed& x : triangles) axis = axis + normal[x.triangle];
+    for (const Boxed& x : triangles) axis = axis + normal[x.triangle()];
     axis = normalized(axis);
     for (const Boxed& x : triangles)
-      if (!(dot(normal[x.triangle], axis) > one_way)) return false;
+      if (!(dot(normal[x.triangle()], axis) > one_way)) return false;
     ++turn_;
-    for (const Boxed& x : triangles) seen_[x.triangle] = turn_;
-    queue_.assign(1, triangles[0].triangle);
+    for (const Boxed& x : triangles) seen_[x.triangle()] = turn_;
+    queue_.assign(1, triangles[0].triangle());
     seen_[queue_[0]] = 0;
     for (std::size_t i = 0; i < queue_.size(); ++i)
       for (int h = 3 * queue_[i]; h < 3 * queue_[i] + 3; ++h) {
@@ -456,14 +473,15 @@ void measure_sheets(const Measure& measure, std::span<const SizeBound> edges, Se
   if (first == last && norm(around.hi - around.lo) < most_reach * edges[0].size) {
     measure.tree().overlapping(around, [&](int t) {
       ++search.work;
-      if (end - last < most) near[end] = {t, box_of(measure.surface().mesh, t)};
+      if (end - last < most) near[end] = boxed(box_of(measure.surface().mesh, t), t);
       ++end;
     });
     if (end - last > most) end = last;
   }
+  const Boxed nearly = boxed(around);
   for (; first < last; ++first) {  // without a branch, which could not be predicted
     near[end] = near[first];
-    end += overlap(near[first].box, around);
+    end += overlap(near[first], nearly);
   }
   if (end > last && search.one_graph(std::span(near).subspan(last, end - last), measure.normals())) return;
   for (auto part : {edges.first(edges.size() / 2), edges.subspan(edges.size() / 2)})
