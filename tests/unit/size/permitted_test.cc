@@ -13,9 +13,15 @@ using namespace meshpipe;
 
 namespace {
 
+std::vector<SizeBound> bounds_of(const Connectivity& surface, const std::vector<double>& asked,
+                                 double most = 1e300) {
+  std::vector<char> close;
+  return permitted_sizes(surface, asked, 0, most, close);
+}
+
 std::vector<SizeBound> bounds_of(const Mesh& mesh, double asked) {
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  return permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), asked), 0, 1e300);
+  return bounds_of({mesh, opposite}, std::vector<double>(mesh.points.size(), asked));
 }
 
 /// A flat rectangle of two triangles.
@@ -75,7 +81,7 @@ TEST(Permitted, StripsThatAskForTooMuchAreAllThatIsMeasured) {
   add_tube(mesh, 1.01, 8);
   const std::vector<int> opposite = opposite_halfedges(mesh);
   auto sheets = [&](double most) {
-    const auto all = permitted_sizes({mesh, opposite}, std::vector<double>(mesh.points.size(), 1.5), 0, most);
+    const auto all = bounds_of({mesh, opposite}, std::vector<double>(mesh.points.size(), 1.5), most);
     return std::count_if(all.begin(), all.end(), [](const SizeBound& x) { return x.length == 0; });
   };
   EXPECT_GT(sheets(1e300), 0);
@@ -192,7 +198,7 @@ TEST(Permitted, FourEdgesFitAroundATubeThatHasNoVerticesAlongIt) {
   std::vector<std::uint8_t> model(mesh.tris.size(), 0);
   for (int j : {0, 3, 6, 9, 12, 14}) model[2 * j + 1] = 4, model[(2 * j + 30) % 32] = 2;
   const std::vector<int> opposite = opposite_halfedges(mesh);
-  const auto held = permitted_sizes({mesh, opposite, model}, std::vector<double>(32, 1), 0, 1e300);
+  const auto held = bounds_of({mesh, opposite, model}, std::vector<double>(32, 1));
   EXPECT_GT(held.size(), 0u);
   for (const SizeBound& b : held) EXPECT_GT(b.length + (b.place.z < 1) + (b.place.z > 7), 0) << b.place.z;
 }
@@ -207,7 +213,7 @@ TEST(Permitted, WhatIsAskedForAndTheWidthOfNeedlesAreThoseOfThePlace) {
   std::vector<double> asked;
   for (const Vec3 p : mesh.points) asked.push_back(0.05 + 0.05 * p.z);
   int low = 0;
-  for (const SizeBound& b : permitted_sizes({mesh, opposite}, asked, 0, 1e300)) {
+  for (const SizeBound& b : bounds_of({mesh, opposite}, asked)) {
     if (b.half_edge / 3 >= 2 * outer) continue;
     const double radius = 0.1 + 0.1 * b.place.z;
     EXPECT_NEAR(b.gap / radius, 0.02, 1e-3) << b.place.z;
@@ -235,12 +241,22 @@ TEST(Permitted, AFoldThatLinesHoldIsNotLeftOut) {
       if (const int o = opposite[3 * t + i]; o >= 0 && o < 6 * m)
         rims[t] |= 1 << i, rims[o / 3] |= 1 << o % 3;
   auto on_sheets = [&](const std::vector<std::uint8_t>& model) {
-    const auto all = permitted_sizes({mesh, opposite, model}, std::vector<double>(2 * n, 3), 0, 1e300);
+    const auto all = bounds_of({mesh, opposite, model}, std::vector<double>(2 * n, 3));
     return std::count_if(all.begin(), all.end(),
                          [](const SizeBound& x) { return x.gap < 0.06 && x.size < 1; });
   };
-  EXPECT_EQ(on_sheets(std::vector<std::uint8_t>(mesh.tris.size(), 0)), 0);
+  const std::vector<std::uint8_t> none(mesh.tris.size(), 0);
+  EXPECT_EQ(on_sheets(none), 0);
   EXPECT_GT(on_sheets(rims), 10);
+  // it is one at a size that does not reach around it, and is found again where it was close
+  std::vector<char> close;
+  permitted_sizes({mesh, opposite, none}, std::vector<double>(2 * n, 3), 0, 1e300, close);
+  const std::vector<double> smaller(2 * n, 0.8);
+  const auto all = bounds_of({mesh, opposite, none}, smaller);
+  const auto again = permitted_sizes({mesh, opposite, none}, smaller, 0, 1e300, close);
+  EXPECT_GT(all.size(), 10u);
+  ASSERT_EQ(again.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(again[i].size, all[i].size);
 }
 
 TEST(Permitted, FlatSheetsAreAsNearAsTheyLike) {
