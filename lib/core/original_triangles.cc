@@ -89,14 +89,25 @@ Mesh original_mesh(const Surface& reference) {
                                       : Mesh(reference);
 }
 
-Mesh reference_contacts(const Surface& reference, bool sheets_meet) {
+Mesh reference_contacts(const Surface& reference, bool sheets_meet, std::span<const Box> near) {
   Mesh joined = original_mesh(reference);
   if (sheets_meet) join_borders(joined);
   const std::vector<int> opposite = opposite_halfedges(reference);
   const auto chords = chord_pairs({reference, opposite, model_of(reference)});
   constexpr double rounding = 1e-6;  // of the diagonal: single-precision coordinates, with a margin
+  const double close = rounding * diagonal(joined);
+  if (!near.empty()) {
+    std::vector<Tri> kept;
+    for (int t = 0; t < (int)joined.tris.size(); ++t) {
+      const Box box = box_of(joined, t),
+                around{box.lo - Vec3{close, close, close}, box.hi + Vec3{close, close, close}};
+      if (std::any_of(near.begin(), near.end(), [&](const Box& b) { return overlap(b, around); }))
+        kept.push_back(joined.tris[t]);
+    }
+    joined.tris = std::move(kept);
+  }
   Mesh found = contacts(joined, self_intersections(joined));
-  found = coincidences(joined, rounding * diagonal(joined), std::move(found));
+  found = coincidences(joined, close, std::move(found));
   return contacts(reference, chords, std::move(found));
 }
 

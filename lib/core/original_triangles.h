@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recovery of the triangles that a cut surface was made from.
 #pragma once
+#include <span>
 #include <vector>
 
+#include "lib/core/bvh.h"
 #include "lib/core/mesh.h"
 
 namespace meshpipe {
@@ -18,8 +20,8 @@ Mesh original_mesh(const Surface& reference);
 
 /// Returns the contacts (lib/core/intersect.h) of a reference: its chords, and where it intersects itself,
 /// fans touch, or it lies on itself to the rounding of single-precision coordinates, as it was before it was
-/// cut, since new vertices are rounded. If `sheets_meet`, its borders are joined. Throws: as
-/// opposite_halfedges.
-Mesh reference_contacts(const Surface& reference, bool sheets_meet);
+/// cut, since new vertices are rounded. If `sheets_meet`, its borders are joined. `near`: of the last two at
+/// least those that have a point in one of these boxes, if there are any. Throws: as opposite_halfedges.
+Mesh reference_contacts(const Surface& reference, bool sheets_meet, std::span<const Box> near = {});
 
 }  // namespace meshpipe

@@ -80,6 +80,19 @@ bool is_forced(const State& s, int t, double k, Known& known) {
 
 namespace {
 
+/// Boxes around the pairs, with all contacts by which new_intersections tells whether they are new.
+std::vector<Box> boxes_around(const Mesh& mesh, const std::vector<std::pair<int, int>>& pairs) {
+  std::vector<Box> boxes;
+  for (const auto& [s, t] : pairs) {
+    double reach = 0;
+    for (int u : {s, t})
+      for (int h = 3 * u; h < 3 * u + 3; ++h) reach = std::max(reach, 2 * edge_length(mesh, h));
+    const Box both = join(box_of(mesh, s), box_of(mesh, t));
+    boxes.push_back({both.lo - Vec3{reach, reach, reach}, both.hi + Vec3{reach, reach, reach}});
+  }
+  return boxes;
+}
+
 /// Pairs that intersect, and chords, where the reference has neither.
 void find_intersections(const State& s, Known& known, Fault& found) {
   renew(known.of_mesh.intersections, s, known.samples.search);
@@ -88,13 +101,19 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   for (const auto& pair : chords_of(s)) found.pairs.push_back(pair);
   sort_unique(found.pairs);
   if (found.pairs.empty()) return;
-  if (!known.contacts) {
-    known.contacts = reference_contacts(known.reference, !s.copy.empty());
-    if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
-  }
+  const Mesh mesh{s.points, s.mesh.tris};
+  const bool sheets_meet = !s.copy.empty(), first = !std::exchange(known.looked_near, true);
   found.of_reference = (int)found.pairs.size();
-  if (known.contact_tree)
-    found.pairs = new_intersections({s.points, s.mesh.tris}, found.pairs, *known.contact_tree);
+  if (first && (int)found.pairs.size() <= rules::few_pairs) {  // of smooth surfaces once and for all
+    const Mesh near = reference_contacts(known.reference, sheets_meet, boxes_around(mesh, found.pairs));
+    found.pairs = new_intersections(mesh, found.pairs, near);
+  } else {
+    if (!known.contacts) {
+      known.contacts = reference_contacts(known.reference, sheets_meet);
+      if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
+    }
+    if (known.contact_tree) found.pairs = new_intersections(mesh, found.pairs, *known.contact_tree);
+  }
   found.of_reference -= (int)found.pairs.size();
 }
 
