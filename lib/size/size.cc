@@ -51,6 +51,7 @@ struct Field {
   double diagonal = 0, cap = 0;
   double uniform = infinity, scale = 1;  ///< meet_count varies these two
   std::vector<int> opposite{};
+  Lists next{};                     ///< as neighbors_of
   std::vector<double> curvature{};  ///< per triangle; empty if not needed
   std::vector<Source> sources{};
   std::vector<double> wish{}, size{}, permits{};  ///< per vertex: of the sources, the field, the surface
@@ -190,7 +191,7 @@ void set_sizes(Field& f, double uniform, double scale) {
     f.size[v] = bounded(f, f.wish[v]);
     if (!f.permits.empty()) f.size[v] = std::min(f.size[v], std::max(f.permits[v], f.o.min));
   }
-  limit_gradation(f.s, f.o.gradation, f.size);
+  limit_gradation(f.s, f.next, f.o.gradation, f.size);
 }
 
 /// Sets the sizes to a field that asks for the number of triangles, if one is given. The number falls as x
@@ -268,6 +269,7 @@ bool split(Field& f, const Test& test) {
   const std::vector<int> parent = split_edges({f.s, f.opposite}, std::move(mark), f.chart);
   if (parent.empty()) return false;
   f.opposite = opposite_halfedges(f.s);
+  f.next = neighbors_of(f.s);
   if (!f.root.empty()) {
     std::vector<int> root;
     root.reserve(parent.size());
@@ -479,6 +481,7 @@ std::vector<double> make_field(Surface& s, Table* chart, const SizeOptions& o, b
   if (!(o.size > 0 || o.triangles > 0 || o.max > 0 || o.at || !o.data.empty()))
     f.cap = default_size * f.diagonal;
   f.opposite = opposite_halfedges(f.s);
+  f.next = neighbors_of(f.s);
   if (o.per_turn > 0 || o.chord > 0 || (o.at && o.at_curvature))
     f.curvature = face_curvature({f.s, f.opposite, model_of(f.s)});
   const std::size_t n_before = s.points.size();
@@ -561,8 +564,7 @@ void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size) 
   }
 }
 
-void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size) {
-  const Lists next = neighbors_of(mesh);
+void limit_gradation(const Mesh& mesh, const Lists& next, double slope, std::vector<double>& size) {
   auto each_lower = [&](int v, const auto& lower) {
     for (int u : next[v])
       if (size[u] > size[v]) lower(u, size[v] + slope * norm(mesh.points[u] - mesh.points[v]));
@@ -586,7 +588,7 @@ int match_sheets(Surface& surface, Table* chart, double slope) {
     for (int i = 0; i < 3; ++i)
       least[joined.tris[t][i]] = std::min(least[joined.tris[t][i]], size[surface.tris[t][i]]);
   lower_along_short_lines(joined, least);
-  limit_gradation(joined, slope, least);
+  limit_gradation(joined, neighbors_of(joined), slope, least);
   for (std::size_t t = 0; t < joined.tris.size(); ++t)
     for (int i = 0; i < 3; ++i) size[surface.tris[t][i]] = least[joined.tris[t][i]];
   return added;

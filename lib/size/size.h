@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lib/core/connectivity.h"
+#include "lib/core/lists.h"
 #include "lib/core/mesh.h"
 #include "lib/core/triangle_count.h"
 #include "lib/size/layers.h"
@@ -85,9 +86,9 @@ constexpr double least_spacings = 16;
 /// its coordinates.
 void refuse_unresolved_sizes(const Mesh& mesh, const std::vector<double>& size);
 
-/// Reduces sizes (per vertex) until they grow by at most `slope` per unit of length along every edge.
-/// Source: Borouchaki, Hecht and Frey, Mesh gradation control, 1998.
-void limit_gradation(const Mesh& mesh, double slope, std::vector<double>& size);
+/// Reduces sizes (per vertex) until they grow by at most `slope` per unit of length along every edge. `next`:
+/// as neighbors_of. Source: Borouchaki, Hecht and Frey, Mesh gradation control, 1998.
+void limit_gradation(const Mesh& mesh, const Lists& next, double slope, std::vector<double>& size);
 
 /// The point of a cone or spike: a vertex, and the angle of the surface around it in radians.
 struct Peak {

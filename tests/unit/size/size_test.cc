@@ -152,7 +152,7 @@ TEST(Size, GradationIsTheLargestFieldBelow) {
   const Mesh m = sphere(2000);
   std::vector<double> h(m.points.size(), 5);
   h[17] = 0.1;
-  limit_gradation(m, 0.3, h);
+  limit_gradation(m, neighbors_of(m), 0.3, h);
   expect_graded(m, h, 0.3);
   EXPECT_EQ(h[17], 0.1);
   double largest = 0;
