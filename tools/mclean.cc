@@ -215,8 +215,8 @@ int flatten(Io& io, Surface& s, const Options& o) {
 }
 
 /// Remarks on borders that almost fit and on vertices that stick out, for programs that fail on them.
-void remark_on_flaws(const Io& io, Stream& stream) {
-  if (const Gaps gaps = find_gaps(stream.surface); gaps.closed > 0) {
+void remark_on_flaws(const Io& io, Stream& stream, const CleanReport& report) {
+  if (const Gaps gaps = find_gaps(stream.surface, report); gaps.closed > 0) {
     stream.remarks.push_back("gaps " + gaps.text());
     io.say(gaps.text() + ": --weld " + shown(gaps.within) + " joins them");
   }
@@ -287,7 +287,7 @@ int main(int argc, char** argv) {
         if (stream.input_triangles == 0 || !report.nothing) {
           std::erase_if(stream.remarks, is_of_former_run);
           if (const std::string r = remark_of(report); r.size()) stream.remarks.push_back(r);
-          remark_on_flaws(io, stream);
+          remark_on_flaws(io, stream, report);
         }
         name_patches(stream, report);
         if (!counted) stream.input_triangles = (int)s.tris.size();

@@ -172,6 +172,14 @@ bool has_border(const Repair& r) {
   return std::find(r.opposite.begin(), r.opposite.end(), -1) != r.opposite.end();
 }
 
+/// Whether the triangles are still those of the surface, whose vertices are welded.
+bool is_unchanged(const Repair& r, const Surface& surface, const std::vector<int>& same) {
+  bool equal = r.copied.empty() && r.tris.size() == surface.tris.size();
+  for (std::size_t t = 0; equal && t < r.tris.size(); ++t)
+    for (int i = 0; i < 3; ++i) equal = equal && r.vertex[r.tris[t][i]] == same[surface.tris[t][i]];
+  return equal;
+}
+
 /// Closes the slits of a repaired surface: the repair begins again if there are any, since they have torn
 /// fans apart, and goes on where it has opened some. `same`, `welded`: what repairs begin with.
 void close_all_slits(const Surface& surface, const std::vector<int>& same, const CleanReport& welded,
@@ -179,14 +187,16 @@ void close_all_slits(const Surface& surface, const std::vector<int>& same, const
   constexpr int most_passes = 6;  // five suffice on 241 surfaces with borders
   for (int pass = 0; pass < most_passes && has_border(r); ++pass) {
     // the first begins with the input, for repairs have torn fans apart at slits
+    const bool begins = pass == 0 && !is_unchanged(r, surface, same);
     CleanReport after = pass ? report : welded;
-    Repair divided = pass ? r : start(surface, same, after);
-    if (pass) unite(divided);
+    after.unreferenced = report.unreferenced;
+    Repair divided = begins ? start(surface, same, after) : r;
+    if (pass) unite(divided), divided.opposite.clear();
     if (close_slits(divided, surface.points, after)) {
       report = std::move(after);
       r = std::move(divided);
       repair(r, surface.points, options, report);
-    } else if (pass) {
+    } else if (!begins) {
       return;
     }
   }
@@ -286,7 +296,9 @@ void clean_once(Surface& surface, const CleanOptions& given, CleanReport& report
   if (options.weld < 0 && has_border(r)) {
     const double noise = coordinate_noise(surface, used_points(surface));
     int n = merge_noise(surface, border_vertices(r, same.size()), noise, same);
-    n += merge_seams(surface, same, restart.tolerance);
+    const bool known = n == 0 && is_unchanged(r, surface, same);
+    n += merge_seams(surface, known ? border_half_edges(r) : open_edges(surface, same), same,
+                     restart.tolerance);
     if (n > 0) {
       restart.welded_near += n;
       options = repair_sheets(surface, same, given, restart, r, report);
@@ -312,6 +324,7 @@ void clean_once(Surface& surface, const CleanOptions& given, CleanReport& report
   }
   take_over(r, surface, options, report);
   label_caps(surface, cap, report);
+  report.sheets.border = border_half_edges(r);
 }
 
 void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {
@@ -328,6 +341,7 @@ void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {
   take_rows(surface.vertex, vertex);
   take_rows(surface.face, face);
   report.resolved.crumbs = n;
+  report.sheets.border = open_edges(surface, identity(surface.points.size()));
   report.components -= n;
 }
 

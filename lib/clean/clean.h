@@ -64,6 +64,7 @@ struct SheetCounts {
   /// where there is one.
   std::vector<std::array<int, 2>> solids;
   FlipCounts flips;
+  std::vector<int> border;  ///< half-edges of the result without a neighbor
 };
 
 /// Counts of repairs. Triangles are numbered as in the input.
@@ -127,8 +128,8 @@ struct Gaps {
 /// Returns what the last such remark says; all 0 if there is none.
 Gaps gaps_of(const std::vector<std::string>& remarks);
 /// Finds such borders if they are at least half of all, and welding them merges no ends of edges; else all
-/// is 0. `surface`: as clean returns it.
-Gaps find_gaps(const Surface& surface);
+/// is 0. `surface`: as clean returns it, with this report.
+Gaps find_gaps(const Surface& surface, const CleanReport& report);
 
 /// Copies vertices so that sheets and fans no longer share them: an oriented manifold of the same triangles.
 /// Throws: NotAdmissible if the surface needs any other repair.

@@ -112,13 +112,15 @@ std::vector<char> find_isolated(const Mesh& mesh, const std::vector<int>& same,
 }  // namespace
 
 int merge_clusters(const Mesh& mesh, std::vector<int>& same, double& within) {
-  double longest = 0;
+  double longest = 0, shortest = infinity;
   std::vector<Edge> edges;
-  each_edge(mesh, same, [&](const Edge& e) { longest = std::max(longest, e.length); });
+  each_edge(mesh, same, [&](const Edge& e) {
+    longest = std::max(longest, e.length), shortest = std::min(shortest, e.length);
+  });
+  if (!(shortest * cluster_gap <= longest)) return 0;
   each_edge(mesh, same, [&](const Edge& e) {
     if (e.length * cluster_gap <= longest) edges.push_back(e);
   });
-  if (edges.empty()) return 0;
   std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& e, const Edge& f) { return e.length < f.length; });
   Clusters clusters(mesh);

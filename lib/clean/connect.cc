@@ -27,8 +27,10 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
     r.opposite.assign(3 * r.tris.size(), -1);
     for_each_edge(r.tris, n, [&](std::span<const EdgeUse> uses) {
       if (uses.size() < 2) return;
+      const int h = half_edge(uses[0]), g = half_edge(uses[1]);
       third.clear();
-      for (EdgeUse e : uses)
+      const bool differ = uses.size() == 2 && origin(r.tris, prev(h)) != origin(r.tris, prev(g));
+      for (EdgeUse e : differ ? std::span<const EdgeUse>() : uses)
         third.push_back((EdgeUse)origin(r.tris, prev(half_edge(e))) << 32 | (std::uint32_t)half_edge(e));
       std::sort(third.begin(), third.end());
       for (std::size_t i = 1, first = 0; i < third.size(); ++i)
@@ -36,7 +38,6 @@ void join(Repair& r, const std::vector<Vec3>& points, const CleanOptions& option
           same.push_back({half_edge(third[first]) / 3, half_edge(third[i]) / 3});
         else
           first = i;
-      const int h = half_edge(uses[0]), g = half_edge(uses[1]);
       if (uses.size() > 2 || (options.keep_orientation && origin(r.tris, h) == origin(r.tris, g))) {
         ++edges;
         for (EdgeUse e : uses) many.push_back(half_edge(e) / 3);

@@ -27,11 +27,13 @@ class Flat {
   FlatCounts remove() {
     FlatCounts counts;
     std::vector<int> flat;
-    for (int t = 0; t < (int)r_.tris.size(); ++t)
-      if (is_flat(r_.tris[t])) flat.push_back(t);
+    std::vector<char> waits(r_.tris.size(), 0);
+#pragma omp parallel for schedule(static)
+    for (std::size_t t = 0; t < waits.size(); ++t) waits[t] = is_flat(r_.tris[t]);
+    for (int t = 0; t < (int)waits.size(); ++t)
+      if (waits[t]) flat.push_back(t);
     // What is done may free neighbors, which are tried next, or others by the edges it takes away: as long
     // as something is done, which lowers their number, all are tried again; then slits are flipped.
-    std::vector<char> waits(r_.tris.size(), 0);
     std::vector<int> queue, close;
     int slits = 0;
     for (bool again = !flat.empty(); again;) {

@@ -82,11 +82,12 @@ bool face_outward(Repair& r, const std::vector<Vec3>& points, const std::vector<
   std::vector<char> closed(n, 1);
   std::vector<int> seed(n, -1);
   std::vector<double> volume(n, 0), area(n, 0);
+  for (int h = 0; h < (int)r.opposite.size(); ++h)
+    if (r.opposite[h] < 0) closed[component[h / 3]] = 0;
   for (int t = 0; t < (int)r.tris.size(); ++t) {
     const int c = component[t];
+    if (!closed[c]) continue;
     if (seed[c] < 0) seed[c] = r.tris[t][0];
-    for (int h = 3 * t; h < 3 * t + 3; ++h)
-      if (r.opposite[h] < 0) closed[c] = 0;
     const Vec3 twice = area_vector(r, points, t);  // places from near, for the digits
     volume[c] += dot(point(r, points, r.tris[t][0]) - point(r, points, seed[c]), twice) / 6;
     area[c] += 0.5 * norm(twice);

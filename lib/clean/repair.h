@@ -35,6 +35,14 @@ inline int base(const Repair& r, int v) {
 /// Returns the triangle of the input from which triangle t has its columns.
 inline int source(const Repair& r, int t) { return r.face[t] < 0 ? ~r.face[t] : r.face[t]; }
 
+/// Returns the half-edges without a neighbor, ascending.
+inline std::vector<int> border_half_edges(const Repair& r) {
+  std::vector<int> border;
+  for (int h = 0; h < (int)r.opposite.size(); ++h)
+    if (r.opposite[h] < 0) border.push_back(h);
+  return border;
+}
+
 /// Records a fault of a triangle of the input; triangles that fill holes (negative) have none.
 inline void record(CleanReport& report, int triangle, Fault fault) {
   if (triangle >= 0) report.offending.push_back({triangle, fault});
@@ -63,15 +71,18 @@ int merge_noise(const Mesh& mesh, const std::vector<char>& candidates, double to
 /// largest distance of two that are merged. Time O(n log n).
 int merge_clusters(const Mesh& mesh, std::vector<int>& same, double& within);
 
+/// Returns the half-edges without a neighbor of a mesh whose vertices are welded, ascending.
+std::vector<int> open_edges(const Mesh& mesh, const std::vector<int>& same);
+
 /// Merges border vertices whose distance is far below all their edges, where that closes border edges and
 /// lays no sheets on each other. Returns the number merged, and raises `within` as merge_clusters does.
-/// Time O(n log n).
-int merge_seams(const Mesh& mesh, std::vector<int>& same, double& within);
+/// `open`: as open_edges returns them. Time O(n log n).
+int merge_seams(const Mesh& mesh, std::vector<int> open, std::vector<int>& same, double& within);
 
 /// Merges vertices on both sides of the ends of slits, and divides triangles at edges without a neighbor
 /// where other such edges run along them with vertices in between, as on two sides of a slit of which one has
 /// more vertices: at most HoleCounts::slit away. The report counts both. Returns whether there were any.
-/// Requires: no neighbors are known yet.
+/// Requires: either all or no neighbors are known. Afterwards none are.
 bool close_slits(Repair& r, const std::vector<Vec3>& points, CleanReport& report);
 
 /// Drops the triangles with gone != 0; the others keep their order, and edges next to a gap become border.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <utility>
 
 #include "lib/clean/repair.h"
 #include "lib/core/bvh.h"
@@ -30,44 +31,50 @@ constexpr Limits likely{8, 3};
 /// Edges of more border triangles are not closed: their number of pairs would be large.
 constexpr std::size_t most_sheets = 8;
 
+Tri welded(const Tri& t, const std::vector<int>& same) { return {same[t[0]], same[t[1]], same[t[2]]}; }
+bool is_degenerate(const Tri& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
 /// The border edges of a surface that fit others.
 class Seams {
  public:
-  /// `same`: per vertex the one that it is welded with.
-  Seams(const Mesh& mesh, const std::vector<int>& same, const Limits& limits)
-      : points_(mesh.points), limits_(limits), shortest_(mesh.points.size(), infinity) {
-    const int n = (int)points_.size();
-    for (const Tri& t : mesh.tris) {
-      const Tri w{same[t[0]], same[t[1]], same[t[2]]};
-      if (w[0] != w[1] && w[1] != w[2] && w[2] != w[0]) tris_.push_back(w);
+  /// `same`: per vertex the one that it is welded with; `open`: as open_edges returns them.
+  Seams(const Mesh& mesh, const std::vector<int>& same, const std::vector<int>& open, const Limits& limits)
+      : points_(mesh.points), limits_(limits), n_open_((int)open.size()) {
+    if (open.empty()) return;
+    std::vector<char> on_border(points_.size(), 0);
+    for (int h : open)
+      for (int v : {same[origin(mesh.tris, h)], same[target(mesh.tris, h)]})
+        if (!std::exchange(on_border[v], 1)) border_.push_back(v);
+    std::sort(border_.begin(), border_.end());
+    shortest_.assign(points_.size(), infinity);
+    for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+      const Tri w = welded(mesh.tris[t], same);
+      if (!(on_border[w[0]] || on_border[w[1]] || on_border[w[2]]) || is_degenerate(w)) continue;
+      tris_.push_back(w);
+      for (int i = 0; i < 3; ++i) {
+        open_.push_back(std::binary_search(open.begin(), open.end(), 3 * t + i));
+        const int a = w[i], b = w[(i + 1) % 3];
+        const double length = norm(points_[a] - points_[b]);
+        shortest_[a] = std::min(shortest_[a], length);
+        shortest_[b] = std::min(shortest_[b], length);
+      }
     }
-    open_.assign(3 * tris_.size(), 0);
-    for_each_edge(tris_, n, [&](std::span<const EdgeUse> uses) {
-      const int h = half_edge(uses[0]), a = origin(tris_, h), b = target(tris_, h);
-      const double length = norm(points_[a] - points_[b]);
-      shortest_[a] = std::min(shortest_[a], length);
-      shortest_[b] = std::min(shortest_[b], length);
-      if (uses.size() > 1) return;
-      open_[h] = 1;
-      border_.insert(border_.end(), {a, b});
-    });
-    sort_unique(border_);
-    group_ = identity(n);
-    if (border_.empty()) return;
+    group_ = identity(points_.size());
     find_groups();
     find_edges();
   }
 
-  int border_edges() const { return (int)std::count(open_.begin(), open_.end(), 1); }
+  int border_edges() const { return n_open_; }
   int closed_edges() const { return closed_; }
 
   /// Merges in `same` the vertices of groups that close edges; returns their number, and raises `within` to
   /// the largest distance between two of them.
   int merge(std::vector<int>& same, double& within) const {
+    if (closed_ == 0) return 0;
     std::vector<int> first(same.size(), -1), kept = identity(same.size());
     int count = 0;
     for (int v : border_) {
-      if (closes_.empty() || !closes_[v]) continue;
+      if (!closes_[v]) continue;
       int& f = first[group_[v]];
       if (f < 0) {
         f = v;
@@ -116,6 +123,7 @@ class Seams {
 
   /// Finds the edges that groups close.
   void find_edges() {
+    if (std::all_of(border_.begin(), border_.end(), [&](int v) { return group_[v] == v; })) return;
     closes_.assign(points_.size(), 0);
     std::vector<Tri> grouped = tris_;
     for (Tri& t : grouped)
@@ -150,9 +158,10 @@ class Seams {
 
   const std::vector<Vec3>& points_;
   Limits limits_;
-  std::vector<Tri> tris_;
-  std::vector<double> shortest_;  ///< edge of each vertex
-  std::vector<char> open_;        ///< half-edges without a neighbor
+  int n_open_;                    ///< border edges
+  std::vector<Tri> tris_;         ///< at border vertices
+  std::vector<char> open_;        ///< their half-edges without a neighbor
+  std::vector<double> shortest_;  ///< edge of each border vertex
   std::vector<int> border_;       ///< their vertices, ascending
   std::vector<int> group_;        ///< the first vertex of each one's group,
   std::vector<double> spread_;    ///< and how far others are from it
@@ -162,20 +171,37 @@ class Seams {
 
 }  // namespace
 
-int merge_seams(const Mesh& mesh, std::vector<int>& same, double& within) {
+std::vector<int> open_edges(const Mesh& mesh, const std::vector<int>& same) {
+  std::vector<Tri> tris;
+  std::vector<int> of, open;
+  for (int t = 0; t < (int)mesh.tris.size(); ++t)
+    if (const Tri w = welded(mesh.tris[t], same); !is_degenerate(w)) tris.push_back(w), of.push_back(t);
+  for_each_edge(tris, (int)mesh.points.size(), [&](std::span<const EdgeUse> uses) {
+    const int h = half_edge(uses[0]);
+    if (uses.size() == 1) open.push_back(3 * of[h / 3] + h % 3);
+  });
+  std::sort(open.begin(), open.end());
+  return open;
+}
+
+int merge_seams(const Mesh& mesh, std::vector<int> open, std::vector<int>& same, double& within) {
   constexpr int most_passes = 10;  // what is merged no longer makes its neighbors unclear
   int count = 0;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const int n = Seams(mesh, same, certain).merge(same, within);
+    const int n = Seams(mesh, same, open, certain).merge(same, within);
     count += n;
     if (n == 0) break;
+    open = open_edges(mesh, same);
   }
   return count;
 }
 
-Gaps find_gaps(const Surface& surface) {
-  std::vector<int> same = first_equal(surface.points, used_points(surface));
-  const Seams seams(surface, same, likely);
+Gaps find_gaps(const Surface& surface, const CleanReport& report) {
+  const bool distinct = report.copies == 0 && !report.sheets.kept;  // points
+  if (distinct && report.sheets.border.empty()) return {};
+  std::vector<int> same =
+      distinct ? identity(surface.points.size()) : first_equal(surface.points, used_points(surface));
+  const Seams seams(surface, same, distinct ? report.sheets.border : open_edges(surface, same), likely);
   Gaps found{seams.closed_edges(), seams.border_edges(), 0};
   if (2 * found.closed < found.edges || found.closed == 0) return {};
   seams.merge(same, found.within);

@@ -12,6 +12,7 @@
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
 #include "lib/core/segments.h"
+#include "lib/core/spatial_order.h"
 
 namespace meshpipe {
 namespace {
@@ -34,18 +35,28 @@ struct Divided {
   std::array<std::vector<int>, 3> on;
 };
 
+/// The half-edges without a neighbor, by their vertices.
+std::vector<int> lone_edges(const Repair& r) {
+  std::vector<int> open = border_half_edges(r);
+  auto use = [&](int h) { return std::minmax({origin(r.tris, h), target(r.tris, h)}); };
+  std::sort(open.begin(), open.end(), [&](int g, int h) { return use(g) < use(h); });
+  if (r.opposite.empty())
+    for_each_edge(r.tris, (int)r.vertex.size(), [&](std::span<const EdgeUse> uses) {
+      if (uses.size() == 1) open.push_back(half_edge(uses[0]));
+    });
+  return open;
+}
+
 class Slits {
  public:
-  Slits(const Repair& r, const std::vector<Vec3>& points, double width) : r_(r), width_(width) {
-    const int n = (int)r.vertex.size();
-    for (int v : r.vertex) edges_.points.push_back(points[v]);
-    for_each_edge(r.tris, n, [&](std::span<const EdgeUse> uses) {
-      const int h = half_edge(uses[0]);
-      if (uses.size() > 1 || !(height(h) >= least_height * width)) return;
+  Slits(const Repair& r, const std::vector<Vec3>& points, double width)
+      : r_(r), width_(width), edges_{rearranged(points, r.vertex), {}} {
+    for (int h : lone_edges(r)) {
+      if (!(height(h) >= least_height * width)) continue;
       open_.push_back(h);
       edges_.tris.push_back({origin(r.tris, h), target(r.tris, h), target(r.tris, h)});
-    });
-    ends_ = lists_of(n, [&](auto use) {
+    }
+    ends_ = lists_of((int)r.vertex.size(), [&](auto use) {
       for (int h : open_)
         use(origin(r.tris, h), target(r.tris, h)), use(target(r.tris, h), origin(r.tris, h));
     });
@@ -190,6 +201,7 @@ void merge(const std::vector<std::array<int, 2>>& pairs, Repair& r, CleanReport&
 bool close_slits(Repair& r, const std::vector<Vec3>& points, CleanReport& report) {
   std::optional<Slits> slits(std::in_place, r, points, report.holes.slit);
   const std::vector<std::array<int, 2>> ends = slits->find_ends();
+  r.opposite.clear();
   if (!ends.empty()) {
     merge(ends, r, report);
     slits.emplace(r, points, report.holes.slit);

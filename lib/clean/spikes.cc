@@ -29,11 +29,15 @@ struct Rim {
 /// are that stick out.
 std::vector<char> apexes(const Surface& s, double extents) {
   std::vector<char> flags(s.points.size(), 0);
+#pragma omp parallel for schedule(static)
   for (const Tri& t : s.tris) {
     double edge[3];  // opposite to each corner
     for (int i = 0; i < 3; ++i) edge[i] = norm(s.points[t[(i + 2) % 3]] - s.points[t[(i + 1) % 3]]);
     for (int i = 0; i < 3; ++i)
-      if (std::min(edge[(i + 1) % 3], edge[(i + 2) % 3]) > extents * edge[i]) flags[t[i]] = 1;
+      if (std::min(edge[(i + 1) % 3], edge[(i + 2) % 3]) > extents * edge[i]) {
+#pragma omp atomic write
+        flags[t[i]] = 1;
+      }
   }
   return flags;
 }

@@ -18,6 +18,7 @@ class UnionFind {
   }
   /// Joins the sets of a and b under the smaller of their names. Returns whether they were two.
   bool join(int a, int b) {
+    if (parent_[a] == parent_[b]) return false;
     a = find(a), b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
     return a != b;

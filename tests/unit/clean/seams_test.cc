@@ -67,7 +67,7 @@ TEST(Seams, ASoupWhosePointsAreOffIsWelded) {
     EXPECT_EQ(loops(s), 1);
     EXPECT_GT(r.tolerance, error);
     EXPECT_LT(r.tolerance, 4 * error);
-    EXPECT_EQ(find_gaps(s).closed, 0);
+    EXPECT_EQ(find_gaps(s, r).closed, 0);
     EXPECT_TRUE(clean(s).nothing);
   }
 }
@@ -98,14 +98,14 @@ TEST(Seams, LargeErrorsAreReportedWithWhatWeldsThem) {
   Surface s = soup(unit_squares(10), 1e-2);
   CleanReport r = clean(s);
   EXPECT_EQ(r.components, 200);
-  const Gaps gaps = find_gaps(s);
+  const Gaps gaps = find_gaps(s, r);
   EXPECT_EQ(gaps.closed, 560);
   EXPECT_EQ(gaps.edges, 600);
   EXPECT_EQ(gaps_of({"spikes 1", "gaps " + gaps.text()}).within, gaps.within);
   r = clean(s, {.weld = gaps.within});
   EXPECT_EQ(r.components, 1);
   EXPECT_EQ(s.points.size(), 121u);
-  EXPECT_EQ(find_gaps(s).closed, 0);
+  EXPECT_EQ(find_gaps(s, r).closed, 0);
 }
 
 TEST(Clusters, PointsFarBelowAllEdgesAreOne) {
