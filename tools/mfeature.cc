@@ -128,15 +128,15 @@ void report(Io& io, const FeatureReport& r) {
 
 /// Removes what is narrower than the tolerance, and adds it to `all`. Returns whether the surface has
 /// changed: then its edges are to be marked again. `before`, by face, and `given`, by half-edge, follow.
-bool defeature(Surface& surface, const DefeatureOptions& o, std::vector<int>& before, std::vector<int>& given,
+bool defeature(CutSurface s, const DefeatureOptions& o, std::vector<int>& before, std::vector<int>& given,
                DefeatureReport& all) {
-  const DefeatureReport r = remove_small_features(surface, o, &given);
+  const DefeatureReport r = remove_small_features(s, o, &given);
   if (all.removed.empty()) all.stopped = r.stopped;
   all.removed.insert(all.removed.end(), r.removed.begin(), r.removed.end());
   all.vanished.insert(all.vanished.end(), r.vanished.begin(), r.vanished.end());
   all.moved += r.moved;
   if (r.removed.empty()) return false;
-  for (const char* column : {"part", "origin"}) surface.face.erase(column);
+  for (const char* column : {"part", "origin"}) s.surface.face.erase(column);
   given = r.given;
   std::vector<int> labels;
   for (int t : r.face) labels.push_back(before.empty() ? 0 : before[t]);
@@ -231,11 +231,15 @@ void mark(Io& io, Options& o) {
     o.triangles = stream.input_triangles > 0 ? stream.input_triangles : (double)surface.tris.size();
   const double length = o.size > 0 ? o.size : size_for_count(total_area(surface), o.triangles);
   if (asked) o.size = length;
+  std::vector<int> opposite;
   Flips flips;  // charts, and vertices in the middle of edges, do not follow
   if (o.edge_file.empty() && parse_length(o.tolerance, 1) != 0.0 && !surface.face.has("origin") &&
-      !stream.find("chart_vertex") && !stream.find("mid_vertex"))
-    flips = flip_caps_and_folds(surface, segments_under(surface, read_model_edges(stream)),
+      !stream.find("chart_vertex") && !stream.find("mid_vertex")) {
+    const std::vector<int> lines = segments_under(surface, read_model_edges(stream));
+    opposite = opposite_halfedges(surface);
+    flips = flip_caps_and_folds({surface, opposite}, lines,
                                 fold_share * tolerance_of(o, length, diagonal(surface)));
+  }
   report_flips(io, flips);
   DefeatureReport unfolded;
   unfolded.moved = flips.moved;
@@ -249,7 +253,10 @@ void mark(Io& io, Options& o) {
   io.report["patches_before"] = merge.patch.size();
   io.report["patches"] = merge.count();
   std::vector<int> given = given_edges(io, stream, o.edge_file);
-  auto features = [&] { return mark_features(surface, o, before.empty() ? nullptr : &before, &given); };
+  if (opposite.empty()) opposite = opposite_halfedges(surface);
+  auto features = [&] {
+    return mark_features({surface, opposite}, o, before.empty() ? nullptr : &before, &given);
+  };
   FeatureReport marked = features();
   // a border that moved would part from those of the other sheets that meet there
   DefeatureOptions narrow{tolerance_of(o, length, diagonal(surface)), o.keep_boundary || has_sheets(stream)};
@@ -260,7 +267,7 @@ void mark(Io& io, Options& o) {
     narrow.tolerance = tolerance - removed.moved;
     if (caps.first <= caps.last && surface.face.has("patch")) narrow.plane = plane_triangles(surface, caps);
     narrow.kept = kept_triangles(stream, o.keep_boundary);
-    if (!defeature(surface, narrow, before, given, removed)) break;
+    if (!defeature({surface, opposite}, narrow, before, given, removed)) break;
     o.again = true;
     marked = features();
   }

@@ -7,7 +7,6 @@
 #include "lib/core/farthest.h"
 #include "lib/core/fold.h"
 #include "lib/core/normals.h"
-#include "lib/core/topology.h"
 #include "lib/defeature/defeature.h"
 
 namespace meshpipe {
@@ -110,22 +109,30 @@ bool may_unfold(const EditMesh& m, const Mesh& s, int h, double least, double to
   return true;
 }
 
+/// Flags the triangles that may be caps or lie flat on a neighbor, and, as last digits depend on the first
+/// corner, some that are not quite as low or flat.
+std::vector<char> find_doubtful(const Connectivity& c, double least) {
+  const Mesh& s = c.mesh;
+  const std::vector<Vec3> normal = face_normals(s);
+  std::vector<char> flags(s.tris.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t t = 0; t < flags.size(); ++t) {
+    const Tri& v = s.tris[t];
+    flags[t] = height(s.points[v[0]], s.points[v[1]], s.points[v[2]]) < 2 * least;
+    for (std::size_t h = 3 * t; h < 3 * t + 3; ++h)
+      flags[t] |= c.opposite[h] >= 0 && turn_back(normal[t], normal[c.opposite[h] / 3]);
+  }
+  return flags;
+}
+
 }  // namespace
 
-Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double tolerance) {
-  const std::vector<int> opposite = opposite_halfedges(surface);
+Flips flip_caps_and_folds(CutSurface s, const std::vector<int>& line, double tolerance) {
+  Surface& surface = s.surface;
   const double least = rounding * diagonal(surface);
-  const std::vector<Vec3> normal = face_normals(surface);
-  auto is_low = [&](int t) {
-    const Tri& v = surface.tris[t];
-    return height(surface.points[v[0]], surface.points[v[1]], surface.points[v[2]]) < least;
-  };
-  bool any = false;
-  for (int h = 0; h < (int)opposite.size() && !any; ++h)
-    any = (h % 3 == 0 && is_low(h / 3)) ||
-          (opposite[h] > h && lie_flat(normal[h / 3], normal[opposite[h] / 3]));
-  if (!any) return {};
-  EditMesh m(Connectivity{surface, opposite});
+  std::vector<char> doubtful = find_doubtful({surface, s.opposite}, least);
+  if (std::find(doubtful.begin(), doubtful.end(), 1) == doubtful.end()) return {};
+  EditMesh m(Connectivity{surface, s.opposite});
   for (const char* name : {"patch", "part"}) {
     if (!surface.face.has(name)) continue;
     const auto& label = surface.face.get<int>(name);
@@ -139,12 +146,15 @@ Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double
   for (int pass = 0, before = -1; pass < most_rows && flips.count != before; ++pass) {
     before = flips.count;
     for (int t = 0; t < (int)m.tris.size(); ++t) {
+      if (!doubtful[t]) continue;
       int h = longest_edge(surface, t);
       if (!is_cap(m, surface.points, h, least)) {
         for (h = 3 * t; h < 3 * t + 3 && !may_unfold(m, surface, h, least, tolerance, drift);) ++h;
         if (h == 3 * t + 3) continue;
       }
       const int u = m.opp[h] / 3;
+      doubtful[u] = 1;
+      for (int near : triangles_around(m, h)) doubtful[near] = 1;
       m.flip(h);
       surface.tris[t] = m.tris[t], surface.tris[u] = m.tris[u];
       for (Column& column : surface.face.columns)
@@ -153,6 +163,7 @@ Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double
     }
   }
   flips.moved = *std::max_element(drift.begin(), drift.end());
+  s.opposite = std::move(m.opp);
   return flips;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "lib/core/boxes.h"
 #include "lib/core/bvh.h"
 #include "lib/core/error.h"
 #include "lib/core/intersect.h"
@@ -69,17 +70,20 @@ Surface result_of(const MergedSurface& z, const Surface& before, std::vector<int
 /// Triangles of the result that meet others where the input's do not.
 std::vector<int> crossing_triangles(const Surface& result, const std::vector<char>& changed,
                                     const Surface& before) {
-  const Bvh tree(result);
+  std::vector<int> rows, crossing;
+  for (int t = 0; t < (int)changed.size(); ++t)
+    if (changed[t]) rows.push_back(t);
+  if (rows.empty()) return crossing;
+  const Mesh part = part_of(result, rows);
+  const Bvh tree(part);  // of the few that have changed
   std::vector<std::pair<int, int>> pairs;
-  for (int t = 0; t < (int)changed.size(); ++t) {
-    if (!changed[t]) continue;
-    tree.overlapping(box_of(result, t), [&](int u) {
+  for (int u = 0; u < (int)changed.size(); ++u)
+    tree.overlapping(box_of(result, u), [&](int i) {
+      const int t = rows[i];
       if (u == t || (changed[u] && u < t)) return;
       if (triangles_intersect(result, std::min(t, u), std::max(t, u)))
         pairs.push_back({std::min(t, u), std::max(t, u)});
     });
-  }
-  std::vector<int> crossing;
   if (pairs.empty()) return crossing;
   std::sort(pairs.begin(), pairs.end());
   for (const auto& [t, u] : new_intersections(result, pairs, contacts(before, self_intersections(before))))
@@ -167,11 +171,12 @@ std::vector<int> labels(const Surface& s) {
 
 }  // namespace
 
-DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
+DefeatureReport remove_small_features(CutSurface s, const DefeatureOptions& options,
                                       const std::vector<int>* given) {
+  Surface& surface = s.surface;
+  std::vector<int>& opposite = s.opposite;
   DefeatureReport report;
   if (!(options.tolerance > 0)) return report;
-  const std::vector<int> opposite = opposite_halfedges(surface);
   const std::vector<std::uint8_t> model = surface.face.get<std::uint8_t>("model");
   const Connectivity c{surface, opposite, model};
   if (const int v = find_pinched_vertex(c); v >= 0)
@@ -188,9 +193,10 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
     report.stopped = attempt == most_attempts;  // then only fragments go
     Zipper z(surface, edited, options, given, banned);
     z.drift = drift;
-    std::vector<double> sharpest;
+    std::vector<double> sharpest(banned.size(), std::numbers::pi);
+    const std::vector<char> on_line = z.vertices_on_lines();
     for (int v = 0; v < (int)banned.size(); ++v)
-      sharpest.push_back(z.mesh.out[v] < 0 ? std::numbers::pi : z.sharpest(v));
+      if (on_line[v]) sharpest[v] = z.sharpest(v);
     for (int pass = 0; pass < most_passes && !report.stopped; ++pass)
       if (z.contract_clusters() + z.close_strips() + z.contract_regions() == 0) break;
     if (z.merges.empty() && fragments.empty()) return report;
@@ -213,6 +219,7 @@ DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& 
       report.face = std::move(face);
       report.given = std::move(lines);
       surface = std::move(result);
+      opposite = opposite_halfedges(surface);
       return report;
     }
     std::vector<int> at;

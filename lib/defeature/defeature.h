@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/core/mesh.h"
+#include "lib/core/connectivity.h"
 
 namespace meshpipe {
 
@@ -39,8 +39,8 @@ struct DefeatureOptions {
 /// components with a border, near the rest. No point moves farther than `tolerance`; other topology stays,
 /// and so do strips from which the surface folds back (the rim of a thin plate, the bottom of a slot). Needs
 /// face column `model`; all columns follow. `given`: per half-edge the number of a line stronger than
-/// creases, or -1; or null. Throws: NotAdmissible at a vertex of several fans, and as opposite_halfedges.
-DefeatureReport remove_small_features(Surface& surface, const DefeatureOptions& options,
+/// creases, or -1; or null. Throws: NotAdmissible at a vertex of several fans.
+DefeatureReport remove_small_features(CutSurface surface, const DefeatureOptions& options,
                                       const std::vector<int>* given = nullptr);
 
 struct Flips {
@@ -53,8 +53,8 @@ struct Flips {
 /// higher and face as the neighbor does, which it must, too, if it is small but not flat. Also flips edges at
 /// which the surface lies flat on itself, if that unfolds it and moves it by no more than `tolerance`.
 /// Both triangles get the face columns of the larger one. Edges between patches or parts, and those with a
-/// number in `line` (per half-edge, -1: none) stay. Model bits are not kept. Throws: as opposite_halfedges.
-Flips flip_caps_and_folds(Surface& surface, const std::vector<int>& line, double tolerance);
+/// number in `line` (per half-edge, -1: none) stay. Model bits are not kept.
+Flips flip_caps_and_folds(CutSurface surface, const std::vector<int>& line, double tolerance);
 
 /// Returns the remark "removed FEATURES moved DISTANCE" for mcheck: how far the surface may be off.
 std::string remark_of(const DefeatureReport& report);

@@ -67,6 +67,7 @@ double most_distance(const Surface& s, const std::vector<int>& triangles, double
 
 std::vector<RemovedFeature> remove_fragments(const Surface& s, const DefeatureOptions& options, EditMesh& m,
                                              std::vector<double>& drift) {
+  if (small_regions(m, largest_fragment, [&](int h) { return m.opp[h] < 0; }).empty()) return {};
   std::vector<int> component;
   const int n = components(m.opp, component);
   std::vector<std::vector<int>> triangles(n);  // the first of each

@@ -43,33 +43,33 @@ FeatureLines find_lines(const EditMesh& mesh, const Surface& surface, const std:
                         const std::vector<char>& wrinkles) {
   const int n = (int)mesh.opp.size(), n_vertices = (int)surface.points.size();
   std::vector<int> count(n_vertices, 0);
-  std::vector<std::array<int, 2>> at(n_vertices);  // the first two edges, as half-edges
-  auto is_first = [&](int h) { return mesh.hard[h] && mesh.opp[h] < h; };
-  auto end = [&](int v, int h) {
-    if (count[v] < 2) at[v][count[v]] = h;
+  std::vector<std::array<int, 2>> at(n_vertices);  // the first two edges
+  std::vector<int> edges;                          // their first half-edges
+  auto end = [&](int v) {
+    if (count[v] < 2) at[v][count[v]] = (int)edges.size();
     ++count[v];
   };
   for (int h = 0; h < n; ++h)
-    if (is_first(h)) end(mesh.from(h), h), end(mesh.to(h), h);
+    if (mesh.hard[h] && mesh.opp[h] < h) end(mesh.from(h)), end(mesh.to(h)), edges.push_back(h);
   auto away = [&](int h, int v) {
     const Vec3 d = surface.points[mesh.to(h)] - surface.points[mesh.from(h)];
     return mesh.from(h) == v ? d : -1.0 * d;
   };
-  UnionFind sets(n);
+  UnionFind sets(edges.size());
   std::vector<char> node(n_vertices, 0);
   for (int v = 0; v < n_vertices; ++v) {
-    node[v] = count[v] != 2 || angle(-1.0 * away(at[v][0], v), away(at[v][1], v)) > corner_turn;
-    if (!node[v]) sets.join(at[v][0], at[v][1]);
+    const auto& [first, second] = at[v];
+    node[v] = count[v] != 2 || angle(-1.0 * away(edges[first], v), away(edges[second], v)) > corner_turn;
+    if (!node[v]) sets.join(first, second);
   }
   FeatureLines lines;
   lines.of.assign(n, -1), lines.seam = lines.of;
   lines.given = given ? *given : lines.of;
-  std::vector<int> number(n, -1);
+  std::vector<int> number(edges.size(), -1);
   const std::vector<int>* patch = surface.face.has("patch") ? &surface.face.get<int>("patch") : nullptr;
-  for (int h = 0; h < n; ++h) {
-    if (!is_first(h)) continue;
-    const int o = mesh.opp[h];
-    int& l = number[sets.find(h)];
+  for (int e = 0; e < (int)edges.size(); ++e) {
+    const int h = edges[e], o = mesh.opp[h];
+    int& l = number[sets.find(e)];
     if (l < 0) {
       l = (int)lines.length.size();
       lines.length.push_back(0), lines.open.push_back(0), lines.rank.push_back(0);

@@ -14,7 +14,7 @@ constexpr int largest_region = 256;  ///< of a region: fine meshes of no feature
 /// which would become a needle.
 constexpr double least_mean = 0.25;
 
-/// The triangles connected with t without crossing a hard edge; none if they are too many.
+/// The triangles connected with t without crossing a hard edge.
 std::vector<int> region_of(const EditMesh& mesh, int t, std::vector<char>& seen) {
   std::vector<int> region{t};
   seen[t] = 1;
@@ -25,7 +25,6 @@ std::vector<int> region_of(const EditMesh& mesh, int t, std::vector<char>& seen)
       seen[o / 3] = 1;
       region.push_back(o / 3);
     }
-  if ((int)region.size() > largest_region) region.clear();
   return region;
 }
 
@@ -70,8 +69,9 @@ int Zipper::contract_clusters() {
   std::fill(region_.begin(), region_.end(), -1);
   std::vector<std::vector<int>> balls;
   std::vector<std::array<int, 2>> order;  // most corners first
+  const std::vector<char> on_line = vertices_on_lines();
   for (int v = 0; v < (int)points.size(); ++v) {
-    if (mesh.out[v] < 0 || !on_line(v) || !is_corner(v)) continue;
+    if (!on_line[v] || !is_corner(v)) continue;
     std::vector<int> found = ball(v);
     const int corners = (int)std::count_if(found.begin(), found.end(), [&](int w) { return is_corner(w); });
     if (corners < least_corners || makes_needle(found)) continue;
@@ -92,10 +92,9 @@ int Zipper::contract_regions() {
   std::fill(region_.begin(), region_.end(), -1);
   std::vector<char> seen(mesh.tris.size(), 0);
   std::vector<Candidate> heap;
-  for (int t = 0, n = 0; t < (int)mesh.tris.size(); ++t) {
-    if (mesh.dead(t) || seen[t]) continue;
+  int n = 0;
+  for (int t : small_regions(mesh, largest_region, [&](int h) { return mesh.hard[h] != 0; })) {
     const std::vector<int> region = region_of(mesh, t, seen);
-    if (region.empty()) continue;
     std::vector<int> vertices;
     Vec3 low = points[mesh.tris[t][0]], high = low, mean;
     double around = 0;

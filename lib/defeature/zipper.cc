@@ -59,10 +59,12 @@ Zipper::Zipper(const Surface& surface, EditMesh edited, const DefeatureOptions& 
 /// edges. Flags their half-edges. Components without model edges, such as scans, stay as they are.
 std::vector<char> Zipper::add_wrinkles() {
   std::vector<char> added_edges(mesh.opp.size(), 0);
-  std::vector<int> component;
-  std::vector<char> designed(components(mesh.opp, component), 0);
+  std::vector<int> component, model_edges;
   for (int h = 0; h < (int)mesh.opp.size(); ++h)
-    if (!mesh.dead(h / 3) && mesh.hard[h] && mesh.opp[h] >= 0) designed[component[h / 3]] = 1;
+    if (mesh.hard[h] && mesh.opp[h] >= 0 && !mesh.dead(h / 3)) model_edges.push_back(h);
+  if (model_edges.empty()) return added_edges;
+  std::vector<char> designed(components(mesh.opp, component), 0);
+  for (int h : model_edges) designed[component[h / 3]] = 1;
   for (int h = 0; h < (int)mesh.opp.size(); ++h) {
     const int o = mesh.opp[h];
     if (o < h || mesh.dead(h / 3) || mesh.hard[h] || !designed[component[h / 3]]) continue;
@@ -82,6 +84,13 @@ bool MergedSurface::on_line(int v) const {
   bool found = mesh.on_border(v);
   if (!found) mesh.star(v, [&](int h) { found |= mesh.hard[h] != 0; });
   return found;
+}
+
+std::vector<char> MergedSurface::vertices_on_lines() const {
+  std::vector<char> flags(points.size(), 0);
+  for (int h = 0; h < (int)mesh.opp.size(); ++h)
+    if (mesh.hard[h] && !mesh.dead(h / 3)) flags[mesh.from(h)] = flags[mesh.to(h)] = 1;
+  return flags;
 }
 
 /// On the left of h: the edge that runs to its start, the first counterclockwise, and that from its end.
@@ -364,8 +373,12 @@ int Zipper::close_strips() {
   if (!merges.empty()) add_folds();
   std::fill(region_.begin(), region_.end(), -1);
   std::vector<Candidate> heap;
-  for (int t = 0; t < (int)mesh.tris.size(); ++t)
-    if (!mesh.dead(t)) consider(heap, t);
+  const std::vector<char> on_line = vertices_on_lines();
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    const Tri& v = mesh.tris[t];
+    // both ends of each candidate are on lines
+    if (!mesh.dead(t) && on_line[v[0]] + on_line[v[1]] + on_line[v[2]] > 1) consider(heap, t);
+  }
   return run(std::move(heap));
 }
 

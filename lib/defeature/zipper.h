@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The editable surface on which narrow strips are closed.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <vector>
@@ -54,10 +55,41 @@ struct MergedSurface {
   bool is_model(int h) const { return mesh.opp[h] >= 0 && mesh.hard[h] && lines.rank[lines.of[h]] > 0; }
   bool is_sharp(int h) const;
   bool on_line(int v) const;
+  /// Flags the vertices with a hard edge.
+  std::vector<char> vertices_on_lines() const;
   bool is_corner(int v) const;
   /// Returns the smallest angle on the surface between successive sharp or hard edges at v; pi without any.
   double sharpest(int v) const;
 };
+
+/// Returns the first triangle of each region of at most `most` triangles, ascending, without regions that
+/// have no edge for which bounds(h) holds. The search for the triangles of larger regions ends early.
+template <class Bounds>
+std::vector<int> small_regions(const EditMesh& mesh, int most, const Bounds& bounds) {
+  enum : char { unseen, here, before };
+  std::vector<char> seen(mesh.tris.size(), unseen);
+  std::vector<int> first, region;
+  for (int seed = 0; seed < (int)mesh.opp.size(); ++seed) {
+    if (!bounds(seed) || mesh.dead(seed / 3) || seen[seed / 3] != unseen) continue;
+    region.assign(1, seed / 3);
+    seen[seed / 3] = here;
+    bool small = true;  // not if it meets what an earlier search has left
+    for (std::size_t i = 0; small && i < region.size(); ++i) {
+      for (int h = 3 * region[i]; h < 3 * region[i] + 3; ++h) {
+        const int u = mesh.opp[h] / 3;
+        if (bounds(h) || seen[u] == here) continue;
+        small = small && seen[u] == unseen;
+        seen[u] = here;
+        region.push_back(u);
+      }
+      small = small && (int)region.size() <= most;
+    }
+    for (int t : region) seen[t] = before;
+    if (small) first.push_back(*std::min_element(region.begin(), region.end()));
+  }
+  std::sort(first.begin(), first.end());
+  return first;
+}
 
 /// Removes small components with a border from the mesh of the surface, if the tolerance holds between them
 /// and the rest, which starts there with that `drift` (per vertex).

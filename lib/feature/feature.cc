@@ -52,7 +52,7 @@ constexpr double own_chain = 0.7;      ///< of the root of the area: so do bits;
 /// The network of crease edges while it is chosen. Flags and angles are kept on both half-edges of an edge.
 struct Network {
   const Surface& s;
-  std::vector<int> opposite{};
+  const std::vector<int>& opposite;
   std::vector<double> angle{};       ///< between the normals on either side
   std::vector<char> on{}, strong{};  ///< creases; those chosen by their angle alone
   std::vector<char> patch{};         ///< between two patches, or given
@@ -109,9 +109,10 @@ double length(const Network& net, const Chain& chain) {
   return sum;
 }
 
-Network find_edges(const Surface& s, const FeatureOptions& options, const std::vector<int>* before,
+Network find_edges(const CutSurface& cut, const FeatureOptions& options, const std::vector<int>* before,
                    const std::vector<int>* given, int& slivers) {
-  Network net{.s = s, .opposite = opposite_halfedges(s)};
+  const Surface& s = cut.surface;
+  Network net{.s = s, .opposite = cut.opposite};
   const int n = (int)net.opposite.size();
   net.size = options.size > 0 ? options.size : size_for_count(total_area(s), (double)s.tris.size());
   const std::vector<Vec3> normal = side_normals({s, net.opposite}, sliver * net.size);
@@ -270,13 +271,18 @@ struct Components {
   std::vector<double> area{};
   std::vector<double> edge{};  ///< mean length, over the target
   std::vector<int> triangles{};
-  std::vector<PlaneShares> planes{};
+  std::vector<PlaneShares> planes{};  ///< 0 where they show nothing
 
   /// Whether it is a polyhedron, however rough, and the target short enough for its edges, or these few:
   /// noise has every angle, and segmented images have steps.
   bool angular(int c) const {
     return between[c] < most_between * sharp[c] && planes[c].steps < step_share &&
            (edge[c] > least_edge || triangles[c] <= few_triangles);
+  }
+  /// Whether it has so much of its area in plane faces of several triangles, and of many.
+  bool plane(int c, double several, double many, double size) const {
+    return several >= plane_share ||
+           (many >= many_share && between[c] < noise * sharp[c] && area[c] > dense * size * sharp[c]);
   }
 };
 
@@ -285,12 +291,15 @@ Components look_at(const Network& net, double strong, double weak) {
   const int n = look.n = components(net.opposite, look.of), m = (int)net.opposite.size();
   for (auto* sum : {&look.sharp, &look.between, &look.on_patches, &look.area, &look.edge}) sum->assign(n, 0);
   look.triangles.assign(n, 0);
+  std::vector<double> in_planes(n, 0);  // area of triangles in plane faces of several
   for (int t = 0; t < m / 3; ++t) {
+    const double area = triangle_area(net.s, t);
+    bool plane = false;
+    for (int h = 3 * t; h < 3 * t + 3; ++h) plane |= net.opposite[h] >= 0 && net.angle[h] < flat_angle;
     ++look.triangles[look.of[t]];
-    look.area[look.of[t]] += triangle_area(net.s, t);
-    for (int h = 3 * t; h < 3 * t + 3; ++h) look.edge[look.of[t]] += net.length(h) / (3 * net.size);
+    look.area[look.of[t]] += area;
+    if (plane) in_planes[look.of[t]] += area;
   }
-  for (int c = 0; c < n; ++c) look.edge[c] /= look.triangles[c];
   for (int h = 0; h < m; ++h) {
     if (net.opposite[h] < h || net.cap[h]) continue;
     const int c = look.of[h / 3];
@@ -299,7 +308,16 @@ Components look_at(const Network& net, double strong, double weak) {
     look.sharp[c] += net.length(h);
     if (net.patch[h]) look.on_patches[c] += net.length(h);
   }
+  look.planes.resize(n);
+  bool matter = false;  // the planes
+  for (int c = 0; c < n; ++c) {
+    const double most = 1.01 * in_planes[c] / look.area[c];  // which is summed in another order
+    matter |= look.between[c] < most_between * look.sharp[c] || look.plane(c, most, most, net.size);
+  }
+  if (!matter) return look;
   look.planes = plane_shares({net.s, net.opposite}, {net.angle, net.strong, look.of, n});
+  for (int h = 0; h < m; ++h) look.edge[look.of[h / 3]] += net.length(h) / (3 * net.size);
+  for (int c = 0; c < n; ++c) look.edge[c] /= look.triangles[c];
   return look;
 }
 
@@ -323,9 +341,7 @@ void keep_designed(Network& net, const Components& look, const std::vector<std::
   std::vector<char> designed(n, 0);
   for (int c = 0; c < n; ++c)
     designed[c] = look.angular(c) || (planes[c].steps < step_share &&
-                                      (planes[c].several >= plane_share ||
-                                       (planes[c].many >= many_share && between[c] < noise * sharp[c] &&
-                                        area[c] > dense * net.size * sharp[c])));
+                                      look.plane(c, planes[c].several, planes[c].many, net.size));
   for (int h = 0; !known.empty() && h < m; ++h)
     if (known[h / 3] >> h % 3 & 1 && !net.patch[h] && !net.given[h]) designed[component[h / 3]] = 1;
   for (int h = 0; h < m; ++h) {
@@ -442,6 +458,7 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   };
   // those without a normal of their own first, as they are next to thin ones that have one
   auto take_nearest = [&](const std::vector<char>& takes) {
+    if (std::find(takes.begin(), takes.end(), 1) == takes.end()) return;
     std::vector<int> out(n, -1), order, seeds;  // the half-edge through which the nearest side is reached
     std::vector<double> way(n, infinity), width(n, 0);
     for (int h = 0; h < 3 * n; ++h) {
@@ -472,9 +489,11 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   take_nearest(has_none);
   std::fill(has_none.begin(), has_none.end(), 0);
   // a side of which a part is not thin faces as that does, however far it goes on in its plane
-  std::vector<int> wide, root = identity(n);
-  for (int t = 0; t < n; ++t)
-    if (!is_thin[t]) wide.push_back(t);
+  std::vector<int> wide, root;  // the former: those next to thin ones
+  for (int h = 0; h < 3 * n; ++h)
+    if (const int o = surface.opposite[h]; is_thin[h / 3] && o >= 0 && !is_thin[o / 3]) wide.push_back(o / 3);
+  sort_unique(wide);
+  if (!wide.empty()) root = identity(n);
   for (std::size_t i = 0; i < wide.size(); ++i)
     for (int h = 3 * wide[i]; h < 3 * wide[i] + 3; ++h) {
       const int t = surface.opposite[h] / 3, r = root[wide[i]];
@@ -486,10 +505,11 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   return normal;
 }
 
-FeatureReport mark_features(Surface& surface, const FeatureOptions& options, const std::vector<int>* before,
+FeatureReport mark_features(CutSurface cut, const FeatureOptions& options, const std::vector<int>* before,
                             const std::vector<int>* given) {
+  Surface& surface = cut.surface;
   FeatureReport report;
-  Network net = find_edges(surface, options, before, given, report.slivers);
+  Network net = find_edges(cut, options, before, given, report.slivers);
   if (options.mode != FeatureOptions::none) {
     const double strong = options.strong * degree, weak = options.weak * degree;
     choose(net, strong, weak);

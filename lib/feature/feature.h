@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/core/mesh.h"
+#include "lib/core/topology.h"
 #include "lib/feature/curvature.h"
 #include "lib/feature/merge.h"
 #include "lib/feature/model_edges.h"
@@ -33,10 +33,14 @@ struct FeatureReport {
 /// look designed (keep_designed), without short chains and, unless a polyhedron has them, rough open ones.
 /// `before`: null, or per triangle the patch before some were merged; no crease follows a border that
 /// vanished unless it bends sharply. `given`: null, or per half-edge the number of a line that is a model
-/// edge in any mode, or -1. Throws: as opposite_halfedges.
-FeatureReport mark_features(Surface& surface, const FeatureOptions& options,
+/// edge in any mode, or -1.
+FeatureReport mark_features(CutSurface surface, const FeatureOptions& options,
                             const std::vector<int>* before = nullptr,
                             const std::vector<int>* given = nullptr);
+inline FeatureReport mark_features(Surface& surface, const FeatureOptions& options) {
+  std::vector<int> opposite = opposite_halfedges(surface);
+  return mark_features({surface, opposite}, options);
+}
 
 /// Returns a unit normal per triangle: its own, unless its height is below `thin` (a length) and a twentieth
 /// of its length, no connected other one is in its plane, and it is in a band of such triangles whose centers

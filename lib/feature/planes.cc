@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/union_find.h"
 
 namespace meshpipe {
 namespace {
 
-constexpr double flat_angle = std::numbers::pi / 180;  ///< across diagonals, with rounded coordinates
 constexpr int many = 8;             ///< triangles of a plane face that chance does not make
 constexpr double directions = 1.6;  ///< normals are rounded after this factor: to about a hundred directions
 

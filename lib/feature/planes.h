@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plane faces of components; for lib/feature/ only.
 #pragma once
+#include <numbers>
 #include <vector>
 
 #include "lib/core/connectivity.h"
 
 namespace meshpipe {
+
+/// The angle across diagonals of plane faces, at most, with rounded coordinates.
+constexpr double flat_angle = std::numbers::pi / 180;
 
 /// Where the components of a surface bend.
 struct Bends {

@@ -26,15 +26,22 @@ Surface with_cap(double height) {
 
 const std::vector<int> no_lines(12, -1);
 
+Flips flip(Surface& s, const std::vector<int>& line, double tolerance) {
+  std::vector<int> opposite = opposite_halfedges(s);
+  const Flips flips = flip_caps_and_folds({s, opposite}, line, tolerance);
+  EXPECT_EQ(opposite, opposite_halfedges(s));
+  return flips;
+}
+
 }  // namespace
 
 TEST(Caps, AreFlippedWithTheTriangleAcrossTheirLongestEdge) {
   Surface s = with_cap(1e-7);
-  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 1);
+  EXPECT_EQ(flip(s, no_lines, 0).count, 1);
   for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0.3) << t;
   EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
   EXPECT_EQ(s.face.get<double>("load"), (std::vector<double>{4, 2, 3, 4}));
-  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
+  EXPECT_EQ(flip(s, no_lines, 0).count, 0);
 }
 
 TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
@@ -43,18 +50,18 @@ TEST(Caps, AreFlippedOneAfterTheOtherWhereTheyLeanOnEachOther) {
   // the upper one comes first, which has nothing below it to be flipped with until the lower one is gone
   s.tris = {{2, 1, 5}, {0, 1, 2}, {0, 2, 3}, {5, 1, 3}, {1, 0, 4}, {2, 5, 3}};
   s.face = {"face", s.tris.size(), {}};
-  EXPECT_EQ(flip_caps_and_folds(s, std::vector<int>(18, -1), 0).count, 2);
+  EXPECT_EQ(flip(s, std::vector<int>(18, -1), 0).count, 2);
   for (int t = 0; t < 6; ++t) EXPECT_GT(area_vector(s, t).z, 0.2) << t;
 }
 
 TEST(Caps, StayWhereTheyAreHighOrTheEdgeIsALineOrBetweenPatches) {
   Surface high = with_cap(1e-4), line = with_cap(1e-7), patches = with_cap(1e-7);
-  EXPECT_EQ(flip_caps_and_folds(high, no_lines, 0).count, 0);
+  EXPECT_EQ(flip(high, no_lines, 0).count, 0);
   std::vector<int> on_edge = no_lines;
   on_edge[0] = 3;
-  EXPECT_EQ(flip_caps_and_folds(line, on_edge, 0).count, 0);
+  EXPECT_EQ(flip(line, on_edge, 0).count, 0);
   patches.face.get<int>("patch")[3] = 6;
-  EXPECT_EQ(flip_caps_and_folds(patches, no_lines, 0).count, 0);
+  EXPECT_EQ(flip(patches, no_lines, 0).count, 0);
 }
 
 TEST(Caps, StayWhereTheyAreOnlySmallAndTheEdgeIsACrease) {
@@ -67,7 +74,7 @@ TEST(Caps, StayWhereTheyAreOnlySmallAndTheEdgeIsACrease) {
     s.points.push_back({3, 2, 0});
     s.tris.push_back({5, 7, 6});
     s.face = {"face", s.tris.size(), {}};
-    return flip_caps_and_folds(s, std::vector<int>(15, -1), 0).count;
+    return flip(s, std::vector<int>(15, -1), 0).count;
   };
   EXPECT_EQ(flips(0.1, -1), 0);
   EXPECT_EQ(flips(0.01, -1), 1);
@@ -77,7 +84,7 @@ TEST(Caps, StayWhereTheyAreOnlySmallAndTheEdgeIsACrease) {
 TEST(Caps, StayWhereTheirCornerIsNextToAnEndOfTheEdge) {
   Surface s = with_cap(1e-8);
   s.points[2].x = 1e-4;  // the other diagonal would make a needle of 0, 4 and 2
-  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
+  EXPECT_EQ(flip(s, no_lines, 0).count, 0);
 }
 
 TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
@@ -86,7 +93,7 @@ TEST(Caps, StayWhereTheOtherDiagonalIsAnEdgeAlready) {
   s.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-7, 0}, {0.5, -1, 0}};
   s.tris = {{0, 1, 2}, {1, 0, 3}, {0, 2, 3}, {2, 1, 3}};
   s.face.rows = s.tris.size();
-  EXPECT_EQ(flip_caps_and_folds(s, no_lines, 0).count, 0);
+  EXPECT_EQ(flip(s, no_lines, 0).count, 0);
 }
 
 //   3---------2     vertex 4 should be left of the diagonal 0 2 and is a little right of it, so that the
@@ -98,7 +105,7 @@ TEST(Caps, WhatLiesFlatOnItselfIsUnfolded) {
   s.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.52, 0.48, 0}};
   s.tris = {{0, 1, 2}, {0, 2, 4}, {4, 2, 3}, {0, 4, 3}};
   s.face.rows = s.tris.size();
-  const Flips flips = flip_caps_and_folds(s, no_lines, 1e-9);
+  const Flips flips = flip(s, no_lines, 1e-9);
   EXPECT_EQ(flips.count, 1);
   EXPECT_NEAR(flips.moved, 0, 1e-12);  // others lie where it was
   for (int t = 0; t < 4; ++t) EXPECT_GT(area_vector(s, t).z, 0) << t;
@@ -115,8 +122,8 @@ TEST(Caps, AFinIsNotCutOffIfItIsLarge) {
   s.tris = {{0, 1, 2}, {1, 0, 3}};
   s.face.rows = s.tris.size();
   const std::vector<int> none(6, -1);
-  EXPECT_EQ(flip_caps_and_folds(s, none, 0.4).count, 0);
-  const Flips flips = flip_caps_and_folds(s, none, 0.5);
+  EXPECT_EQ(flip(s, none, 0.4).count, 0);
+  const Flips flips = flip(s, none, 0.5);
   EXPECT_EQ(flips.count, 1);
   EXPECT_GT(flips.moved, 0.4);  // the middle of 0 1 is as far from the spikes
   EXPECT_LT(flips.moved, 0.5);

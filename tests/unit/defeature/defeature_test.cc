@@ -16,6 +16,11 @@ using namespace meshpipe;
 
 namespace {
 
+DefeatureReport remove(Surface& s, const DefeatureOptions& options, const std::vector<int>* given = nullptr) {
+  std::vector<int> opposite = opposite_halfedges(s);
+  return remove_small_features({s, opposite}, options, given);
+}
+
 constexpr double width = 0.01;  // of every small feature
 constexpr double wide_enough = 1.05 * width, too_narrow = 0.95 * width;
 
@@ -56,7 +61,7 @@ double farthest(const Mesh& from, const Mesh& to) {
 /// Removes features and checks what must be true of every result.
 DefeatureReport removed(Surface& s, double tolerance) {
   const Surface before = s;
-  const DefeatureReport r = remove_small_features(s, {tolerance});
+  const DefeatureReport r = remove(s, {tolerance});
   EXPECT_LE(r.moved, tolerance);
   EXPECT_LE(farthest(s, before), r.moved + 1e-9);
   EXPECT_LE(farthest(before, s), r.moved + 1e-9);
@@ -165,7 +170,7 @@ TEST(Defeature, ASharpTrailingEdgeStaysOneLine) {
   };
   mark_features(s, {FeatureOptions::automatic, 40, 20, 0.02});
   EXPECT_EQ(lines_across(), 3);  // two of the front
-  remove_small_features(s, {0.0012});
+  remove(s, {0.0012});
   mark_features(s, {FeatureOptions::automatic, 40, 20, 0.02});
   EXPECT_EQ(lines_across(), 3);
 }
@@ -197,7 +202,7 @@ TEST(Defeature, VerticesOfTwoFansAreRefused) {
   s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
   s.face.set("patch", std::vector<int>(s.tris.size(), 0));
   s.face.set("model", std::vector<std::uint8_t>(s.tris.size(), 0));
-  EXPECT_THROW(remove_small_features(s, {wide_enough}), NotAdmissible);
+  EXPECT_THROW(remove(s, {wide_enough}), NotAdmissible);
 }
 
 TEST(Defeature, ToleranceZeroRemovesNothing) {
@@ -208,7 +213,7 @@ TEST(Defeature, ToleranceZeroRemovesNothing) {
 TEST(Defeature, BordersThatAreKeptDoNotMove) {
   Surface s = extruded({{0, 0}, {1, 0}, {1, width}, {2, width}}, 4);
   const Surface before = s;
-  remove_small_features(s, {wide_enough, true});
+  remove(s, {wide_enough, true});
   const Bvh tree(s);
   for (const Vec3& p : before.points) EXPECT_TRUE((p.y > 0 && p.y < 4) || tree.nearest(p).distance == 0);
 }
@@ -220,7 +225,7 @@ TEST(Defeature, PlanesThatAreKeptStayPlane) {
         extruded({{0, 0}, {1, 0}, {1 + (step ? 0 : width), step ? width : 0}, {2, step ? width : 0}}, 4);
     DefeatureOptions o{wide_enough};
     o.plane.assign(s.tris.size(), 1);
-    EXPECT_EQ(remove_small_features(s, o).removed.empty(), step);
+    EXPECT_EQ(remove(s, o).removed.empty(), step);
   }
 }
 
@@ -394,7 +399,7 @@ TEST(Defeature, GivenLinesAreKeptOrFollow) {
     if (const Vec3 a = s.points[origin(s.tris, h)], b = s.points[target(s.tris, h)]; a.x == 1 && b.x == 1)
       if (a.z == 0 && b.z == 0) given[h] = 7;
   s.face.erase("patch");
-  const DefeatureReport r = remove_small_features(s, {wide_enough}, &given);
+  const DefeatureReport r = remove(s, {wide_enough}, &given);
   double length = 0;
   for (int h = 0; h < (int)r.given.size(); ++h)
     if (r.given[h] == 7) {
@@ -442,7 +447,7 @@ Surface with_flap(double height, double end) {
 TEST(Defeature, AFragmentWithinTheToleranceOfTheRestIsRemoved) {
   Surface s = with_flap(too_narrow, 1.5);
   const Surface before = s;
-  const DefeatureReport r = remove_small_features(s, {width});
+  const DefeatureReport r = remove(s, {width});
   ASSERT_EQ(r.removed.size(), 1u);
   EXPECT_NEAR(r.removed[0].width, too_narrow, 0.03 * width);
   EXPECT_NEAR(r.removed[0].length, std::numbers::sqrt2, 1e-9);
@@ -456,7 +461,7 @@ TEST(Defeature, AFragmentWithinTheToleranceOfTheRestIsRemoved) {
 TEST(Defeature, AFragmentFartherThanTheToleranceStays) {
   for (Surface s : {with_flap(wide_enough, 1.5), with_flap(too_narrow, 2.1)}) {
     const std::size_t n = s.tris.size();
-    EXPECT_TRUE(remove_small_features(s, {width}).removed.empty());
+    EXPECT_TRUE(remove(s, {width}).removed.empty());
     EXPECT_EQ(s.tris.size(), n);
   }
 }
@@ -478,7 +483,7 @@ TEST(Defeature, AFragmentMayBeLargerThanTheTrianglesBelow) {
   s.tris.push_back({first, first + 1, first + 2});
   s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
   mark_features(s, {FeatureOptions::angles, 40, 20, 0});
-  const DefeatureReport r = remove_small_features(s, {width});
+  const DefeatureReport r = remove(s, {width});
   ASSERT_EQ(r.removed.size(), 1u);
   EXPECT_NEAR(r.removed[0].width, 0.5 * width, 1e-12);
 }
@@ -495,7 +500,7 @@ TEST(Defeature, ManyFragmentsFarFromTheRestStay) {
   s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
   s.face.set("patch", std::vector<int>(s.tris.size(), 0));
   mark_features(s, {FeatureOptions::angles, 40, 20, 0});
-  EXPECT_TRUE(remove_small_features(s, {width}).removed.empty());
+  EXPECT_TRUE(remove(s, {width}).removed.empty());
 }
 
 TEST(Defeature, AFragmentThatIsKeptStays) {
@@ -503,7 +508,7 @@ TEST(Defeature, AFragmentThatIsKeptStays) {
   DefeatureOptions options{width};
   options.kept.assign(s.tris.size(), 0);
   options.kept.back() = 1;
-  EXPECT_TRUE(remove_small_features(s, options).removed.empty());
+  EXPECT_TRUE(remove(s, options).removed.empty());
 }
 
 // a wall with its foot on the border A T B E, and a roof from the crease W G E; G is just above B
@@ -530,7 +535,7 @@ TEST(Defeature, AnEarThatAMergeLeavesWithoutHeightIsCutOff) {
 TEST(Defeature, NoEarIsCutOffABorderThatIsKept) {
   Surface s = with_ear();
   const std::size_t n = s.points.size();
-  const DefeatureReport r = remove_small_features(s, {width, true});
+  const DefeatureReport r = remove(s, {width, true});
   EXPECT_TRUE(r.removed.empty());
   EXPECT_EQ(s.points.size(), n);
 }

@@ -75,7 +75,8 @@ TEST(Merge, BordersThatVanish) {
     const std::vector<int> before = s.face.get<int>("patch");
     EXPECT_EQ(mark_features(s, {}).patch_edges, 30);
     for (int& p : s.face.get<int>("patch")) p = 1;
-    const FeatureReport r = mark_features(s, {}, &before);
+    std::vector<int> opposite = opposite_halfedges(s);
+    const FeatureReport r = mark_features({s, opposite}, {}, &before);
     EXPECT_EQ(r.patch_edges, 0);
     EXPECT_EQ(r.crease_edges, bend < 60 ? 0 : 20);
   }
@@ -105,7 +106,8 @@ TEST(ModelEdges, GivenEdgesAreFoundWhenTheyAreCut) {
   EXPECT_EQ(std::count(under.begin(), under.end(), 0), 20);  // from both sides
   EXPECT_EQ(std::count(under.begin(), under.end(), 1), 0);
   s.face.erase("patch");
-  const FeatureReport r = mark_features(s, {FeatureOptions::none, 40, 20, 0}, nullptr, &under);
+  std::vector<int> opposite = opposite_halfedges(s);
+  const FeatureReport r = mark_features({s, opposite}, {FeatureOptions::none, 40, 20, 0}, nullptr, &under);
   EXPECT_EQ(r.given_edges, 10);
   EXPECT_EQ(r.model_edges, 10);
 }
