@@ -15,6 +15,16 @@
 namespace meshpipe {
 namespace {
 
+/// Approximate minimum degree of a matrix with both triangles, which it destroys. Eigen's adds the transpose
+/// to it first.
+struct MinimumDegree {
+  using PermutationType = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
+  template <class Matrix>
+  void operator()(Matrix& full, PermutationType& order) const {
+    Eigen::internal::minimum_degree_ordering(full, order);
+  }
+};
+
 /// Takes the entries, whose memory a factorization may need.
 template <class Scalar>
 Eigen::SparseMatrix<Scalar> compress(int n, std::vector<Entry<Scalar>> entries) {
@@ -33,7 +43,7 @@ void require_finite(const Matrix& x) {
 }
 
 template <class Scalar>
-struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> {
+struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower, MinimumDegree> {
   /// Multiplications of the numeric factorization, known after the symbolic one.
   double cost() const { return this->m_nonZerosPerCol.template cast<double>().squaredNorm(); }
 };
