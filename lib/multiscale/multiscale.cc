@@ -23,11 +23,14 @@ constexpr double least_share = 0.02;  // of the area: a smaller half is no progr
 /// the cut makes have the same connectivity.
 void drop_fragments(const ConnectedPart& part, std::vector<double>& field) {
   const int n = (int)field.size();
+  UnionFind pieces(0);
+  bool changed = true;
   for (bool positive : {true, false}) {
-    UnionFind pieces(n);
-    for (const Tri& t : part.tris)
-      for (int k = 0; k < 3; ++k)
-        if ((field[t[k]] > 0) == (field[t[(k + 1) % 3]] > 0)) pieces.join(t[k], t[(k + 1) % 3]);
+    if (changed) pieces = UnionFind(n);
+    for (int h = 0; h < (int)part.opposite.size() && changed; ++h) {
+      const int u = origin(part.tris, h), v = target(part.tris, h);
+      if (part.opposite[h] <= h && (field[u] > 0) == (field[v] > 0)) pieces.join(u, v);  // every edge once
+    }
     std::vector<int> size(n, 0);
     int largest = -1;
     for (int v = 0; v < n; ++v) {
@@ -39,6 +42,7 @@ void drop_fragments(const ConnectedPart& part, std::vector<double>& field) {
     for (int v = 0; v < n; ++v)
       if ((field[v] > 0) == positive && pieces.find(v) != largest) fragments.push_back(v);
     for (int v : fragments) field[v] = -field[v];
+    changed = !fragments.empty();
   }
 }
 

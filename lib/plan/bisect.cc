@@ -167,13 +167,14 @@ int cut_along_limbs(Surface& surface, int part, int n_parts) {
   work.face.set("whole", only);
   for (int& label : only) label = label == part ? 0 : -1;
   MultiscaleOptions options;
-  std::vector<Topology> topology{topology_of(split_by_label(work, only, 1)[0])};
+  std::vector<int> opposite = opposite_halfedges(work);
+  std::vector<Topology> topology = topology_of_parts({work, opposite}, only, 1);
   options.max_aspect = 0.9 * topology[0].eta_geo;
   options.most_parts = limit::limb_parts;
   work.face.set("part", std::move(only));
   int pieces = 0;
   try {
-    pieces = multiscale_cut(work, options, nullptr, &topology);
+    pieces = multiscale_cut(work, options, nullptr, &topology, &opposite);
   } catch (const GoalMissed&) {
     return n_parts;
   }

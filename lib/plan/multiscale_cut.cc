@@ -210,7 +210,8 @@ int multiscale_cut(Surface& surface, const MultiscaleOptions& options, std::vect
                    std::vector<Topology>* topology, std::vector<int>* neighbors) {
   const std::vector<int>& given = surface.face.get<int>("part");
   const int given_parts = given.empty() ? 0 : *std::max_element(given.begin(), given.end()) + 1;
-  Work work{surface, options, cuts, opposite_halfedges(surface), {}, {}};
+  const bool known = neighbors && !neighbors->empty();
+  Work work{surface, options, cuts, known ? std::move(*neighbors) : opposite_halfedges(surface), {}, {}};
   if (topology) work.is = std::move(*topology);
   if (work.is.empty()) work.is = topology_of_parts({surface, work.opposite}, given, given_parts);
   work.was_cut.assign(given_parts, 0);

@@ -47,8 +47,8 @@ struct MultiscaleCut {
 /// Cuts every part (face column `part`) whose geodesic aspect ratio exceeds max_aspect, recursively, then
 /// joins halves to neighbors where the union is admissible. If triangles are in no part (-1), they are left
 /// alone and nothing is joined; a part that cuts do not make shorter stays. Returns the number of parts.
-/// Receive, if given: `cuts` the cuts in order, `topology` (which may bring that of the given parts) and
-/// `opposite` the result's.
+/// Receive, if given: `cuts` the cuts in order, `topology` and `opposite` the result's; these two may bring
+/// what is known before.
 /// Requires: parts of genus 0 with a border. Throws: NotAdmissible; GoalMissed beyond most_parts.
 int multiscale_cut(Surface& surface, const MultiscaleOptions& options = {},
                    std::vector<MultiscaleCut>* cuts = nullptr, std::vector<Topology>* topology = nullptr,
