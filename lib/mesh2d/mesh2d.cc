@@ -35,7 +35,13 @@ std::size_t most_points(const Chart& chart, const std::vector<double>& size, int
 }
 
 /// Refuses a size at a chart vertex that the numbers (u, v) cannot resolve; lib/lines/lines.h says why.
-void refuse_unresolved_sizes(const Chart& chart, const SizeMetric& field) {
+void refuse_unresolved_sizes(const Chart& chart, const std::vector<double>& size, const SizeMetric& field) {
+  double extent = 0;
+  for (Vec2 p : chart.uv) extent = std::max({extent, std::abs(p.x), std::abs(p.y)});
+  // nearly all charts: the smallest size is resolved even at the farthest point with the largest stretch
+  if (*std::min_element(size.begin(), size.end()) >
+      2 * least_spacings * (std::nextafter(extent, infinity) - extent) * field.most_stretch())
+    return;
   std::vector<char> seen(chart.uv.size(), 0);
   for (int h = 0; h < 3 * (int)chart.mesh.tris.size(); ++h) {
     const int v = origin(chart.mesh.tris, h);
@@ -194,7 +200,7 @@ PlaneMesh mesh(const Chart& chart, const std::vector<double>& size, const PartLi
   Numbers numbers(chart, std::move(wanted));
 
   SizeMetric field(chart, size);
-  refuse_unresolved_sizes(chart, field);
+  refuse_unresolved_sizes(chart, size, field);
   std::vector<Vec2> uv(n);
   std::vector<Site> site(n);
   for (int i = 0; i < n; ++i) {

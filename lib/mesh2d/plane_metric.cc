@@ -54,6 +54,13 @@ std::vector<LogMetric> map_metric(const Chart& chart) {
 SizeMetric::SizeMetric(const Chart& chart, const std::vector<double>& size)
     : chart_(chart), size_(size), map_(map_metric(chart)) {}
 
+double SizeMetric::most_stretch() const {
+  double most = -infinity;
+  for (const LogMetric& m : map_)
+    most = std::max(most, 0.25 * (m.a + m.c) + 0.25 * std::abs(m.a - m.c) + 0.5 * std::abs(m.b));
+  return std::exp(most);
+}
+
 Vec2 SizeMetric::to_plane(int face, Vec3 d) const {
   const Tri& t = chart_.mesh.tris[face];
   const auto& x = chart_.mesh.points;

@@ -44,6 +44,8 @@ class SizeMetric {
   const Chart& chart() const { return chart_; }
   Site at(const Place& place) const;
   Site at(Vec2 p, int hint) const { return at(locate(chart_, p, hint)); }
+  /// Returns a bound on lengths in space over those in the plane, at vertices of the chart.
+  double most_stretch() const;
   /// Returns the image of d in the plane, as far as it is tangent to triangle `face` of the chart.
   Vec2 to_plane(int face, Vec3 d) const;
 

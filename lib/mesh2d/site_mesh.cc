@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "lib/core/connectivity.h"
 #include "lib/core/error.h"
 #include "lib/core/lists.h"
 
@@ -137,16 +138,13 @@ std::vector<Missed> missed_vertices(const SiteMesh& m, const SizeMetric& field) 
   const std::vector<int> covered_by = cover_vertices(m, chart, cover);
   std::vector<Missed> missed;
   if (std::none_of(cover.begin(), cover.end(), [](const Cover& c) { return c.apart > 0; })) return missed;
-  for (const Tri& v : chart.mesh.tris) {
-    const double area =
-        norm(area_vector(chart.mesh.points[v[0]], chart.mesh.points[v[1]], chart.mesh.points[v[2]])) / 2;
-    for (int corner : v) {
+  for (int face = 0; face < (int)chart.mesh.tris.size(); ++face)
+    for (int corner : chart.mesh.tris[face]) {
       const int t = covered_by[corner];
-      if (t < 0) continue;
+      if (t < 0 || !(cover[t].apart > 0)) continue;  // nearly all
       const Site& near = m.site[m.cdt.tris[t][0]];
-      cover[t].area += area / 3 / (near.size * near.size);
+      cover[t].area += triangle_area(chart.mesh, face) / 3 / (near.size * near.size);
     }
-  }
   for (const Cover& c : cover)
     if (c.apart > 0 && c.area > many * 0.25 * std::sqrt(3)) missed.push_back(c.missed);
   return missed;
@@ -162,8 +160,9 @@ void flip_to_delaunay(SiteMesh& m, std::vector<int>& todo) {
     Vec3 a = m.site[cdt.origin(h)].space, b = m.site[cdt.target(h)].space, c = m.site[cdt.apex(h)].space,
          d = m.site[cdt.apex(o)].space;
     // sin(gamma + delta) < 0 for the angles that look at the edge: not Delaunay
-    double ca = norm(cross(a - c, b - c)), da = norm(cross(a - d, b - d));
-    double sine = ca * dot(a - d, b - d) + dot(a - c, b - c) * da;
+    const double cosine_c = dot(a - c, b - c), cosine_d = dot(a - d, b - d);
+    if (cosine_c >= 0 && cosine_d >= 0) continue;  // most edges, without a root
+    double sine = norm(cross(a - c, b - c)) * cosine_d + cosine_c * norm(cross(a - d, b - d));
     double scale = norm(a - c) * norm(b - c) * norm(a - d) * norm(b - d);
     if (!(sine < -1e-10 * scale) || !cdt.can_flip(h)) continue;
     int t = h / 3, s = o / 3;
