@@ -103,17 +103,15 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   if (found.pairs.empty()) return;
   const Mesh mesh{s.points, s.mesh.tris};
   const bool sheets_meet = !s.copy.empty(), first = !std::exchange(known.looked_near, true);
-  found.of_reference = (int)found.pairs.size();
-  if (first && (int)found.pairs.size() <= rules::few_pairs) {  // of smooth surfaces once and for all
-    const Mesh near = reference_contacts(known.reference, sheets_meet, boxes_around(mesh, found.pairs));
-    found.pairs = new_intersections(mesh, found.pairs, near);
-  } else {
-    if (!known.contacts) {
-      known.contacts = reference_contacts(known.reference, sheets_meet);
-      if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
-    }
-    if (known.contact_tree) found.pairs = new_intersections(mesh, found.pairs, *known.contact_tree);
+  if (first && (int)found.pairs.size() <= rules::few_pairs &&
+      reference_contacts(known.reference, sheets_meet, boxes_around(mesh, found.pairs)).tris.empty())
+    return;  // as on smooth surfaces, of which no more is asked as a rule
+  if (!known.contacts) {
+    known.contacts = reference_contacts(known.reference, sheets_meet);
+    if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);
   }
+  found.of_reference = (int)found.pairs.size();
+  if (known.contact_tree) found.pairs = new_intersections(mesh, found.pairs, *known.contact_tree);
   found.of_reference -= (int)found.pairs.size();
 }
 
