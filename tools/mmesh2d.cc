@@ -82,16 +82,9 @@ int main(int argc, char** argv) {
     const int n = (int)charts.size();
     std::vector<PlaneMesh> meshes(n);
     const PartLines parts(lines, n);
-    std::vector<char> keep;
-    const std::vector<int> order = largest_first(n, [&](int part) { return charts[part].mesh.tris.size(); });
-    parallel_for(n + 1, [&](int i) {
-      if (i == 0)
-        keep = kept_vertices(stream);
-      else
-        index_chart(charts[order[i - 1]]);
-    });
-    parallel_for(n, [&](int i) {
-      const int part = order[i];
+    const std::vector<char> keep = kept_vertices(stream);
+    parallel_for(n, [&](int part) {
+      index_chart(charts[part]);
       meshes[part] =
           mesh_chart(charts[part], sizes_of(charts[part], size), parts, part, meshers.at(mesher), keep);
       if (pictures.empty()) charts[part].opposite = {};

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/chart.h"
 
-#include <omp.h>
-
 #include <algorithm>
 
 #include "lib/core/error.h"
-#include "lib/core/parallel.h"
 #include "lib/core/predicates.h"
 #include "lib/core/topology.h"
 
@@ -181,10 +178,8 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
 
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   std::vector<Chart> charts(n_parts);
-  std::vector<std::vector<int>> numbers(omp_get_max_threads());
-  parallel_for(n_parts, [&](int p) {
-    std::vector<int>& local = numbers[omp_get_thread_num()];
-    local.resize(n_vertices, -1);
+  std::vector<int> local(n_vertices, -1);
+  for (int p = 0; p < n_parts; ++p) {
     Chart& chart = charts[p];
     chart.mesh = std::move(parts[p]);
     int n = (int)chart.mesh.vertex.size();
@@ -214,7 +209,7 @@ std::vector<Chart> make_charts(const Surface& surface, const Table& chart_vertex
         throw BadInput("chart_vertex turns face " + std::to_string(chart.mesh.face[t]) + " of part " +
                        std::to_string(p) + " over or makes it flat");
     }
-  });
+  }
   return charts;
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lib/core/error.h"
-#include "lib/core/parallel.h"
 #include "lib/core/topology.h"
 #include "lib/param/intrinsic.h"
 
@@ -109,7 +108,6 @@ Filled round_holes(const SubMesh& part, const Disk& disk) {
 
 Filled flat_holes(const SubMesh& part, const Disk& disk) {
   Filled filled = open_holes(part);
-  filled.opposite = disk.opposite;
   std::vector<double> turn(part.points.size(), pi);  // of the holes' borders, on the part
   std::vector<char> of_hole(part.points.size(), 0);
   for (std::size_t l = 1; l < disk.loops.size(); ++l)
@@ -125,12 +123,7 @@ Filled flat_holes(const SubMesh& part, const Disk& disk) {
     double sum = 0;
     for (int h : loop) sum -= turn[origin(part.tris, h)];
     const bool flat = std::abs(sum - 2 * pi) < flat_to;
-    const int center = filled.n_vertices++, first = (int)filled.tris.size(), n = (int)loop.size();
-    for (int i = 0; i < n; ++i) {
-      filled.opposite[loop[i]] = 3 * (first + i);
-      filled.opposite.insert(filled.opposite.end(),
-                             {loop[i], 3 * (first + (i + n - 1) % n) + 2, 3 * (first + (i + 1) % n) + 1});
-    }
+    const int center = filled.n_vertices++;
     if (!flat ||
         !add_polygon_fan(part, loop, polygon_of(part, loop, turn, lengths_of(part, loop)), center, filled))
       add_round_fan(part, loop, disk.length[l], center, filled);
@@ -139,19 +132,17 @@ Filled flat_holes(const SubMesh& part, const Disk& disk) {
 }
 
 std::vector<double> cotangents(const Shapes& shapes, double floor, double ceiling) {
-  std::vector<double> weights(3 * shapes.size());
-  parallel_for_small((int)shapes.size(), [&](int t) {
-    const auto& [a, b, c] = shapes[t];
-    const auto w = cotangent_weights(a, b, c, floor);
-    for (int i = 0; i < 3; ++i) weights[3 * t + i] = std::min(w[i], 0.5 * ceiling);
-  });
+  std::vector<double> weights;
+  weights.reserve(3 * shapes.size());
+  for (const auto& [a, b, c] : shapes)
+    for (double w : cotangent_weights(a, b, c, floor)) weights.push_back(std::min(w, 0.5 * ceiling));
   return weights;
 }
 
 std::vector<double> angle_sums(const Filled& filled, const std::vector<double>& cotangents) {
-  std::vector<double> sum(filled.n_vertices, 0), angle(cotangents.size());
-  parallel_for_small((int)angle.size(), [&](int h) { angle[h] = std::atan2(1, 2 * cotangents[h]); });
-  for (int h = 0; h < (int)angle.size(); ++h) sum[origin(filled.tris, prev(h))] += angle[h];
+  std::vector<double> sum(filled.n_vertices, 0);
+  for (int h = 0; h < (int)cotangents.size(); ++h)
+    sum[origin(filled.tris, prev(h))] += std::atan2(1, 2 * cotangents[h]);
   return sum;
 }
 

@@ -28,7 +28,6 @@ struct Filled {
   /// Per triangle: its corners in space; those of a fan lie in a plane of their own.
   Shapes shape;
   int n_vertices = 0;
-  std::vector<int> opposite = {};  ///< half-edges; empty: not known, or no longer after flips
 };
 
 /// Returns the part alone: its holes keep the natural boundary condition.

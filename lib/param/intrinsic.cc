@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <deque>
-#include <utility>
 
-#include "lib/core/parallel.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -31,31 +29,27 @@ Layout lay_out(double l0, double l1, double l2) {
 
 class Flipper {
  public:
-  explicit Flipper(Filled& filled)
-      : filled_(filled),
-        opposite_(filled.opposite.empty() ? opposite_halfedges(filled.tris, filled.n_vertices)
-                                          : std::exchange(filled.opposite, {})),
-        changed_(filled.tris.size()),
-        length_(opposite_.size()) {
-    parallel_for_small((int)filled.tris.size(), [&](int t) {
-      const auto& p = filled.shape[t];
+  explicit Flipper(Filled& filled) : filled_(filled) {
+    opposite_ = opposite_halfedges(filled.tris, filled.n_vertices);
+    length_.reserve(opposite_.size());
+    changed_.reserve(filled.tris.size());
+    for (const auto& p : filled.shape) {
       std::array<double, 3> l{norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])};
       double sum = l[0] + l[1] + l[2], more = 0;
       if (!(sum > 0)) l.fill(1);
       for (double side : l) more = std::max(more, 1e-7 * sum - (sum - 2 * side));
-      for (int i = 0; i < 3; ++i) length_[3 * t + i] = l[i] + more;
-      changed_[t] = more > 0 || !(sum > 0);
-    });
+      for (double side : l) length_.push_back(side + more);
+      changed_.push_back(more > 0 || !(sum > 0));
+    }
   }
 
   void run() {
     std::deque<int> queue;
     std::vector<char> waiting(opposite_.size(), 0);
-    std::vector<double> cotangent(opposite_.size());  // most edges stay: their triangles are looked at once
-    parallel_for_small((int)filled_.tris.size(), [&](int t) {
-      const Layout l = layout(3 * t);
-      for (int i = 0; i < 3; ++i) cotangent[3 * t + i] = cotangent_opposite(l, i);
-    });
+    std::vector<double> cotangent;  // most edges stay: their triangles are looked at once
+    cotangent.reserve(opposite_.size());
+    for (int h = 0; h < (int)opposite_.size(); h += 3)
+      for (int i = 0; i < 3; ++i) cotangent.push_back(cotangent_opposite(layout(h), i));
     for (int h = 0; h < (int)opposite_.size(); ++h)
       if (opposite_[h] > h && !(cotangent[h] + cotangent[opposite_[h]] >= least)) {
         queue.push_back(h);

@@ -53,10 +53,7 @@ void take_known(std::vector<Chart> known, const std::vector<ParamReport>& report
 
 /// Maps the parts that wait for it by the reason `next`, in parallel.
 void map_waiting(const ParamOptions& options, int round, Wait next, std::size_t n_triangles, Charts& charts) {
-  const std::vector<int> order =
-      largest_first((int)charts.chart.size(), [&](int p) { return charts.chart[p].mesh.tris.size(); });
-  parallel_for((int)order.size(), [&](int i) {
-    const int p = order[i];
+  parallel_for((int)charts.chart.size(), [&](int p) {
     if (charts.waiting[p] != next || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
     Chart& chart = charts.chart[p];
     charts.failure[p].clear();
