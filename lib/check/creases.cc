@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lib/check/check.h"
+#include "lib/core/lists.h"
 #include "lib/core/topology.h"
 
 namespace meshpipe {
@@ -42,30 +43,34 @@ std::vector<int> find_cut_creases(const Connectivity& result, const Surface& ref
   if (creases.edges.tris.empty()) return cut;
   const Bvh search(creases.edges), tree(reference);
   const Mesh& mesh = result.mesh;
+  std::vector<int> near_c;  // components
   for (int h = 0; h < result.n_half_edges(); ++h) {
     if (result.opposite[h] < h) continue;
     const Vec3 a = mesh.points[origin(mesh.tris, h)], b = mesh.points[target(mesh.tris, h)];
     const Vec3 c = mesh.points[result.apex(h)], d = mesh.points[result.apex(result.opposite[h])];
     const Vec3 middle = lerp(a, b, 0.5);
     const double length = norm(b - a), reach = on * length;
-    const int crease = search.nearest_within(c, reach, 0).place.face;
-    if (crease < 0) continue;
-    // of other components creases may pass by
-    const int component = creases.component[crease];
-    auto meets = [&](Vec3 p, double reach) {
-      return search.nearest_of(creases.component, component, p, reach, 0).place.face >= 0;
-    };
-    if (!meets(middle, near * length) || meets(a, reach) || meets(b, reach) || !meets(d, reach) ||
-        !meets(lerp(c, d, 0.5), reach))
-      continue;
-    auto nearest = [&](Vec3 p) {
-      return tree.nearest_of(creases.component_of_triangle, component, p, 1e300, 0);
-    };
-    const Bvh::Hit at_a = nearest(a), at_b = nearest(b);
-    auto normal = [&](const Bvh::Hit& hit) { return normalized(area_vector(reference, hit.place.face)); };
-    if (at_a.distance < reach && at_b.distance < reach && dot(normal(at_a), normal(at_b)) < sharp &&
-        nearest(middle).distance > reach)
-      cut.push_back(h);
+    const Vec3 margin{reach, reach, reach};
+    near_c.clear();
+    search.overlapping({c - margin, c + margin}, [&](int e) { near_c.push_back(creases.component[e]); });
+    sort_unique(near_c);
+    // creases of other components may pass by
+    const bool cuts = std::any_of(near_c.begin(), near_c.end(), [&](int component) {
+      auto meets = [&](Vec3 p, double within) {
+        return search.nearest_of(creases.component, component, p, within, 0).place.face >= 0;
+      };
+      if (!meets(middle, near * length) || meets(a, reach) || meets(b, reach) || !meets(c, reach) ||
+          !meets(d, reach) || !meets(lerp(c, d, 0.5), reach))
+        return false;
+      auto nearest = [&](Vec3 p) {
+        return tree.nearest_of(creases.component_of_triangle, component, p, 1e300, 0);
+      };
+      auto normal = [&](const Bvh::Hit& hit) { return normalized(area_vector(reference, hit.place.face)); };
+      const Bvh::Hit at_a = nearest(a), at_b = nearest(b);
+      return at_a.distance < reach && at_b.distance < reach && dot(normal(at_a), normal(at_b)) < sharp &&
+             nearest(middle).distance > reach;
+    });
+    if (cuts) cut.push_back(h);
   }
   return cut;
 }

@@ -324,7 +324,9 @@ void clean_once(Surface& surface, const CleanOptions& given, CleanReport& report
   }
   take_over(r, surface, options, report);
   label_caps(surface, cap, report);
-  report.sheets.border = border_half_edges(r);
+  // flips at slits alone repair nothing, and the surface stays as it was
+  report.sheets.border =
+      report.nothing && r.tris != surface.tris ? open_edges(surface, same) : border_half_edges(r);
 }
 
 void drop_crumbs(Surface& surface, const Mesh& input, CleanReport& report) {

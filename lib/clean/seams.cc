@@ -197,11 +197,12 @@ int merge_seams(const Mesh& mesh, std::vector<int> open, std::vector<int>& same,
 }
 
 Gaps find_gaps(const Surface& surface, const CleanReport& report) {
-  const bool distinct = report.copies == 0 && !report.sheets.kept;  // points
-  if (distinct && report.sheets.border.empty()) return {};
-  std::vector<int> same =
-      distinct ? identity(surface.points.size()) : first_equal(surface.points, used_points(surface));
-  const Seams seams(surface, same, distinct ? report.sheets.border : open_edges(surface, same), likely);
+  const bool points_are_distinct = report.copies == 0 && !report.sheets.kept;
+  if (points_are_distinct && report.sheets.border.empty()) return {};
+  std::vector<int> same = points_are_distinct ? identity(surface.points.size())
+                                              : first_equal(surface.points, used_points(surface));
+  const Seams seams(surface, same, points_are_distinct ? report.sheets.border : open_edges(surface, same),
+                    likely);
   Gaps found{seams.closed_edges(), seams.border_edges(), 0};
   if (2 * found.closed < found.edges || found.closed == 0) return {};
   seams.merge(same, found.within);

@@ -20,8 +20,9 @@ Mesh original_mesh(const Surface& reference);
 
 /// Returns the contacts (lib/core/intersect.h) of a reference: its chords, and where it intersects itself,
 /// fans touch, or it lies on itself to the rounding of single-precision coordinates, as it was before it was
-/// cut, since new vertices are rounded. If `sheets_meet`, its borders are joined. `near`: of the last two at
-/// least those that have a point in one of these boxes, if there are any. Throws: as opposite_halfedges.
+/// cut, since new vertices are rounded. If `sheets_meet`, its borders are joined. `near`: unless it is
+/// empty, intersections and overlaps are looked for only where they have a point in one of these boxes.
+/// Throws: as opposite_halfedges.
 Mesh reference_contacts(const Surface& reference, bool sheets_meet, std::span<const Box> near = {});
 
 }  // namespace meshpipe

@@ -279,7 +279,7 @@ struct Components {
     return between[c] < most_between * sharp[c] && planes[c].steps < step_share &&
            (edge[c] > least_edge || triangles[c] <= few_triangles);
   }
-  /// Whether it has so much of its area in plane faces of several triangles, and of many.
+  /// Whether plane faces of several triangles cover enough of its area, or those of many.
   bool plane(int c, double several, double many, double size) const {
     return several >= plane_share ||
            (many >= many_share && between[c] < noise * sharp[c] && area[c] > dense * size * sharp[c]);
@@ -309,12 +309,12 @@ Components look_at(const Network& net, double strong, double weak) {
     if (net.patch[h]) look.on_patches[c] += net.length(h);
   }
   look.planes.resize(n);
-  bool matter = false;  // the planes
+  bool planes_matter = false;
   for (int c = 0; c < n; ++c) {
     const double most = 1.01 * in_planes[c] / look.area[c];  // which is summed in another order
-    matter |= look.between[c] < most_between * look.sharp[c] || look.plane(c, most, most, net.size);
+    planes_matter |= look.between[c] < most_between * look.sharp[c] || look.plane(c, most, most, net.size);
   }
-  if (!matter) return look;
+  if (!planes_matter) return look;
   look.planes = plane_shares({net.s, net.opposite}, {net.angle, net.strong, look.of, n});
   for (int h = 0; h < m; ++h) look.edge[look.of[h / 3]] += net.length(h) / (3 * net.size);
   for (int c = 0; c < n; ++c) look.edge[c] /= look.triangles[c];
@@ -489,7 +489,7 @@ std::vector<Vec3> side_normals(const Connectivity& surface, double thin) {
   take_nearest(has_none);
   std::fill(has_none.begin(), has_none.end(), 0);
   // a side of which a part is not thin faces as that does, however far it goes on in its plane
-  std::vector<int> wide, root;  // the former: those next to thin ones
+  std::vector<int> wide, root;  // wide: those next to thin ones
   for (int h = 0; h < 3 * n; ++h)
     if (const int o = surface.opposite[h]; is_thin[h / 3] && o >= 0 && !is_thin[o / 3]) wide.push_back(o / 3);
   sort_unique(wide);

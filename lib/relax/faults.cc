@@ -105,7 +105,7 @@ void find_intersections(const State& s, Known& known, Fault& found) {
   const bool sheets_meet = !s.copy.empty(), first = !std::exchange(known.looked_near, true);
   if (first && (int)found.pairs.size() <= rules::few_pairs &&
       reference_contacts(known.reference, sheets_meet, boxes_around(mesh, found.pairs)).tris.empty())
-    return;  // as on smooth surfaces, of which no more is asked as a rule
+    return;  // as on smooth surfaces: on these the others are hardly ever needed
   if (!known.contacts) {
     known.contacts = reference_contacts(known.reference, sheets_meet);
     if (!known.contacts->tris.empty()) known.contact_tree.emplace(*known.contacts);

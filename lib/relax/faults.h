@@ -33,7 +33,7 @@ struct Known {
   MeasuredMesh of_mesh{};
   std::optional<Mesh> contacts{};     ///< where the reference before cuts intersects itself, and its chords
   std::optional<Bvh> contact_tree{};  ///< of these, if there are any
-  bool looked_near = false;           ///< has it been asked whether there are any near the pairs?
+  bool looked_near = false;           ///< contacts were looked for near the first pairs
   std::optional<Bvh> built{};
   std::vector<char> corners{};
 

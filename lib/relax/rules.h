@@ -119,7 +119,7 @@ constexpr int fault_rounds = 24, useless_rounds = 3;
 constexpr double worth_a_turn = 0.7;  // of the sum: what a turn has to leave at most for another
 constexpr double nearly_accepted =
     30;                         // sum of faults: with more, neither another turn nor other limits help
-constexpr int few_pairs = 50;   // of more, the contacts of all of the reference are found at once
+constexpr int few_pairs = 50;   // of more, the reference very likely has contacts near some
 constexpr int many_pairs = 30;  // of more single edits are tried first: they take less time
 constexpr int fault_repairs = 10, few_faults = 300;  // rounds; places: more take too long
 // of 435 runs, those that left no fault began with a sum of 688 at most, and had 167 at most after refinement

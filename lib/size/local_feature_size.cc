@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
@@ -28,14 +29,13 @@ constexpr double per_length = 1.5;    ///< size over the length of a line: kappa
 constexpr double least_line = 0.001;  ///< of the size asked for: a shorter line is a point
 constexpr double least_area = 0.2;    ///< of a circle as long: a path there and back the same way has none
 
-/// Finds the rings around tubes, from one vertex after the other. `next`: as neighbors_of; `normal`: of the
-/// vertices.
+/// Finds the rings around tubes, from one vertex after the other.
 class TubeFinder {
  public:
-  TubeFinder(const Mesh& mesh, const Lists& next, const std::vector<Vec3>& normal)
+  explicit TubeFinder(const Mesh& mesh)
       : mesh_(mesh),
-        next_(next),
-        normal_(normal),
+        next_(neighbors_of(mesh)),
+        normal_(vertex_area_vectors(mesh)),
         distance_(mesh.points.size(), infinity),
         from_(mesh.points.size()),
         branch_(mesh.points.size()) {}
@@ -102,8 +102,8 @@ class TubeFinder {
   }
 
   const Mesh& mesh_;
-  const Lists& next_;
-  const std::vector<Vec3>& normal_;
+  const Lists next_;  ///< as neighbors_of
+  std::vector<Vec3> normal_;
   std::vector<double> distance_;
   std::vector<int> from_, branch_, reached_, near_;
 };
@@ -117,52 +117,6 @@ std::vector<double> closed_areas(const Connectivity& surface) {
         surface.is_border(h) || surface.is_model(h) ? infinity : triangle_area(surface.mesh, h / 3) / 3;
   for (int c : component) whole.push_back(area[c]);
   return whole;
-}
-
-/// Lowers `feature` to a quarter of the rings around tubes through the given vertices and those around them.
-void lower_to_rings(const Mesh& mesh, const std::vector<int>& vertices, const std::vector<double>& size,
-                    std::vector<double>& feature) {
-  constexpr int block = 256;  // of vertices that are searched from at a time, on all threads
-  struct Ring {
-    double length;
-    std::vector<int> near;
-  };
-  if (vertices.empty()) return;
-  const int n = (int)vertices.size();
-  const Lists next = neighbors_of(mesh);
-  const std::vector<Vec3> normal = vertex_area_vectors(mesh);
-  std::vector<Ring> ring(block);
-  std::vector<char> done(mesh.points.size(), 0);
-#pragma omp parallel
-  {
-    TubeFinder tubes(mesh, next, normal);
-    for (int first = 0; first < n; first += block) {
-      const int last = std::min(n, first + block);
-#pragma omp for schedule(dynamic, 4)
-      for (int i = first; i < last; ++i) {
-        const int v = vertices[i];
-        if (done[v]) continue;
-        auto& [length, near] = ring[i - first];
-        const double below = ring_edges * size[v];
-        length = tubes.ring(v, below);
-        // every vertex of a tube is within a quarter of its ring of one that was searched from
-        near.clear();
-        for (int u : tubes.near()) {
-          if (tubes.distance(u) > length / (length < below ? 4 : 16)) break;
-          near.push_back(u);
-        }
-      }
-#pragma omp single
-      for (int i = first; i < last; ++i) {
-        if (done[vertices[i]]) continue;
-        for (int u : ring[i - first].near) {
-          done[u] = 1;
-          if (const double length = ring[i - first].length; length < ring_edges * size[vertices[i]])
-            feature[u] = std::min(feature[u], length / ring_edges);
-        }
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -224,10 +178,20 @@ std::vector<double> local_feature_size(const Connectivity& surface, const std::v
       if (most < size[v]) feature[v] = std::min(feature[v], most);
       bend[v] = std::max(bend[v], curvature[t]);
     }
-  std::vector<int> bent;  // few on most scans
-  for (int v = 0; v < (int)n; ++v)
-    if (bend[v] * ring_edges * size[v] > full_bend) bent.push_back(v);
-  lower_to_rings(mesh, bent, size, feature);
+  std::optional<TubeFinder> finder;  // most surfaces of a scan bend nowhere as much
+  std::vector<char> done(n, 0);
+  for (int v = 0; v < (int)n; ++v) {
+    const double below = ring_edges * size[v];
+    if (done[v] || !(bend[v] * below > full_bend)) continue;
+    TubeFinder& tubes = finder ? *finder : finder.emplace(mesh);
+    const double length = tubes.ring(v, below);
+    // every vertex of a tube is within a quarter of its ring of one that was searched from
+    for (int u : tubes.near()) {
+      if (tubes.distance(u) > length / (length < below ? 4 : 16)) break;
+      done[u] = 1;
+      if (length < below) feature[u] = std::min(feature[u], length / ring_edges);
+    }
+  }
   return feature;
 }
 

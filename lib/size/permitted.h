@@ -27,9 +27,9 @@ double triangles_of_strips(const std::vector<SizeBound>& bounds, double most);
 /// good: a strip between two lines (borders or model edges) permits a multiple of its width, a bent sheet
 /// those edges that sag towards another sheet by a share of the gap, a tube along a longer edge a quarter of
 /// the way around it. Lines and sheets that meet nearby are adjacent, not near. Returns the bounds, at least
-/// `least`, by half-edge; those of strips only if these need more triangles than `most_triangles`. `close`,
-/// per triangle: sheets are looked for only along edges of these, unless it is empty, and edges longer than
-/// asked. Returns there where some are within the gap, be it as folds: smaller sizes are bounded only there.
+/// `least`, by half-edge; only those of strips if these need more triangles than `most_triangles`. `close`,
+/// per triangle: unless it is empty, sheets are looked for only along edges of these and edges longer than
+/// asked. Becomes where sheets are within the gap, folds too; smaller sizes are as a rule bounded only there.
 std::vector<SizeBound> permitted_sizes(const Connectivity& surface, const std::vector<double>& asked,
                                        double least, double most_triangles, std::vector<char>& close);
 

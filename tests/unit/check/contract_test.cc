@@ -67,17 +67,21 @@ TEST(contract, creases_of_other_components_are_not_cut) {
       s.tris.insert(s.tris.end(), {{i, i + 2, i + 3}, {i, i + 3, i + 1}});
     return s;
   };
-  auto cut = [&](Surface reference, int halfedge) {
+  auto cut = [&](Surface reference, std::vector<int> halfedges) {
     std::vector<std::uint8_t> model(reference.tris.size());
     const std::vector<int> opposite = opposite_halfedges(reference);
-    for (int h : {halfedge, opposite[halfedge]}) model[h / 3] |= 1 << h % 3;
+    for (int crease : halfedges)
+      for (int h : {crease, opposite[crease]}) model[h / 3] |= 1 << h % 3;
     reference.face.set("model", model);
     const std::vector<int> sides = opposite_halfedges(result);
     return find_cut_creases({result, sides}, reference).size();
   };
-  const Surface bevel = roof({{-1, 0}, {-0.1, 0}, {0, -0.1}, {0, -1}});
-  EXPECT_EQ(cut(roof({{-1, 0.02}, {0.02, 0.02}, {0.02, -1}}), 1), 1u);
-  EXPECT_EQ(cut(roof({{0, 1}, {0, 0}, {1, 0}}, bevel), 6 * 3 + 1), 0u);
+  const Surface own = roof({{-1, 0.02}, {0.02, 0.02}, {0.02, -1}});
+  const std::vector<std::array<double, 2>> other{{0, 1}, {0, 0}, {1, 0}};  // nearer
+  EXPECT_EQ(cut(own, {1}), 1u);
+  EXPECT_EQ(cut(roof(other, roof({{-1, 0}, {-0.1, 0}, {0, -0.1}, {0, -1}})), {6 * 3 + 1}), 0u);
+  EXPECT_EQ(cut(roof(other, own), {1, 4 * 3 + 1}), 1u);
+  EXPECT_EQ(cut(roof({{-1, 0.02}, {0.02, 0.02}, {0.02, -1}}, roof(other)), {1, 4 * 3 + 1}), 1u);
 }
 
 TEST(contract, lists_are_read_and_refused) {

@@ -94,6 +94,25 @@ TEST(Seams, SheetsThatLieOnEachOtherStayApart) {
     }
 }
 
+//          4     5      the points 0 to 3 are in line, with two triangles of no area between them; flips
+//         /|   / |      along the slit do not end, and leave the surface as it was
+//        0-1--2--3
+//         \   | /
+//            6
+TEST(Seams, TheBorderIsThatOfTheSurfaceThatStays) {
+  Surface s =
+      surface_of({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1, 1, 0}, {3, 1, 0.5}, {2, -1, 0.3}},
+                  {{0, 3, 2}, {3, 0, 1}, {0, 2, 4}, {2, 3, 5}, {2, 5, 6}, {2, 6, 4}, {3, 1, 6}, {6, 1, 4}}});
+  const CleanReport r = clean(s);
+  EXPECT_TRUE(r.nothing);
+  EXPECT_EQ(r.flat, 2);
+  std::vector<int> border;
+  const std::vector<int> opposite = opposite_halfedges(s);
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] < 0) border.push_back(h);
+  EXPECT_EQ(r.sheets.border, border);
+}
+
 TEST(Seams, LargeErrorsAreReportedWithWhatWeldsThem) {
   Surface s = soup(unit_squares(10), 1e-2);
   CleanReport r = clean(s);
