@@ -13,29 +13,60 @@
 namespace meshpipe {
 namespace {
 
-/// Why a part waits for a map. One of which only the border has changed waits until there are no others: cuts
-/// of its neighbors may change it again.
-enum Wait : char { mapped, new_border, new_part };
-
 /// What is known of every part while charts are made.
 struct Charts {
   std::vector<Chart> chart;
   std::vector<ParamReport> report;
   std::vector<std::string> failure;  ///< why there is no map; empty if there is one
-  std::vector<Wait> waiting;
+  std::vector<char> waiting;         ///< for a map
   std::vector<char> as_it_is;  ///< its area scale is too large, but no cut along its limbs helps
 };
 
-/// Takes the parts as they are after cuts. One that was not cut itself keeps its map, unless a cut of its
-/// neighbors has put vertices on its border.
+/// Returns the map of a chart for the same part after cuts of its neighbors have split edges of its border:
+/// the images of these edges are split alike. Empty if that is not one-to-one, or the part is another.
+/// `image`: -1 per vertex of the surface, before and after the call.
+std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part, std::vector<int>& image) {
+  const std::size_t n = part.points.size(), added = n - chart.uv.size();
+  if (part.tris.size() != chart.mesh.tris.size() + added) return {};
+  std::vector<Vec2> uv(n);
+  std::vector<char> known(n, 0);
+  for (std::size_t i = 0; i < chart.uv.size(); ++i) image[chart.mesh.vertex[i]] = (int)i;
+  for (std::size_t v = 0; v < n; ++v)
+    if (const int i = image[part.vertex[v]]; i >= 0) uv[v] = chart.uv[i], known[v] = 1;
+  for (int v : chart.mesh.vertex) image[v] = -1;
+
+  const std::vector<int> opposite = opposite_halfedges(part);
+  std::vector<int> after(n, -1);  // along the border
+  for (int h = 0; h < (int)opposite.size(); ++h)
+    if (opposite[h] < 0) after[origin(part.tris, h)] = target(part.tris, h);
+  std::size_t found = 0;
+  for (int a = 0; a < (int)n; ++a) {
+    if (!known[a] || after[a] < 0 || known[after[a]]) continue;
+    std::vector<int> between;
+    int b = after[a];
+    for (; b >= 0 && !known[b] && between.size() < added; b = after[b]) between.push_back(b);
+    if (b < 0 || b == a || !known[b]) return {};
+    const double length = norm(part.points[b] - part.points[a]);
+    for (int v : between) uv[v] = lerp(uv[a], uv[b], norm(part.points[v] - part.points[a]) / length);
+    found += between.size();
+  }
+  if (found != added || count_inverted(part.tris, uv) > 0) return {};
+  return uv;
+}
+
+/// Takes the parts as they are after cuts. One that was not cut itself keeps its map.
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
-  charts.waiting.resize(n_parts, new_part), charts.as_it_is.resize(n_parts, 0);
+  charts.waiting.resize(n_parts, 1), charts.as_it_is.resize(n_parts, 0);
+  std::vector<int> image(surface.points.size(), -1);
   for (int p = 0; p < n_parts; ++p) {
-    if (charts.waiting[p] == mapped && parts[p].vertex != charts.chart[p].mesh.vertex)
-      charts.waiting[p] = new_border;
-    charts.chart[p].mesh = std::move(parts[p]);
+    Chart& chart = charts.chart[p];
+    if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
+      chart.uv = with_split_border(chart, parts[p], image);
+      charts.waiting[p] = chart.uv.empty();
+    }
+    chart.mesh = std::move(parts[p]);
   }
 }
 
@@ -44,17 +75,17 @@ void take_known(std::vector<Chart> known, const std::vector<ParamReport>& report
   for (std::size_t p = 0; p < std::min(known.size(), charts.chart.size()); ++p) {
     const SubMesh& mesh = charts.chart[p].mesh;
     const bool holds = known[p].mesh.vertex == mesh.vertex && count_inverted(mesh.tris, known[p].uv) == 0;
-    charts.waiting[p] = holds ? mapped : new_part;
+    charts.waiting[p] = !holds;
     if (!holds && !known[p].uv.empty()) continue;
     charts.chart[p].uv = std::move(known[p].uv);
     charts.report[p] = reports[p];
   }
 }
 
-/// Maps the parts that wait for it by the reason `next`, in parallel.
-void map_waiting(const ParamOptions& options, int round, Wait next, std::size_t n_triangles, Charts& charts) {
+/// Maps the parts that wait for it, in parallel.
+void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
   parallel_for((int)charts.chart.size(), [&](int p) {
-    if (charts.waiting[p] != next || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
+    if (!charts.waiting[p] || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
     Chart& chart = charts.chart[p];
     charts.failure[p].clear();
     try {
@@ -114,23 +145,21 @@ std::vector<Chart> map_surface(Surface& surface, int n_parts, const ParamOptions
                                std::vector<ParamReport>& reports, std::vector<Chart> known, bool alone) {
   if (!options.strict && options.map != MapKind::conformal) split_ears(surface, n_parts);
   Charts charts;
-  auto waits = [&](Wait why) { return std::count(charts.waiting.begin(), charts.waiting.end(), why) > 0; };
   for (int round = 0;; ++round) {
     take_parts(surface, n_parts, charts);
     if (round == 0) take_known(std::move(known), reports, charts);
-    const Wait next = waits(new_part) ? new_part : new_border;
-    map_waiting(options, round, next, surface.tris.size(), charts);
+    map_waiting(options, round, surface.tris.size(), charts);
     if (alone) leave_poor(options.strict, charts);
     if (alone) break;
     const bool may_cut = !options.strict && round < limit::most_rounds;
     for (int p = 0, n = n_parts; p < n; ++p) {
-      if (charts.waiting[p] != next) continue;
+      if (!charts.waiting[p]) continue;
       const int before = n_parts;
       if (may_cut) n_parts = cut_again(surface, p, n_parts, options, round, charts);
-      charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]) ? new_part : mapped;
-      if (charts.waiting[p] == mapped && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
+      charts.waiting[p] = n_parts > before || (may_cut && charts.as_it_is[p]);
+      if (!charts.waiting[p] && !charts.failure[p].empty()) throw GoalMissed(charts.failure[p]);
     }
-    if (!waits(new_part) && !waits(new_border)) break;
+    if (std::count(charts.waiting.begin(), charts.waiting.end(), 1) == 0) break;
   }
   reports = std::move(charts.report);
   return std::move(charts.chart);
