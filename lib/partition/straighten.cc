@@ -43,8 +43,7 @@ struct Attempt {
   bool ends_stay;
 };
 using std::numbers::pi;
-constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}};
-constexpr Attempt last_attempt = {0, 0, 100, true};
+constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}, {0, 0, 100, true}};
 
 /// What happens near the curves that are straightened together: each has a band of triangles of its own.
 struct Bands {
@@ -504,7 +503,7 @@ void straighten_corners(const CutSurface& cut, const Limits& limits) {
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
   for (const auto& [turn, one] : corners)
     if (!straighten_together(cut, {one}, attempts[2], limits).empty())
-      straighten_together(cut, {one}, last_attempt, limits);
+      straighten_together(cut, {one}, attempts[3], limits);
 }
 
 }  // namespace
@@ -526,9 +525,8 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
           !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
         open.push_back(handle_of(surface, c));
     std::sort(open.begin(), open.end());
-    // all together, those at fault again and more gently, in the end one by one
+    // all together, those at fault again and more gently
     for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits);
-    for (const Handle& one : open) straighten_together(cut, {one}, last_attempt, limits);
     add_progress(0.2 / n_colors);
   }
   straighten_corners(cut, limits);
