@@ -19,7 +19,7 @@ struct Charts {
   std::vector<ParamReport> report;
   std::vector<std::string> failure;  ///< why there is no map; empty if there is one
   std::vector<char> waiting;         ///< for a map
-  std::vector<char> as_it_is;  ///< its area scale is too large, but no cut along its limbs helps
+  std::vector<char> as_it_is;        ///< its area scale is too large, but no cut along its limbs helps
 };
 
 /// Returns the map of a chart for the same part after cuts of its neighbors have split edges of its border:
@@ -65,6 +65,8 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
     if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
       chart.uv = with_split_border(chart, parts[p], image);
       charts.waiting[p] = chart.uv.empty();
+      charts.report[p].apart.clear();
+      if (!charts.waiting[p]) measure_distortion(parts[p], chart.uv, charts.report[p]);
     }
     chart.mesh = std::move(parts[p]);
   }

@@ -252,17 +252,26 @@ static Mesh round_tube(int n, int m, double length) {
       all);
 }
 
-// A long tube open at both ends, with a ring of its own at one of them: the cut ends on the ring's border.
+// A long tube open at both ends, with a ring of its own at one of them: the cut ends on the ring's border,
+// where the ring's map gets a vertex and stays what it is elsewhere.
 TEST(Plan, TheNeighborOfACutHasAMapWithItsNewVertices) {
   constexpr int n = 25, m = 37, rows = 34;
   Surface s = surface_of(round_tube(n, m, 3.3 * pi));
   std::vector<int> part(s.tris.size(), 0);
   for (std::size_t t = 0; t < part.size(); ++t) part[t] = t >= 2 * n * rows;
   s.face.set("part", std::move(part));
+  const SubMesh ring = split_by_label(s, s.face.get<int>("part"), 2)[1];
+  ParamReport of_ring;
+  const std::vector<Vec2> before = map_part(ring, {}, of_ring);
   std::vector<ParamReport> reports;
   const std::vector<Chart> charts = map_surface(s, 2, {}, reports);
   ASSERT_EQ(charts.size(), 3u);
   const Chart& after = charts[1];
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const auto at = std::find(after.mesh.vertex.begin(), after.mesh.vertex.end(), ring.vertex[i]);
+    ASSERT_NE(at, after.mesh.vertex.end());
+    EXPECT_EQ(after.uv[at - after.mesh.vertex.begin()], before[i]);
+  }
   EXPECT_GT(after.uv.size(), (std::size_t)(m - rows) * n);
   EXPECT_TRUE(one_to_one(after.mesh, after.uv));
   const ParamReport again = distortion(after.mesh, after.uv);
