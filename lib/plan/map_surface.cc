@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <string>
+#include <unordered_map>
 
 #include "lib/core/error.h"
 #include "lib/core/parallel.h"
@@ -24,31 +25,29 @@ struct Charts {
 
 /// Returns the map of a chart for the same part after cuts of its neighbors have split edges of its border:
 /// the images of these edges are split alike. Empty if that is not one-to-one, or the part is another.
-/// `image`: -1 per vertex of the surface, before and after the call.
-std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part, std::vector<int>& image) {
+std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part) {
   const std::size_t n = part.points.size(), added = n - chart.uv.size();
   if (part.tris.size() != chart.mesh.tris.size() + added) return {};
+  std::unordered_map<int, Vec2> image;
+  for (std::size_t i = 0; i < chart.uv.size(); ++i) image[chart.mesh.vertex[i]] = chart.uv[i];
   std::vector<Vec2> uv(n);
   std::vector<char> known(n, 0);
-  for (std::size_t i = 0; i < chart.uv.size(); ++i) image[chart.mesh.vertex[i]] = (int)i;
   for (std::size_t v = 0; v < n; ++v)
-    if (const int i = image[part.vertex[v]]; i >= 0) uv[v] = chart.uv[i], known[v] = 1;
-  for (int v : chart.mesh.vertex) image[v] = -1;
-
-  const std::vector<int> opposite = opposite_halfedges(part);
-  std::vector<int> after(n, -1);  // along the border
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] < 0) after[origin(part.tris, h)] = target(part.tris, h);
+    if (const auto at = image.find(part.vertex[v]); at != image.end()) uv[v] = at->second, known[v] = 1;
   std::size_t found = 0;
-  for (int a = 0; a < (int)n; ++a) {
-    if (!known[a] || after[a] < 0 || known[after[a]]) continue;
-    std::vector<int> between;
-    int b = after[a];
-    for (; b >= 0 && !known[b] && between.size() < added; b = after[b]) between.push_back(b);
-    if (b < 0 || b == a || !known[b]) return {};
-    const double length = norm(part.points[b] - part.points[a]);
-    for (int v : between) uv[v] = lerp(uv[a], uv[b], norm(part.points[v] - part.points[a]) / length);
-    found += between.size();
+  for (const std::vector<int>& loop : boundary_loops(opposite_halfedges(part))) {
+    auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int a = vertex(i);
+      std::size_t end = i + 1;  // of the edge that was split
+      while (end < i + loop.size() && !known[vertex(end)]) ++end;
+      if (!known[a] || end == i + loop.size()) continue;
+      const int b = vertex(end);
+      for (std::size_t k = i + 1; k < end; ++k, ++found) {
+        const double way = norm(part.points[vertex(k)] - part.points[a]);
+        uv[vertex(k)] = lerp(uv[a], uv[b], way / norm(part.points[b] - part.points[a]));
+      }
+    }
   }
   if (found != added || count_inverted(part.tris, uv) > 0) return {};
   return uv;
@@ -59,11 +58,10 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
   charts.waiting.resize(n_parts, 1), charts.as_it_is.resize(n_parts, 0);
-  std::vector<int> image(surface.points.size(), -1);
   for (int p = 0; p < n_parts; ++p) {
     Chart& chart = charts.chart[p];
     if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
-      chart.uv = with_split_border(chart, parts[p], image);
+      chart.uv = with_split_border(chart, parts[p]);
       charts.waiting[p] = chart.uv.empty();
       charts.report[p].apart.clear();
       if (!charts.waiting[p]) measure_distortion(parts[p], chart.uv, charts.report[p]);
