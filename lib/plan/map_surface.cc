@@ -34,26 +34,28 @@ std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part) {
   std::vector<char> known(n, 0);
   for (std::size_t v = 0; v < n; ++v)
     if (const auto at = image.find(part.vertex[v]); at != image.end()) uv[v] = at->second, known[v] = 1;
+  const std::vector<int> opposite = opposite_halfedges(part);
   std::size_t found = 0;
-  for (const std::vector<int>& loop : boundary_loops(opposite_halfedges(part))) {
+  for (const std::vector<int>& loop : boundary_loops(opposite)) {
     auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const int a = vertex(i);
+      if (!known[a]) continue;
       std::size_t end = i + 1;  // of the edge that was split
       while (end < i + loop.size() && !known[vertex(end)]) ++end;
-      if (!known[a] || end == i + loop.size()) continue;
       const int b = vertex(end);
-      for (std::size_t k = i + 1; k < end; ++k, ++found) {
+      for (std::size_t k = i + 1; k < end && b != a; ++k, ++found) {
         const double way = norm(part.points[vertex(k)] - part.points[a]);
         uv[vertex(k)] = lerp(uv[a], uv[b], way / norm(part.points[b] - part.points[a]));
       }
     }
   }
-  if (found != added || count_inverted(part.tris, uv) > 0) return {};
+  if (found != added || count_inverted(part.tris, uv) > 0 || !border_is_simple({part, opposite}, uv))
+    return {};
   return uv;
 }
 
-/// Takes the parts as they are after cuts. One that was not cut itself keeps its map.
+/// Takes the parts as they are after cuts. One that was not cut itself keeps its map if that can be extended.
 void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
@@ -85,7 +87,8 @@ void take_known(std::vector<Chart> known, const std::vector<ParamReport>& report
 /// Maps the parts that wait for it, in parallel.
 void map_waiting(const ParamOptions& options, int round, std::size_t n_triangles, Charts& charts) {
   parallel_for((int)charts.chart.size(), [&](int p) {
-    if (!charts.waiting[p] || (round == 0 && charts.report[p].area_scale > limit::area_scale)) return;
+    if (!charts.waiting[p]) return;
+    if (round == 0 && !options.strict && charts.report[p].area_scale > limit::area_scale) return;
     Chart& chart = charts.chart[p];
     charts.failure[p].clear();
     try {

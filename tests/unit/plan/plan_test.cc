@@ -68,6 +68,8 @@ TEST(Plan, APartThatWouldShrinkToNothingIsCutAcross) {
   Surface strict = s;
   ASSERT_EQ(map_surface(strict, 1, {.strict = true}, reports).size(), 1u);
   EXPECT_GT(reports[0].area_scale, 1e8);
+  // joined from shards, which leave such a part without a map
+  EXPECT_FALSE(map_surface(strict, 1, {.strict = true}, reports, std::vector<Chart>(1))[0].uv.empty());
   auto charts = map_surface(s, 1, {}, reports);
   ASSERT_EQ(charts.size(), 2u);
   for (int p = 0; p < 2; ++p) {
