@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <string>
-#include <unordered_map>
 
 #include "lib/core/error.h"
 #include "lib/core/parallel.h"
@@ -24,35 +23,33 @@ struct Charts {
 };
 
 /// Returns the map of a chart for the same part after cuts of its neighbors have split edges of its border:
-/// the images of these edges are split alike. Empty if that is not one-to-one, or the part is another.
-std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part) {
+/// the images of these edges are split alike. Empty if that is not one-to-one, or the part is another. `row`:
+/// -1 per vertex of the surface, before and after the call.
+std::vector<Vec2> with_split_border(const Chart& chart, const SubMesh& part, std::vector<int>& row) {
   const std::size_t n = part.points.size(), added = n - chart.uv.size();
   if (part.tris.size() != chart.mesh.tris.size() + added) return {};
-  std::unordered_map<int, Vec2> image;
-  for (std::size_t i = 0; i < chart.uv.size(); ++i) image[chart.mesh.vertex[i]] = chart.uv[i];
+  for (std::size_t i = 0; i < chart.uv.size(); ++i) row[chart.mesh.vertex[i]] = (int)i;
   std::vector<Vec2> uv(n);
   std::vector<char> known(n, 0);
   for (std::size_t v = 0; v < n; ++v)
-    if (const auto at = image.find(part.vertex[v]); at != image.end()) uv[v] = at->second, known[v] = 1;
+    if (const int i = row[part.vertex[v]]; i >= 0) uv[v] = chart.uv[i], known[v] = 1;
+  for (int v : chart.mesh.vertex) row[v] = -1;
   const std::vector<int> opposite = opposite_halfedges(part);
   std::size_t found = 0;
   for (const std::vector<int>& loop : boundary_loops(opposite)) {
     auto vertex = [&](std::size_t i) { return origin(part.tris, loop[i % loop.size()]); };
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const int a = vertex(i);
-      if (!known[a]) continue;
+    auto length = [&](std::size_t i, std::size_t k) {
+      return norm(part.points[vertex(k)] - part.points[vertex(i)]);
+    };
+    for (std::size_t i = 0, last = loop.size(); i < loop.size(); ++i, ++last) {
       std::size_t end = i + 1;  // of the edge that was split
-      while (end < i + loop.size() && !known[vertex(end)]) ++end;
-      const int b = vertex(end);
-      for (std::size_t k = i + 1; k < end && b != a; ++k, ++found) {
-        const double way = norm(part.points[vertex(k)] - part.points[a]);
-        uv[vertex(k)] = lerp(uv[a], uv[b], way / norm(part.points[b] - part.points[a]));
-      }
+      while (end < last && known[vertex(i)] && !known[vertex(end)]) ++end;
+      for (std::size_t k = i + 1; k < end && end < last; ++k, ++found)
+        uv[vertex(k)] = lerp(uv[vertex(i)], uv[vertex(end)], length(i, k) / length(i, end));
     }
   }
-  if (found != added || count_inverted(part.tris, uv) > 0 || !border_is_simple({part, opposite}, uv))
-    return {};
-  return uv;
+  const bool holds = found == added && count_inverted(part.tris, uv) == 0;
+  return holds && border_is_simple({part, opposite}, uv) ? uv : std::vector<Vec2>();
 }
 
 /// Takes the parts as they are after cuts. One that was not cut itself keeps its map if that can be extended.
@@ -60,10 +57,11 @@ void take_parts(const Surface& surface, int n_parts, Charts& charts) {
   std::vector<SubMesh> parts = split_by_label(surface, surface.face.get<int>("part"), n_parts);
   charts.chart.resize(n_parts), charts.report.resize(n_parts), charts.failure.resize(n_parts);
   charts.waiting.resize(n_parts, 1), charts.as_it_is.resize(n_parts, 0);
+  std::vector<int> row(surface.points.size(), -1);
   for (int p = 0; p < n_parts; ++p) {
     Chart& chart = charts.chart[p];
     if (!charts.waiting[p] && parts[p].vertex != chart.mesh.vertex) {
-      chart.uv = with_split_border(chart, parts[p]);
+      chart.uv = with_split_border(chart, parts[p], row);
       charts.waiting[p] = chart.uv.empty();
       charts.report[p].apart.clear();
       if (!charts.waiting[p]) measure_distortion(parts[p], chart.uv, charts.report[p]);
