@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/neighborhood.h"
 
+#include <omp.h>
+
 #include <algorithm>
 
+#include "lib/core/lists.h"
+#include "lib/core/parallel.h"
 #include "lib/core/take_rows.h"
 
 namespace meshpipe {
@@ -21,54 +25,81 @@ void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
   whole.rows += part.rows - rows.size();
 }
 
-}  // namespace
-
-SurfacePart take_faces(const Surface& whole, std::vector<int> faces) {
+/// As take_faces; `number`: -1 per vertex, before and after the call.
+SurfacePart take_faces(const Surface& whole, std::vector<int> faces, std::vector<int>& number) {
   SurfacePart part;
   part.face = std::move(faces);
-  std::vector<int> number(whole.points.size(), -1);
   for (int t : part.face)
-    for (int v : whole.tris[t]) number[v] = 0;
-  for (int v = 0; v < (int)number.size(); ++v)
-    if (number[v] == 0) {
-      number[v] = (int)part.vertex.size();
-      part.vertex.push_back(v);
-      part.surface.points.push_back(whole.points[v]);
+    for (int v : whole.tris[t]) {
+      if (number[v] < 0) part.vertex.push_back(v);
+      number[v] = 0;
     }
+  std::sort(part.vertex.begin(), part.vertex.end());
+  for (int v : part.vertex) {
+    number[v] = (int)part.surface.points.size();
+    part.surface.points.push_back(whole.points[v]);
+  }
+  part.surface.tris.reserve(part.face.size());
   for (int t : part.face) {
     const Tri& v = whole.tris[t];
     part.surface.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
   }
   part.surface.vertex = rows_of(whole.vertex, part.vertex);
   part.surface.face = rows_of(whole.face, part.face);
+  for (int v : part.vertex) number[v] = -1;
   return part;
 }
 
-Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part,
-                               int corners) {
+}  // namespace
+
+SurfacePart take_faces(const Surface& whole, std::vector<int> faces) {
+  std::vector<int> number(whole.points.size(), -1);
+  return take_faces(whole, std::move(faces), number);
+}
+
+std::vector<Neighborhood> take_neighborhoods(const CutSurface& connected, const std::vector<int>& label,
+                                             int n) {
   const Surface& whole = connected.surface;
   const std::vector<int>& opposite = connected.opposite;
+  const Lists faces = lists_of(n, [&](auto use) {
+    for (int t = 0; t < (int)label.size(); ++t)
+      if (label[t] >= 0) use(label[t], t);
+  });
+  std::vector<int> place(whole.tris.size(), -1);
+  for (int l = 0; l < n; ++l)
+    for (int i = 0; i < (int)faces[l].size(); ++i) place[faces[l][i]] = i;
+  std::vector<std::vector<int>> number(omp_get_max_threads());
+  std::vector<Neighborhood> parts(n);
+  parallel_for(n, [&](int l) {
+    std::vector<int>& mine = number[omp_get_thread_num()];
+    mine.resize(whole.points.size(), -1);
+    Neighborhood& near = parts[l];
+    static_cast<SurfacePart&>(near) = take_faces(whole, {faces[l].begin(), faces[l].end()}, mine);
+    if (opposite.empty()) return;
+    near.opposite.reserve(3 * near.face.size());
+    for (int t : near.face)
+      for (int h = 3 * t; h < 3 * t + 3; ++h) {
+        const int o = opposite[h];
+        const bool within = o >= 0 && label[o / 3] == l;
+        near.opposite.push_back(within ? 3 * place[o / 3] + o % 3 : -1);
+        if (o >= 0 && !within) near.rim.push_back({origin(whole.tris, h), target(whole.tris, h), h});
+      }
+    std::sort(near.rim.begin(), near.rim.end());
+  });
+  return parts;
+}
+
+Neighborhood take_neighborhood(const CutSurface& connected, const std::vector<int>& label, int part) {
+  const Surface& whole = connected.surface;
   const int n = (int)whole.tris.size();
   std::vector<char> within(whole.points.size(), 0);
   for (int t = 0; t < n; ++t)
     if (label[t] == part)
       for (int v : whole.tris[t]) within[v] = 1;
-  std::vector<int> faces;
+  std::vector<int> taken(n, -1);
   for (int t = 0; t < n; ++t)
-    if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= corners)
-      faces.push_back(t);
-  Neighborhood near{take_faces(whole, std::move(faces)), {}};
-  if (opposite.empty()) return near;
-  std::vector<int> place(n, -1);
-  for (int i = 0; i < (int)near.face.size(); ++i) place[near.face[i]] = i;
-  for (int t : near.face)
-    for (int h = 3 * t; h < 3 * t + 3; ++h) {
-      const int o = opposite[h], u = o < 0 ? -1 : place[o / 3];
-      near.opposite.push_back(u < 0 ? -1 : 3 * u + o % 3);
-      if (o >= 0 && u < 0) near.rim.push_back({origin(whole.tris, h), target(whole.tris, h), h});
-    }
-  std::sort(near.rim.begin(), near.rim.end());
-  return near;
+    if (const Tri& v = whole.tris[t]; within[v[0]] + within[v[1]] + within[v[2]] >= 2) taken[t] = 0;
+  return std::move(take_neighborhoods(connected, taken, 1)[0]);
 }
 
 void put_back(const Neighborhood& part, const CutSurface& connected) {

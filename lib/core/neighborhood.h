@@ -14,7 +14,7 @@ struct SurfacePart {
 };
 SurfacePart take_faces(const Surface& whole, std::vector<int> faces);
 
-/// The triangles of a part and those with two of its vertices.
+/// A part of a surface that remembers how it hangs together with the rest.
 struct Neighborhood : SurfacePart {
   std::vector<int> opposite;  ///< half-edges; empty if the whole's are not known
 
@@ -25,14 +25,17 @@ struct Neighborhood : SurfacePart {
   std::vector<Rim> rim{};  ///< sorted
 };
 
-/// Takes the triangles of which at least `corners` corners (1 to 3) belong to triangles with label `part`
-/// (`label`: per triangle). Opposite half-edges of the whole may be empty.
-Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part,
-                               int corners = 2);
+/// Takes the triangles with labels 0..n-1 (`label`: per triangle, -1: none), each label as one. Opposite
+/// half-edges of the whole may be empty.
+std::vector<Neighborhood> take_neighborhoods(const CutSurface& whole, const std::vector<int>& label, int n);
+
+/// Takes the triangles of which at least two corners belong to triangles with label `part`: those of the part
+/// and those next to it. `label`, `opposite`: as in take_neighborhoods.
+Neighborhood take_neighborhood(const CutSurface& whole, const std::vector<int>& label, int part);
 
 /// Puts a neighborhood back into the surface that it was taken from, after cuts of it (lib/core/cut.h): the
 /// result is that of the same cuts of the whole. Appended rows stay in order; opposite half-edges follow.
-/// Requires: the whole has not changed and has the same columns; no edge on the rim was cut.
+/// Requires: the part of the whole has not changed, and has the same columns; no edge on the rim was cut.
 void put_back(const Neighborhood& part, const CutSurface& whole);
 
 }  // namespace meshpipe

@@ -8,22 +8,6 @@
 #include "lib/core/topology.h"
 
 namespace meshpipe {
-std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
-                               int max_faces) {
-  std::vector<char> broken(n_parts, 0);
-  std::vector<int> piece = part, first(n_parts, -1);
-  separate_pieces(mesh, piece);
-  for (std::size_t t = 0; t < piece.size(); ++t) {
-    if (part[t] < 0) continue;
-    if (first[part[t]] < 0) first[part[t]] = piece[t];
-    broken[part[t]] |= first[part[t]] != piece[t];
-  }
-  const Regions r = find_regions(mesh, part, n_parts);
-  for (int p = 0; p < n_parts; ++p)
-    broken[p] |= !r.region[p].maps_to_the_plane() || (max_faces > 0 && r.region[p].faces > max_faces);
-  return broken;
-}
-
 bool is_crease(const Connectivity& mesh, int h) {
   return mesh.is_model(h) ||
          angle(mesh.area_vector(h / 3), mesh.area_vector(mesh.opposite[h] / 3)) > sharp_edge;

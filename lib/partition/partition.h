@@ -15,11 +15,6 @@ namespace meshpipe {
 /// Returns what breaks the rule of formats/mply.md on parts (`part`: per triangle), and where; or "".
 std::string part_fault(const Connectivity& mesh, const std::vector<int>& part);
 
-/// Flags the parts 0..n_parts-1 (`part`: per triangle, -1: none) that are in several pieces, do not map to
-/// the plane, or have more than max_faces triangles (0: any number).
-std::vector<char> broken_parts(const Connectivity& mesh, const std::vector<int>& part, int n_parts,
-                               int max_faces);
-
 /// The bend of an inner edge, in radians, above which it is a crease to cuts, marked by mfeature or not.
 constexpr double sharp_edge = 40 * std::numbers::pi / 180;
 bool is_crease(const Connectivity& mesh, int h);
@@ -39,8 +34,9 @@ Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& 
 /// Moves the interface of each pair of parts (face column `part`, 0..n_parts-1) to the zero level of a
 /// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h, `snap`
 /// as there); where that fails, as on triangles much longer than wide, only pulls it straight. Model edges
-/// stay interfaces. An interface stays as it was where the result would be longer, or a part broken
-/// (broken_parts). Other parts are only split along the new interfaces. Requires: parts without fault.
+/// stay interfaces. An interface stays as it was where the result would be longer, or a part
+/// would no longer map to the plane. Other parts are only split along the new interfaces. Requires: parts
+/// without fault.
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0);
 
 }  // namespace meshpipe

@@ -1,39 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <numbers>
-#include <set>
+#include <span>
 
 #include "lib/core/connectivity.h"
 #include "lib/core/cut.h"
 #include "lib/core/lists.h"
-#include "lib/core/neighborhood.h"
+#include "lib/core/parallel.h"
 #include "lib/core/progress.h"
 #include "lib/core/regions.h"
 #include "lib/core/topology.h"
 #include "lib/numeric/threshold.h"
+#include "lib/partition/curve_neighborhood.h"
+#include "lib/partition/curves.h"
 #include "lib/partition/partition.h"
 
 namespace meshpipe {
 namespace {
 
-/// A maximal run of interface edges between parts a < b, a on its left; closed, or from border or junction to
-/// another.
-struct Curve {
-  int a, b;
-  std::vector<int> half_edges;
-};
-
 enum class Role { moves, stays, other };
-
-struct Limits {
-  int n_parts;
-  double snap;
-  int max_faces;
-  std::vector<char> whole{};  ///< the parts that are there as a whole; empty: all
-};
 
 /// How far to diffuse, in mean edge lengths of the curve, and how often; then how often to pull straight, and
 /// whether the ends on a border stay at or between their vertices.
@@ -43,7 +30,10 @@ struct Attempt {
   bool ends_stay;
 };
 using std::numbers::pi;
+// all together, those at fault again and more gently
 constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}, {0, 0, 100, true}};
+
+constexpr int rings = 14;  // of a band on each side: the diffused indicator has its value there
 
 /// What happens near the curves that are straightened together: each has a band of triangles of its own.
 struct Bands {
@@ -54,109 +44,11 @@ struct Bands {
   std::vector<signed char> apex;  // the side (+1 a, -1 b) of a triangle on an interface edge that stays, or 0
 };
 
-std::vector<Curve> find_curves(const CutSurface& cut) {
-  const Surface& s = cut.surface;
-  const std::vector<int>& opposite = cut.opposite;
-  const std::vector<int>& part = s.face.get<int>("part");
-  // an edge in the curve: its parts, the vertex where it begins, which it does but once, and the half-edge
-  std::vector<std::array<int, 4>> pieces;
-  for (int h = 0; h < (int)opposite.size(); ++h)
-    if (opposite[h] >= 0 && part[h / 3] < part[opposite[h] / 3])
-      pieces.push_back({part[h / 3], part[opposite[h] / 3], origin(s.tris, h), h});
-  std::sort(pieces.begin(), pieces.end());
-
-  std::vector<int> follower(pieces.size(), -1);
-  std::vector<char> follows(pieces.size(), 0), used(pieces.size(), 0);
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const auto& [a, b, from, h] = pieces[i];
-    const std::array<int, 4> next{a, b, target(s.tris, h), 0};
-    const auto it = std::lower_bound(pieces.begin(), pieces.end(), next);
-    if (it == pieces.end() || !std::equal(next.begin(), next.end() - 1, it->begin())) continue;
-    follower[i] = (int)(it - pieces.begin());
-    follows[follower[i]] = 1;
-  }
-  std::vector<Curve> curves;
-  for (bool closed : {false, true})
-    for (int i = 0; i < (int)pieces.size(); ++i) {
-      if (used[i] || (!closed && follows[i])) continue;
-      Curve c{pieces[i][0], pieces[i][1], {}};
-      for (int k = i; k >= 0 && !used[k]; k = follower[k]) {
-        used[k] = 1;
-        c.half_edges.push_back(pieces[k][3]);
-      }
-      curves.push_back(std::move(c));
-    }
-  return curves;
-}
-
-bool is_closed(const Mesh& m, const Curve& c) {
-  return target(m.tris, c.half_edges.back()) == origin(m.tris, c.half_edges.front());
-}
-
-/// The largest angle by which a curve turns on the surface between edges that `skipped` does not name.
-template <class Skipped>
-double sharpest_turn(const CutSurface& cut, const Curve& c, Skipped skipped) {
-  const Surface& s = cut.surface;
-  const std::vector<int>& opposite = cut.opposite;
-  double sharpest = 0;
-  const std::size_t n = c.half_edges.size();
-  const bool closed = is_closed(s, c);
-  for (std::size_t i = closed ? 0 : 1; i < n; ++i) {
-    const int to = c.half_edges[i > 0 ? i - 1 : n - 1], from = c.half_edges[i];
-    if (skipped(to) || skipped(from)) continue;
-    const Vec3 p = s.points[origin(s.tris, from)];
-    auto corner = [&](int h) {
-      return angle(s.points[target(s.tris, h)] - p, s.points[origin(s.tris, prev(h))] - p);
-    };
-    double left = 0, right = 0;
-    int h = from;
-    for (; h >= 0 && h != opposite[to]; h = opposite[prev(h)]) left += corner(h);
-    for (; h >= 0 && h != from; h = opposite[prev(h)]) right += corner(h);
-    if (h >= 0) sharpest = std::max(sharpest, pi * std::abs(left - right) / (left + right));
-  }
-  return sharpest;
-}
-
-/// Lets the owners of vertices (`owner`, 0 or more) take vertices of nobody (-1) for a number of rings: in
-/// each ring, the triangles with a vertex of the ring before, in their order, give theirs to their highest
-/// owner where of(t, owner). `leaving`: half-edges that leave the owned vertices. Linear in the triangles
-/// reached.
-template <class Of>
-void grow_owners(const Connectivity& c, std::vector<int> leaving, int rings, std::vector<int>& owner, Of of) {
-  std::vector<char> seen(c.n_tris(), 0);
-  std::vector<int> tris;
-  std::vector<std::pair<int, int>> claims;  // a half-edge that leaves the vertex, and the owner
-  for (int ring = 0; ring < rings && !leaving.empty(); ++ring) {
-    tris.clear();
-    for (int h : leaving)
-      if (owner[c.from(h)] >= 0)
-        c.for_each_spoke(h, [&](int g) {
-          if (!seen[g / 3]) tris.push_back(g / 3);
-          seen[g / 3] = 1;
-        });
-    std::sort(tris.begin(), tris.end());
-    claims.clear();
-    for (int t : tris) {
-      const Tri& v = c.mesh.tris[t];
-      const int most = std::max({owner[v[0]], owner[v[1]], owner[v[2]]});
-      for (int i = 0; i < 3; ++i)
-        if (owner[v[i]] == -1 && of(t, most)) claims.push_back({3 * t + i, most});
-    }
-    leaving.clear();
-    for (auto [h, o] : claims) {
-      if (owner[c.from(h)] != -1) continue;
-      owner[c.from(h)] = o;
-      leaving.push_back(h);
-    }
-  }
-}
-
 /// Vertices go to the curve that reaches them first through its own two parts; a triangle is in the band of
 /// its vertices.
 Bands make_bands(const CutSurface& cut, const std::vector<Curve>& curves, const std::vector<Role>& role) {
   const Surface& s = cut.surface;
   const std::vector<int>& opposite = cut.opposite;
-  constexpr int rings = 14;  // the diffused indicator has its value there
   constexpr int nobody = -1, blocked = -2;
   const std::vector<int>& part = s.face.get<int>("part");
   std::vector<int> owner(s.points.size(), nobody);
@@ -250,23 +142,27 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
   return in_whole(line, bands.mesh.vertex, n);
 }
 
-/// Gives the pieces of each part, except its largest, to the other part of the band that they lie in.
-void keep_largest_pieces(const Connectivity& mesh, const std::vector<int>& band,
-                         const std::vector<Curve>& curves, std::vector<int>& part, int n_parts) {
+/// Gives the pieces of a part that are not attached to the rest of it, except the largest where none is, to
+/// the other part of the band that they lie in.
+void give_away_fragments(const Connectivity& mesh, const std::vector<int>& anchors,
+                         const std::vector<int>& band, const std::vector<Curve>& curves, int n_parts,
+                         std::vector<int>& part) {
   std::vector<int> piece = part;
   const int n = separate_pieces(mesh, piece);
-  if (n == n_parts) return;
   std::vector<double> area(n, 0);
   std::vector<int> of(n), largest(n_parts, -1);
   for (std::size_t t = 0; t < part.size(); ++t) {
     area[piece[t]] += norm(mesh.area_vector((int)t));
     of[piece[t]] = part[t];
   }
+  std::vector<char> stays(n, 0);
+  for (int t : anchors) stays[piece[t]] = 1;
   for (int i = 0; i < n; ++i)
-    if (int& l = largest[of[i]]; l < 0 || area[i] > area[l]) l = i;
+    if (int& l = largest[of[i]]; l < 0 || std::pair(stays[i], area[i]) > std::pair(stays[l], area[l])) l = i;
+  for (int l : largest)
+    if (l >= 0) stays[l] = 1;
   for (std::size_t t = 0; t < part.size(); ++t)
-    if (band[t] >= 0 && piece[t] != largest[part[t]])
-      part[t] = curves[band[t]].a + curves[band[t]].b - part[t];
+    if (band[t] >= 0 && !stays[piece[t]]) part[t] = curves[band[t]].a + curves[band[t]].b - part[t];
 }
 
 /// Length of each curve inside its band, and the number of its model edges.
@@ -335,13 +231,14 @@ std::vector<Fault> find_faults(const std::vector<Curve>& curves, const std::vect
 
 /// Straightens the chosen curves at once. If all is well, changes the surface, its `opposite` too, and
 /// returns an empty list; otherwise returns the curves at fault.
-std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve>& curves,
-                                  const std::vector<Role>& role, const Attempt& attempt,
-                                  const Limits& limits) {
+std::vector<Fault> try_straighten(CurveNeighborhood& near, const PartTopologies& topology,
+                                  const std::vector<Curve>& curves, const std::vector<Role>& role,
+                                  const Attempt& attempt, double snap) {
+  const CutSurface cut = near.cut();
   Surface& surface = cut.surface;
   Bands bands = make_bands(cut, curves, role);
   if (bands.mesh.tris.empty()) return {};
-  const LevelLine line = line_of(surface, curves, bands, attempt, limits.snap);
+  const LevelLine line = line_of(surface, curves, bands, attempt, snap);
   std::vector<char> active(surface.tris.size(), 0);
   for (int t : bands.mesh.face) {  // one with all corners held on the level stays on its side
     const Tri& v = surface.tris[t];
@@ -360,105 +257,66 @@ std::vector<Fault> try_straighten(const CutSurface& cut, const std::vector<Curve
   std::vector<int>& part = s.face.get<int>("part");
   for (std::size_t t = 0; t < part.size(); ++t)
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
-  keep_largest_pieces({s, after}, band, curves, part, limits.n_parts);
-  std::vector<char> broken = broken_parts({s, after}, part, limits.n_parts, limits.max_faces);
-  for (std::size_t p = 0; p < limits.whole.size(); ++p) broken[p] &= limits.whole[p];
+  give_away_fragments({s, after}, near.anchors, band, curves, near.n_parts(), part);
+  const std::vector<char> broken =
+      broken_parts(topology, topology_of_parts_in({s, after}, part, near.n_parts()), part, near);
   const Measure now = measure({s, after}, band, curves.size());
   const std::vector<Fault> faults = find_faults(curves, role, broken, before, now);
   if (faults.empty()) surface = std::move(s), cut.opposite = std::move(after);
   return faults;
 }
 
-/// Two parts, the lower number first.
-using Pair = std::pair<int, int>;
-
-/// Pairs of parts whose curves share a junction get different colors; curves of a color are straightened
-/// together.
-std::map<Pair, int> color_pairs(const Surface& s, const std::vector<Curve>& curves) {
-  std::map<Pair, std::set<int>> ends;  // vertices
-  std::map<int, std::set<Pair>> at_end;
-  for (const Curve& c : curves)
-    for (int v : {origin(s.tris, c.half_edges.front()), target(s.tris, c.half_edges.back())}) {
-      ends[{c.a, c.b}].insert(v);
-      at_end[v].insert({c.a, c.b});
-    }
-  std::map<Pair, int> color;
-  std::map<Pair, std::set<int>> taken;
-  for (const auto& [pair, vertices] : ends) {
-    int& mine = color[pair];
-    while (taken[pair].contains(mine)) ++mine;
-    for (int v : vertices)
-      for (const Pair& other : at_end[v]) taken[other].insert(mine);
-  }
-  return color;
-}
-
-/// A curve by the ends of an edge in its middle: unlike half-edges these last while other curves are
-/// straightened.
-using Handle = std::pair<int, int>;
-
-Handle handle_of(const Mesh& m, const Curve& c) {
-  const int h = c.half_edges[c.half_edges.size() / 2];
-  return {origin(m.tris, h), target(m.tris, h)};
-}
-
-/// Straightens these curves at once, without those that turn out to be at fault; returns those of the latter
-/// that may do better by other means. Where they are of few parts it looks only at these.
-std::vector<Handle> straighten_together(const CutSurface& cut, std::vector<Handle> handles,
-                                        const Attempt& attempt, const Limits& limits) {
-  const Surface& s = cut.surface;
-  if (handles.empty()) return {};
-  const std::vector<Curve> curves = find_curves(cut);
+/// Straightens the curves at once, without those that turn out to be at fault, and keeps the handles of the
+/// latter that may do better by other means.
+void straighten_together(CurveNeighborhood& near, const Attempt& attempt, double snap) {
+  if (near.handles.empty()) return;
+  const Surface& s = near.surface;
+  const std::vector<Curve> curves = find_curves(near.cut());
   std::vector<Role> role(curves.size(), Role::other);
   std::vector<Pair> pairs;
-  std::vector<char> named(limits.n_parts, 0);
   for (std::size_t c = 0; c < curves.size(); ++c)
-    for (int h : curves[c].half_edges)
-      if (std::binary_search(handles.begin(), handles.end(), Handle{origin(s.tris, h), target(s.tris, h)})) {
-        role[c] = Role::moves;
-        pairs.push_back({curves[c].a, curves[c].b});
-        named[curves[c].a] = named[curves[c].b] = 1;
-      }
-  constexpr std::size_t few = 4;  // times as many parts
-  if (limits.whole.empty() && limits.max_faces == 0 &&
-      few * std::count(named.begin(), named.end(), 1) < named.size()) {
-    std::vector<int> other(s.tris.size());
-    for (std::size_t t = 0; t < other.size(); ++t) other[t] = !named[s.face.get<int>("part")[t]];
-    Neighborhood near = take_neighborhood(cut, other, 0, 1);
-    const std::vector<int>& known = near.vertex;
-    auto number = [&](int v) { return int(std::lower_bound(known.begin(), known.end(), v) - known.begin()); };
-    for (Handle& h : handles) h = {number(h.first), number(h.second)};
-    handles = straighten_together({near.surface, near.opposite}, handles, attempt,
-                                  {limits.n_parts, limits.snap, 0, std::move(named)});
-    for (Handle& h : handles) h = {known[h.first], known[h.second]};
-    put_back(near, cut);
-    return handles;
-  }
+    if (has_handle(s, curves[c], near.handles)) {
+      role[c] = Role::moves;
+      pairs.push_back({curves[c].a, curves[c].b});
+    }
   std::sort(pairs.begin(), pairs.end());
   for (std::size_t c = 0; c < curves.size(); ++c)
     if (role[c] == Role::other &&
         std::binary_search(pairs.begin(), pairs.end(), Pair(curves[c].a, curves[c].b)))
       role[c] = Role::stays;
-  std::vector<Handle> failed;
+  const PartTopologies before =
+      topology_of_parts_in(near.cut().connectivity(), s.face.get<int>("part"), near.n_parts());
+  near.handles.clear();
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
-    const std::vector<Fault> faults = try_straighten(cut, curves, role, attempt, limits);
+    const std::vector<Fault> faults = try_straighten(near, before, curves, role, attempt, snap);
     if (faults.empty()) break;
     for (auto [c, again] : faults) {
       role[c] = Role::stays;
-      if (again) failed.push_back(handle_of(s, curves[c]));
+      if (again) near.handles.push_back(handle_of(s, curves[c]));
     }
   }
-  std::sort(failed.begin(), failed.end());
-  return failed;
+  std::sort(near.handles.begin(), near.handles.end());
+}
+
+/// Straightens curves, those near each other together, with one attempt after another for those still at
+/// fault.
+void straighten_curves(const CutSurface& cut, const std::vector<Curve>& curves,
+                       std::span<const Attempt> tries, double snap, int max_faces) {
+  if (curves.empty()) return;
+  std::vector<CurveNeighborhood> sets = take_curve_neighborhoods(cut, curves, rings, max_faces);
+  parallel_for((int)sets.size(), [&](int i) {
+    for (const Attempt& attempt : tries) straighten_together(sets[i], attempt, snap);
+  });
+  for (CurveNeighborhood& s : sets) put_back(std::move(s), cut);
 }
 
 /// Triangles with two edges on an interface with one other part change to that, unless along creases: the
 /// interface takes the third edge. Neither part's topology changes.
-void trim_ears(const CutSurface& cut, const Limits& limits) {
+void trim_ears(const CutSurface& cut, int n_parts, int max_faces) {
   Surface& s = cut.surface;
   const std::vector<int>& opposite = cut.opposite;
   std::vector<int>& part = s.face.get<int>("part");
-  std::vector<int> faces(limits.n_parts, 0);
+  std::vector<int> faces(n_parts, 0);
   for (int p : part) ++faces[p];
   const Connectivity view = cut.connectivity();
   auto other = [&](int h) { return opposite[h] < 0 ? -1 : part[opposite[h] / 3]; };
@@ -466,7 +324,7 @@ void trim_ears(const CutSurface& cut, const Limits& limits) {
   auto is_ear = [&](int h) {
     const int mine = part[h / 3], theirs = other(h);
     if (theirs < 0 || theirs == mine || other(prev(h)) != theirs || other(next(h)) != mine) return false;
-    if (limits.max_faces > 0 && faces[theirs] >= limits.max_faces) return false;
+    if (max_faces > 0 && faces[theirs] >= max_faces) return false;
     if (is_crease(view, h) || is_crease(view, prev(h))) return false;
     int g = opposite[prev(h)];
     while (g >= 0 && g != h && part[g / 3] == theirs) g = opposite[prev(g)];
@@ -489,11 +347,10 @@ void trim_ears(const CutSurface& cut, const Limits& limits) {
 
 /// Straightens what is still bent, one curve at a time: on fans of large triangles the bands of neighbors may
 /// have left no triangles to move in.
-void straighten_corners(const CutSurface& cut, const Limits& limits) {
+void straighten_corners(const CutSurface& cut, double snap, int max_faces) {
   const Surface& surface = cut.surface;
   constexpr double bent = 0.5;
   constexpr std::size_t most_work = 2000000;  // triangles: each curve costs a pass over all
-  trim_ears(cut, limits);
   std::vector<std::pair<double, Handle>> corners;
   auto crease = [&](int h) { return is_crease(cut.connectivity(), h); };
   for (const Curve& c : find_curves(cut))
@@ -501,15 +358,17 @@ void straighten_corners(const CutSurface& cut, const Limits& limits) {
       corners.push_back({-turn, handle_of(surface, c)});
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
-  for (const auto& [turn, one] : corners)
-    if (!straighten_together(cut, {one}, attempts[2], limits).empty())
-      straighten_together(cut, {one}, attempts[3], limits);
+  for (const auto& [turn, one] : corners) {
+    std::vector<Curve> curves = find_curves(cut);
+    std::erase_if(curves, [&](const Curve& c) { return !has_handle(surface, c, {one}); });
+    straighten_curves(cut, curves, std::span(attempts).subspan(2), snap, max_faces);
+  }
 }
 
 }  // namespace
 
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces) {
-  const Limits limits{n_parts, snap, max_faces};
+  name_origins(cut.surface);
   const std::map<Pair, int> colors = color_pairs(cut.surface, find_curves(cut));
   constexpr double straight = 0.05;  // as a closed shortest line is
   const Surface& surface = cut.surface;
@@ -517,19 +376,18 @@ void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int 
   int n_colors = 0;
   for (const auto& [pair, color] : colors) n_colors = std::max(n_colors, color + 1);
   for (int color = 0; color < n_colors; ++color) {
-    std::vector<Handle> open;
-    for (const Curve& c : find_curves(cut))
-      if (const auto found = colors.find({c.a, c.b});
-          found != colors.end() && found->second == color &&
-          !std::all_of(c.half_edges.begin(), c.half_edges.end(), model) &&
-          !(is_closed(surface, c) && sharpest_turn(cut, c, model) < straight))
-        open.push_back(handle_of(surface, c));
-    std::sort(open.begin(), open.end());
-    // all together, those at fault again and more gently
-    for (const Attempt& attempt : attempts) open = straighten_together(cut, open, attempt, limits);
+    std::vector<Curve> open = find_curves(cut);
+    std::erase_if(open, [&](const Curve& c) {
+      const auto found = colors.find({c.a, c.b});
+      return found == colors.end() || found->second != color ||
+             std::all_of(c.half_edges.begin(), c.half_edges.end(), model) ||
+             (is_closed(surface, c) && sharpest_turn(cut, c, model) < straight);
+    });
+    straighten_curves(cut, open, attempts, snap, max_faces);
     add_progress(0.2 / n_colors);
   }
-  straighten_corners(cut, limits);
+  trim_ears(cut, n_parts, max_faces);
+  straighten_corners(cut, snap, max_faces);
 }
 
 }  // namespace meshpipe
