@@ -163,6 +163,28 @@ std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vecto
   return all;
 }
 
+/// Whether no triangle is as low as the tolerance at a line (model edge, border) or at an edge of a step, and
+/// there is no fragment: then no two lines are that near each other.
+bool nothing_is_narrow(const Connectivity& c, double tolerance) {
+  std::vector<char> on_line(c.n_vertices(), 0);
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (c.is_border(h) || c.is_model(h)) on_line[c.from(h)] = on_line[c.to(h)] = 1;
+  if (std::find(on_line.begin(), on_line.end(), 1) == on_line.end()) return true;
+  std::vector<int> component;
+  if (components(c.opposite, component) > 1) return false;
+  bool found = false;
+#pragma omp parallel for schedule(static) reduction(|| : found)
+  for (int t = 0; t < c.n_tris(); ++t) {
+    const Vec3 n = c.area_vector(t);
+    const double longest = std::max({c.length(3 * t), c.length(3 * t + 1), c.length(3 * t + 2)});
+    if (norm(n) > tolerance * longest) continue;
+    for (int h = 3 * t; h < 3 * t + 3; ++h)
+      found =
+          found || on_line[c.from(h)] || !(angle(n, c.area_vector(c.opposite[h] / 3)) < sharp_edge_of_step);
+  }
+  return !found;
+}
+
 std::vector<int> labels(const Surface& s) {
   std::vector<int> all = s.face.has("patch") ? s.face.get<int>("patch") : std::vector<int>();
   sort_unique(all);
@@ -182,9 +204,7 @@ DefeatureReport remove_small_features(CutSurface s, const DefeatureOptions& opti
   if (const int v = find_pinched_vertex(c); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) +
                         " joins triangles that share no edge; run mclean first");
-  if (std::none_of(opposite.begin(), opposite.end(), [](int o) { return o < 0; }) &&
-      std::none_of(model.begin(), model.end(), [](int bits) { return bits != 0; }))
-    return report;  // without lines nothing is narrow
+  if (nothing_is_narrow(c, options.tolerance)) return report;
   std::vector<char> banned(surface.points.size(), 0);
   EditMesh edited(c);
   std::vector<double> drift(surface.points.size(), 0);

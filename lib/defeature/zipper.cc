@@ -12,7 +12,6 @@ namespace {
 /// The surface folds back where normals differ by more: what is between is the rim of a thin plate or the
 /// bottom of a slot, and closing it would bring two sheets together.
 constexpr double fold_angle = 160 * degree;
-constexpr double sharp = 40 * degree;      ///< between normals, where creases begin
 constexpr double most_turn = 60 * degree;  ///< of a triangle that is higher than the tolerance
 constexpr double off_plane = 1e-7;         ///< of the tolerance: rounding of vertices that stay in a plane
 /// Least distance of a new vertex on an edge from the ends of that, of the tolerance: what is merged there
@@ -37,7 +36,7 @@ Vec3 MergedSurface::normal(int t) const {
 }
 
 bool MergedSurface::is_sharp(int h) const {
-  return mesh.opp[h] >= 0 && turn(normal(h / 3), normal(mesh.opp[h] / 3)) > sharp;
+  return mesh.opp[h] >= 0 && turn(normal(h / 3), normal(mesh.opp[h] / 3)) > sharp_edge_of_step;
 }
 
 Zipper::Zipper(const Surface& surface, EditMesh edited, const DefeatureOptions& options,

@@ -15,6 +15,9 @@ namespace meshpipe {
 /// The angle between two lines, in radians, below which they bound a strip, and do not meet in a corner.
 constexpr double strip_angle = 25 * std::numbers::pi / 180;
 
+/// The angle between normals from which an edge without a line may be that of a step.
+constexpr double sharp_edge_of_step = 40 * degree;
+
 /// Lines of a surface: chains of hard edges between nodes. Nodes are where more or fewer than two hard edges
 /// meet, or a line bends.
 struct FeatureLines {
