@@ -29,7 +29,7 @@ last := $(lastword $(filter-out %-check,$(stages)))
 # sizes that vary have no share for the tolerance of mfeature, as in mremesh
 varying := $(foreach o,--data --field --expression --around --across --gap,$(findstring $(o),$(SIZE_ARGS)))
 tolerance := $(if $(strip $(varying)),$(if $(findstring --tolerance,$(FEATURE_ARGS)),,--tolerance 0))
-goal := $(if $(SIZE),--size $(SIZE))$(if $(TRIANGLES),--triangles $(TRIANGLES))
+goal := $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
 args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
   $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))

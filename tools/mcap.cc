@@ -155,7 +155,9 @@ void run(Io& io, Options& o) {
   Surface& surface = stream.surface;
   expect_no_sheets(stream, "the lines where they meet are no open ends");
   parse_trim(o, diagonal(surface));
-  if (orient_outward(surface)) io.say("the surface was inside out: all triangles are reversed");
+  if (const int n = orient_outward(surface))
+    io.say(std::to_string(n) + (n == 1 ? " surface was" : " surfaces were") +
+           " inside out: all triangles of it are reversed");
   std::vector<End> ends = find_ends(surface);
   if (!o.name_file.empty()) name_ends(ends, read_end_names(read_bytes(o.name_file), o.name_file));
   if (!chosen.empty()) o.kept = ends_in(ends, chosen);

@@ -51,13 +51,16 @@ int main(int argc, char** argv) {
     app.add_option("--clip", plane,
                    "cut away the part beyond this share of the bounding box along x, y or z (default 0.5)")
         ->type_name("x|y|z[=SHARE]");
-    app.add_option("--azimuth", view.azimuth,
-                   "azimuth of the viewer around the z axis, degrees (default 30)");
-    app.add_option("--elevation", view.elevation, "elevation of the viewer, degrees (default 20)");
+    app.add_option("--azimuth", view.azimuth, "azimuth of the viewer around the z axis, degrees (default 30)")
+        ->check(finite_number());
+    app.add_option("--elevation", view.elevation, "elevation of the viewer, degrees (default 20)")
+        ->check(finite_number());
     app.add_option("--zoom", view.zoom, "magnification about the center (default 1)")
         ->check(positive_number());
-    app.add_option("--right", view.shift_x, "move the center right by this share of the width");
-    app.add_option("--up", view.shift_y, "move the center up by this share of the width");
+    app.add_option("--right", view.shift_x, "move the center right by this share of the width")
+        ->check(finite_number());
+    app.add_option("--up", view.shift_y, "move the center up by this share of the width")
+        ->check(finite_number());
     app.add_option("--width", width, "width of one picture in pixels (default 800)")
         ->check(CLI::Range(16, 8192));
     app.add_option("--height", height, "height in pixels (default 800)")->check(CLI::Range(16, 8192));

@@ -155,6 +155,15 @@ CLI::Validator positive_number() {
           ""};
 }
 
+CLI::Validator finite_number() {
+  return {[](std::string& text) {
+            double x = 0;
+            const bool good = CLI::detail::lexical_cast(text, x) && std::isfinite(x);
+            return good ? std::string() : "'" + text + "' is not a finite number";
+          },
+          ""};
+}
+
 CLI::Validator count_between(double least, double most) {
   return {[=](std::string& text) -> std::string {
             double x = 0;

@@ -32,6 +32,8 @@ void use_plain_help(CLI::App& app);
 
 /// Returns a check of an option's value: finite and above 0.
 CLI::Validator positive_number();
+/// Accepts finite numbers.
+CLI::Validator finite_number();
 /// Accepts whole numbers from `least` to `most`, also as 1.5e4.
 CLI::Validator count_between(double least, double most);
 /// Parses a length, or with % a part of `diagonal`; none if the text is neither, negative or infinite.

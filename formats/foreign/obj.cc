@@ -234,12 +234,13 @@ std::string write_obj(const Stream& stream, bool) {
     colors.append_to(out, v, false);
     out += '\n';
   }
+  std::set<std::string> taken;
   for (std::size_t k = 0; k < by.tags.size(); ++k) {
+    const std::string tag = std::to_string(by.tags[k]);
     std::string name = one_line(stream.name_of(2, by.tags[k]));
-    if (!name.empty())
-      out += "g " + name + '\n';
-    else if (by.tags.size() > 1)
-      out += "g patch_" + std::to_string(by.tags[k]) + '\n';
+    if (name.empty() && by.tags.size() > 1) name = "patch_" + tag;
+    if (!name.empty() && !taken.insert(name).second) name += '_' + tag;  // groups of one name are one
+    if (!name.empty()) out += "g " + name + '\n';
     for (std::size_t i = by.first[k]; i < by.first[k + 1]; ++i) {
       out += 'f';
       for (int v : s.tris[by.order[i]]) {

@@ -164,6 +164,8 @@ Stream vtk_surface(VtkData data) {
       patch = std::get<std::vector<int>>(std::move(of_polygons.data));
       if (a.name == "patch") a.name.clear();  // it is no column of its own
     }
+  for (const Array& a : data.cell_data)
+    if (a.name == "patch") leave_out(stream, s.face, a.name, "as labels, which are whole numbers of 32 bits");
   data.polygons.patch = std::move(patch);
   data.polygons.patch.resize(n_polygons, 0);
   auto fits = [&](const Table& table, const Array& a, std::size_t rows) {

@@ -21,9 +21,10 @@ struct End {
   double planarity = 0;  ///< largest distance of a rim's vertex from the plane of `center` and `normal`
 };
 
-/// Reverses all triangles if the surface, its ends closed, has a negative volume; returns whether. Throws: as
+/// Reverses the triangles of each vessel (components that share an end) that has a negative volume with its
+/// ends closed; of a single vessel also closed components in it. Returns how many are reversed. Throws: as
 /// find_ends.
-bool orient_outward(Surface& surface);
+int orient_outward(Surface& surface);
 
 /// Returns the ends, the largest area first, named inlet, outlet_1, outlet_2 ... Throws: NotAdmissible unless
 /// the surface is an oriented manifold without pinched vertices.

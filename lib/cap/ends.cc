@@ -7,6 +7,7 @@
 #include "lib/core/number.h"
 #include "lib/core/segments.h"
 #include "lib/core/topology.h"
+#include "lib/core/union_find.h"
 
 namespace meshpipe {
 namespace {
@@ -117,22 +118,43 @@ std::vector<std::vector<int>> rims_of(const Connectivity& c) {
   return rims;
 }
 
-bool orient_outward(Surface& surface) {
-  if (surface.tris.empty()) return false;
+int orient_outward(Surface& surface) {
+  if (surface.tris.empty()) return 0;
+  std::vector<int> component, of(surface.points.size(), 0);
+  const int n = components(opposite_halfedges(surface), component);
+  for (std::size_t t = 0; t < component.size(); ++t)
+    for (int v : surface.tris[t]) of[v] = component[t];
+  const std::vector<End> ends = find_ends(surface);
+  UnionFind sets(n);
+  for (const End& end : ends)  // a wall has two surfaces
+    for (const std::vector<int>& rim : end.rims) sets.join(of[rim[0]], of[end.rims[0][0]]);
+  std::vector<char> has_end(n, 0);
+  for (const End& end : ends) has_end[sets.find(of[end.rims[0][0]])] = 1;
+  const auto n_sets = std::count(has_end.begin(), has_end.end(), 1);
+  for (int c = 1; c < n && n_sets < 2; ++c) sets.join(c, 0);
   const Vec3 origin = surface.points[surface.tris[0][0]];
   auto corner = [&](int v) { return surface.points[v] - origin; };
-  double volume = 0;
-  for (int t = 0; t < (int)surface.tris.size(); ++t) volume += volume6(surface, t, origin);
-  for (const End& end : find_ends(surface))
+  std::vector<double> volume(n, 0);
+  for (int t = 0; t < (int)surface.tris.size(); ++t)
+    volume[sets.find(component[t])] += volume6(surface, t, origin);
+  for (const End& end : ends)
     for (const std::vector<int>& rim : end.rims)
       for (std::size_t i = 0; i < rim.size(); ++i)
-        volume += dot(end.center - origin, cross(corner(rim[i]), corner(rim[(i + 1) % rim.size()])));
-  if (volume >= 0) return false;
-  for (Tri& t : surface.tris) std::swap(t[1], t[2]);
-  if (surface.face.has("model"))
-    for (std::uint8_t& bits : surface.face.get<std::uint8_t>("model"))
-      bits = (std::uint8_t)((bits & 2) | (bits & 1) << 2 | (bits >> 2 & 1));
-  return true;
+        volume[sets.find(of[rim[0]])] +=
+            dot(end.center - origin, cross(corner(rim[i]), corner(rim[(i + 1) % rim.size()])));
+  auto is_inverted = [&](int c) { return volume[c] < 0 && (n_sets < 2 || has_end[c]); };
+  int reversed = 0;
+  for (int c = 0; c < n; ++c) reversed += sets.find(c) == c && is_inverted(c);
+  std::vector<std::uint8_t>* model =
+      surface.face.has("model") ? &surface.face.get<std::uint8_t>("model") : nullptr;
+  for (std::size_t t = 0; t < surface.tris.size() && reversed > 0; ++t) {
+    if (!is_inverted(sets.find(component[t]))) continue;
+    std::swap(surface.tris[t][1], surface.tris[t][2]);
+    if (!model) continue;
+    std::uint8_t& bits = (*model)[t];
+    bits = (std::uint8_t)((bits & 2) | (bits & 1) << 2 | (bits >> 2 & 1));
+  }
+  return reversed;
 }
 
 std::vector<End> find_ends(const Mesh& mesh) {

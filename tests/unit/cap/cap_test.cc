@@ -276,11 +276,27 @@ TEST(cap, caps_an_annulus) {
 
 TEST(cap, orients_outward) {
   Surface s = open_tube(2, 24);
-  EXPECT_FALSE(orient_outward(s));
+  EXPECT_EQ(orient_outward(s), 0);
   for (Tri& t : s.tris) std::swap(t[0], t[1]);
   EXPECT_LT(find_ends(s)[0].normal.z * (find_ends(s)[0].center.z - 1), 0);
-  EXPECT_TRUE(orient_outward(s));
+  EXPECT_EQ(orient_outward(s), 1);
   EXPECT_GT(find_ends(s)[0].normal.z * (find_ends(s)[0].center.z - 1), 0);
+}
+
+//  |  |   |  |   each by itself, and its model edge with it
+TEST(cap, orients_each_of_two_tubes_outward) {
+  Surface s = open_tube(2, 24);
+  const int n = (int)s.points.size(), m = (int)s.tris.size();
+  for (int v = 0; v < n; ++v) s.points.push_back(s.points[v] + Vec3{5, 0, 0});
+  for (int t = 0; t < m; ++t) s.tris.push_back({s.tris[t][0] + n, s.tris[t][2] + n, s.tris[t][1] + n});
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  std::vector<std::uint8_t> model(s.tris.size(), 0);
+  model[m] = 1;
+  s.face.set("model", model);
+  EXPECT_EQ(orient_outward(s), 1);
+  for (const End& e : find_ends(s)) EXPECT_GT(e.normal.z * (e.center.z - 1), 0) << e.name;
+  EXPECT_EQ(s.tris[m], (Tri{s.tris[0][0] + n, s.tris[0][1] + n, s.tris[0][2] + n}));
+  EXPECT_EQ(s.face.get<std::uint8_t>("model")[m], 4);
 }
 
 TEST(cap, names_by_place_and_by_area) {

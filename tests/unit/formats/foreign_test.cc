@@ -96,6 +96,14 @@ static double volume(const Mesh& mesh) {
   return sum;
 }
 
+TEST(Vtk, LabelsThatAreNotWholeAreDataAndSaidToBe) {
+  const std::string data = "CELL_DATA 2\nSCALARS patch double 1\nLOOKUP_TABLE default\n1.5 2.5\n";
+  const Stream s = read_any(vtk_cells("3 0 1 2 3 0 2 3", "5 5", data), "in");
+  EXPECT_EQ(s.surface.face.get<double>("patch_2"), (std::vector<double>{1.5, 2.5}));
+  EXPECT_EQ(s.remarks, std::vector<std::string>{
+                           "left out: face data patch, as labels, which are whole numbers of 32 bits"});
+}
+
 TEST(Volumes, TheirOuterFacesAreTheSurfaceWhereThereIsNone) {
   const std::string cells = "8 0 1 2 3 4 5 6 7 5 4 5 6 7 8 6 1 9 5 2 10 6 4 11 13 12 14",
                     types = "12 14 13 10";

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "formats/foreign/inria.h"
@@ -188,6 +189,18 @@ TEST(Formats, TextFormatsKeepEveryDigitAndName) {
   const Stream off = read_any(write_as(original, "a.off", true), "a.off");
   EXPECT_EQ(off.surface.points, original.surface.points);
   EXPECT_EQ(off.surface.tris, original.surface.tris);
+}
+
+TEST(Formats, ObjGroupsOfOneNameStayApart) {
+  Stream same = two_patches();
+  const std::set<int> tags(same.surface.face.get<int>("patch").begin(),
+                           same.surface.face.get<int>("patch").end());
+  same.names.clear();
+  for (int tag : tags) same.names.push_back({2, tag, "part"});
+  const Stream back = read_any(write_as(same, "a.obj", true), "a.obj");
+  ASSERT_EQ(back.names.size(), 2u);
+  EXPECT_EQ(back.names[0].text, "part");
+  EXPECT_EQ(back.names[1].text, "part_" + std::to_string(*tags.rbegin()));
 }
 
 TEST(Formats, BinaryPlyKeepsEveryBit) {
