@@ -101,13 +101,13 @@ std::vector<SubMesh> split_by_label(const Mesh& mesh, const std::vector<int>& la
   });
   std::vector<std::vector<int>> number(omp_get_max_threads());
   std::vector<SubMesh> parts(n);
-  constexpr std::size_t worth_threads = 30000;  // triangles
+  const bool worth = mesh.tris.size() > 30000;
   auto take = [&](int l) {
-    std::vector<int>& mine = number[omp_get_thread_num()];
+    std::vector<int>& mine = number[thread_of_loop(n, worth)];
     mine.resize(mesh.points.size(), -1);
     parts[l] = sub_mesh(mesh, {faces[l].begin(), faces[l].end()}, mine);
   };
-  parallel_for(n, take, mesh.tris.size() > worth_threads);
+  parallel_for(n, take, worth);
   return parts;
 }
 

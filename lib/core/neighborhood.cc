@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lib/core/neighborhood.h"
 
-#include <omp.h>
-
 #include <algorithm>
 
 #include "lib/core/lists.h"
@@ -25,7 +23,7 @@ void put_rows(const Table& part, const std::vector<int>& rows, Table& whole) {
   whole.rows += part.rows - rows.size();
 }
 
-/// As take_faces; `number`: -1 per vertex, before and after the call.
+/// As take_faces; `number`: -1 for every vertex, before and after the call.
 SurfacePart take_faces(const Surface& whole, std::vector<int> faces, std::vector<int>& number) {
   SurfacePart part;
   part.face = std::move(faces);
@@ -71,7 +69,7 @@ std::vector<Neighborhood> take_neighborhoods(const CutSurface& connected, const 
   std::vector<std::vector<int>> number(omp_get_max_threads());
   std::vector<Neighborhood> parts(n);
   parallel_for(n, [&](int l) {
-    std::vector<int>& mine = number[omp_get_thread_num()];
+    std::vector<int>& mine = number[thread_of_loop(n)];
     mine.resize(whole.points.size(), -1);
     Neighborhood& near = parts[l];
     static_cast<SurfacePart&>(near) = take_faces(whole, {faces[l].begin(), faces[l].end()}, mine);

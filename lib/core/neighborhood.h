@@ -22,11 +22,12 @@ struct Neighborhood : SurfacePart {
     int from, to, half_edge;  ///< of the whole
     auto operator<=>(const Rim&) const = default;
   };
-  std::vector<Rim> rim{};  ///< sorted
+  std::vector<Rim> rim{};  ///< sorted; empty if opposite half-edges are not known
 };
 
 /// Takes the triangles with labels 0..n-1 (`label`: per triangle, -1: none), each label as one. Opposite
-/// half-edges of the whole may be empty.
+/// half-edges of the whole may be empty. What is to be cut has the face column `origin` (name_origins)
+/// before.
 std::vector<Neighborhood> take_neighborhoods(const CutSurface& whole, const std::vector<int>& label, int n);
 
 /// Takes the triangles of which at least two corners belong to triangles with label `part`: those of the part

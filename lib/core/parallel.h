@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Loops over independent pieces of work on all threads.
 #pragma once
+#include <omp.h>
+
 #include <exception>
 #include <vector>
 
@@ -29,5 +31,10 @@ void parallel_for(int n, F f, bool worth = true) {
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);
 }
+
+/// Returns the number of the thread for memory of its own, from inside of f in parallel_for(n, f, worth):
+/// below omp_get_max_threads() before the loop. Where that opens no region the thread may have a larger
+/// number.
+inline int thread_of_loop(int n, bool worth = true) { return worth && n > 1 ? omp_get_thread_num() : 0; }
 
 }  // namespace meshpipe

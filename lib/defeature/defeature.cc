@@ -164,7 +164,7 @@ std::vector<RemovedFeature> features_of(const MergedSurface& z, const std::vecto
 }
 
 /// Whether no triangle is as low as the tolerance at a line (model edge, border) or at an edge of a step, and
-/// there is no fragment: then no two lines are that near each other.
+/// there is no fragment: then there is nothing to merge or to remove.
 bool nothing_is_narrow(const Connectivity& c, double tolerance) {
   std::vector<char> on_line(c.n_vertices(), 0);
   for (int h = 0; h < c.n_half_edges(); ++h)

@@ -49,6 +49,18 @@ int label_near(const CutSurface& cut, const std::vector<Curve>& curves, int ring
   return n;
 }
 
+/// Sets what is allowed: what parts have, and an equal share of what they may still get.
+void allow_faces(const std::vector<int>& part, int max_faces, std::vector<CurveNeighborhood>& sets) {
+  std::vector<int> left(1 + *std::max_element(part.begin(), part.end()), max_faces), sharing(left.size(), 0);
+  for (int p : part) --left[p];
+  for (const CurveNeighborhood& s : sets)
+    for (int p : s.parts) ++sharing[p];
+  for (CurveNeighborhood& s : sets) {
+    for (int i = 0; i < s.n_parts(); ++i) s.allowed[i] = std::max(0, left[s.parts[i]]) / sharing[s.parts[i]];
+    for (int p : s.surface.face.get<int>("part")) ++s.allowed[p];
+  }
+}
+
 }  // namespace
 
 std::vector<CurveNeighborhood> take_curve_neighborhoods(const CutSurface& cut,
@@ -59,25 +71,20 @@ std::vector<CurveNeighborhood> take_curve_neighborhoods(const CutSurface& cut,
   std::vector<Neighborhood> near = take_neighborhoods(cut, label, n);
   std::vector<CurveNeighborhood> sets(n);
   const std::vector<int>& part = cut.surface.face.get<int>("part");
-  std::vector<int> faces(max_faces > 0 ? 1 + *std::max_element(part.begin(), part.end()) : 0, 0);
-  for (std::size_t t = 0; t < part.size() && max_faces > 0; ++t) ++faces[part[t]];
   for (int i = 0; i < n; ++i) {
     CurveNeighborhood& s = sets[i];
     static_cast<Neighborhood&>(s) = std::move(near[i]);
-    for (int t = 0; t < (int)s.face.size(); ++t)
-      for (int h = 3 * t; h < 3 * t + 3; ++h) {
-        const int o = s.opposite[h] >= 0 ? -1 : cut.opposite[3 * s.face[t] + h % 3];
-        if (o >= 0 && part[o / 3] == part[s.face[t]]) s.anchors.push_back(t);
-      }
+    for (int h = 0; h < (int)s.opposite.size(); ++h) {
+      const int o = s.opposite[h] >= 0 ? -1 : cut.opposite[3 * s.face[h / 3] + h % 3];
+      if (o >= 0 && part[o / 3] == part[s.face[h / 3]]) s.anchors.push_back(h);
+    }
     std::vector<int>& here = s.surface.face.get<int>("part");
     s.parts = here;
     sort_unique(s.parts);
     for (int& p : here) p = index_in(s.parts, p);
     s.allowed.assign(s.parts.size(), std::numeric_limits<int>::max());
-    if (max_faces == 0) continue;
-    for (int p = 0; p < s.n_parts(); ++p) s.allowed[p] = max_faces - faces[s.parts[p]];
-    for (int p : here) ++s.allowed[p];
   }
+  if (max_faces > 0) allow_faces(part, max_faces, sets);
   for (const Curve& c : curves) {
     CurveNeighborhood& s = sets[label[c.half_edges[0] / 3]];
     const auto [a, b] = handle_of(cut.surface, c);
@@ -92,13 +99,14 @@ void put_back(CurveNeighborhood near, const CutSurface& cut) {
   put_back(static_cast<const Neighborhood&>(near), cut);
 }
 
-PartTopologies topology_of_parts_in(const Connectivity& mesh, const std::vector<int>& part, int n_parts) {
-  PartTopologies r{part, std::vector<PartTopology>(n_parts)};
+PartTopologies topology_of_parts_in(const CurveNeighborhood& near, const Connectivity& mesh,
+                                    const std::vector<int>& part) {
+  PartTopologies r{part, std::vector<PartTopology>(near.n_parts()), {}};
   std::vector<char> seen(separate_pieces(mesh, r.piece), 0);
   for (std::size_t t = 0; t < part.size(); ++t)
     if (!seen[r.piece[t]]) seen[r.piece[t]] = 1, ++r.part[part[t]].pieces;
-  const Regions regions = find_regions(mesh, part, n_parts);
-  for (int p = 0; p < n_parts; ++p) {
+  const Regions regions = find_regions(mesh, part, near.n_parts());
+  for (int p = 0; p < near.n_parts(); ++p) {
     PartTopology& t = r.part[p];
     t.faces = regions.region[p].faces;
     t.genus = regions.region[p].genus() + t.pieces - 1;
@@ -107,6 +115,13 @@ PartTopologies topology_of_parts_in(const Connectivity& mesh, const std::vector<
     sort_unique(v);
     t.pinches = int(regions.border[p].size() - v.size());
   }
+  for (int h : near.anchors) {
+    auto same_part = [&](int t) { return part[t] == part[h / 3]; };
+    int g = h;
+    do g = next_on_border(mesh.opposite, g, same_part);
+    while (mesh.opposite[g] >= 0 || !std::binary_search(near.anchors.begin(), near.anchors.end(), g));
+    r.next.push_back(g);
+  }
   return r;
 }
 
@@ -114,11 +129,11 @@ std::vector<char> broken_parts(const PartTopologies& before, const PartTopologie
                                const std::vector<int>& part, const CurveNeighborhood& near) {
   std::vector<char> broken(near.n_parts(), 0);
   std::vector<int> becomes(before.piece.size(), -1), was(now.piece.size(), -1), attached(near.n_parts(), 0);
-  for (int t : near.anchors) {
-    const int a = before.piece[t], b = now.piece[t];
+  for (std::size_t i = 0; i < near.anchors.size(); ++i) {
+    const int t = near.anchors[i] / 3, a = before.piece[t], b = now.piece[t];
     if (becomes[a] < 0) becomes[a] = b, ++attached[part[t]];
     if (was[b] < 0) was[b] = a;
-    broken[part[t]] |= becomes[a] != b || was[b] != a;
+    broken[part[t]] |= becomes[a] != b || was[b] != a || before.next[i] != now.next[i];
   }
   for (int p = 0; p < near.n_parts(); ++p) {
     const PartTopology &x = before.part[p], &y = now.part[p];

@@ -17,7 +17,9 @@ struct CurveNeighborhood : Neighborhood {
   std::vector<Handle> handles{};  ///< of the curves, sorted
   std::vector<int> parts{};       ///< of each part, the number in the whole
   std::vector<int> allowed{};     ///< of each part, the triangles that it may have here
-  std::vector<int> anchors{};     ///< triangles next to one of their part outside
+  /// Half-edges to a triangle of the same part outside, ascending. Cuts leave them as they are: no band has
+  /// more rings than were taken, and their triangles have no vertex within these.
+  std::vector<int> anchors{};
   int n_parts() const { return (int)parts.size(); }
   CutSurface cut() { return {surface, opposite}; }
 };
@@ -40,13 +42,16 @@ struct PartTopology {
 struct PartTopologies {
   std::vector<int> piece;  ///< of each triangle
   std::vector<PartTopology> part;
+  std::vector<int> next;  ///< of each anchor, the next one on the border of its part
 };
-/// Measures the parts 0..n_parts-1 (`part`: per triangle) of a neighborhood.
-PartTopologies topology_of_parts_in(const Connectivity& mesh, const std::vector<int>& part, int n_parts);
+/// Measures the parts (`part`: per triangle) of a neighborhood, which may have been cut.
+PartTopologies topology_of_parts_in(const CurveNeighborhood& near, const Connectivity& mesh,
+                                    const std::vector<int>& part);
 
-/// Flags the parts that as a whole no longer map to the plane, as they did: the pieces that are attached to
-/// the rest are no longer the same, or there are others, or their genus has changed, or they touch themselves
-/// more often. Also the parts with too many triangles.
+/// Flags the parts that as a whole may no longer map to the plane, as they did: the pieces that are attached
+/// to the rest, or the order of the anchors along their borders, are no longer the same, or there are other
+/// pieces, or their genus has changed, or they touch themselves more often. Also those with more triangles
+/// than are allowed.
 std::vector<char> broken_parts(const PartTopologies& before, const PartTopologies& now,
                                const std::vector<int>& part, const CurveNeighborhood& near);
 

@@ -35,8 +35,8 @@ Interfaces measure_interfaces(const Connectivity& mesh, const std::vector<int>& 
 /// diffused indicator of the two sides (threshold dynamics), pulled straight (lib/core/level_line.h, `snap`
 /// as there); where that fails, as on triangles much longer than wide, only pulls it straight. Model edges
 /// stay interfaces. An interface stays as it was where the result would be longer, or a part
-/// would no longer map to the plane. Other parts are only split along the new interfaces. Requires: parts
-/// without fault.
+/// would no longer map to the plane, or be joined or divided near it. Adds the face column `origin`. Other
+/// parts are only split along the new interfaces. Requires: parts without fault.
 void straighten_interfaces(const CutSurface& cut, int n_parts, double snap, int max_faces = 0);
 
 }  // namespace meshpipe

@@ -142,8 +142,8 @@ LevelLine straight_line(const Bands& bands, std::vector<double> field, double sn
   return in_whole(line, bands.mesh.vertex, n);
 }
 
-/// Gives the pieces of a part that are not attached to the rest of it, except the largest where none is, to
-/// the other part of the band that they lie in.
+/// Gives the pieces of a part that are not attached to the rest of it to the other part of the band that they
+/// lie in. A part of which no piece is attached keeps its largest.
 void give_away_fragments(const Connectivity& mesh, const std::vector<int>& anchors,
                          const std::vector<int>& band, const std::vector<Curve>& curves, int n_parts,
                          std::vector<int>& part) {
@@ -156,7 +156,7 @@ void give_away_fragments(const Connectivity& mesh, const std::vector<int>& ancho
     of[piece[t]] = part[t];
   }
   std::vector<char> stays(n, 0);
-  for (int t : anchors) stays[piece[t]] = 1;
+  for (int h : anchors) stays[piece[h / 3]] = 1;
   for (int i = 0; i < n; ++i)
     if (int& l = largest[of[i]]; l < 0 || std::pair(stays[i], area[i]) > std::pair(stays[l], area[l])) l = i;
   for (int l : largest)
@@ -259,7 +259,7 @@ std::vector<Fault> try_straighten(CurveNeighborhood& near, const PartTopologies&
     if (side[t] >= 0) part[t] = side[t] ? curves[band[t]].a : curves[band[t]].b;
   give_away_fragments({s, after}, near.anchors, band, curves, near.n_parts(), part);
   const std::vector<char> broken =
-      broken_parts(topology, topology_of_parts_in({s, after}, part, near.n_parts()), part, near);
+      broken_parts(topology, topology_of_parts_in(near, {s, after}, part), part, near);
   const Measure now = measure({s, after}, band, curves.size());
   const std::vector<Fault> faults = find_faults(curves, role, broken, before, now);
   if (faults.empty()) surface = std::move(s), cut.opposite = std::move(after);
@@ -285,7 +285,7 @@ void straighten_together(CurveNeighborhood& near, const Attempt& attempt, double
         std::binary_search(pairs.begin(), pairs.end(), Pair(curves[c].a, curves[c].b)))
       role[c] = Role::stays;
   const PartTopologies before =
-      topology_of_parts_in(near.cut().connectivity(), s.face.get<int>("part"), near.n_parts());
+      topology_of_parts_in(near, near.cut().connectivity(), s.face.get<int>("part"));
   near.handles.clear();
   while (std::find(role.begin(), role.end(), Role::moves) != role.end()) {
     const std::vector<Fault> faults = try_straighten(near, before, curves, role, attempt, snap);

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "lib/core/topology.h"
+#include "tests/unit/parts.h"
 #include "tests/unit/squares.h"
 
 using namespace meshpipe;
@@ -31,10 +35,10 @@ std::vector<char> broken_by(int square, int to, int max_faces = 0) {
   EXPECT_EQ(near.size(), 1u);
   const Connectivity mesh = near[0].cut().connectivity();
   std::vector<int> part = near[0].surface.face.get<int>("part");
-  const PartTopologies before = topology_of_parts_in(mesh, part, 3);
+  const PartTopologies before = topology_of_parts_in(near[0], mesh, part);
   for (int t = 0; t < (int)part.size(); ++t)
     if (near[0].face[t] == 2 * square) part[t] = to;
-  return broken_parts(before, topology_of_parts_in(mesh, part, 3), part, near[0]);
+  return broken_parts(before, topology_of_parts_in(near[0], mesh, part), part, near[0]);
 }
 
 }  // namespace
@@ -50,8 +54,8 @@ TEST(CurveNeighborhood, ThatOfEachCurveWhereTheyAreApart) {
     EXPECT_EQ(n.handles.size(), 1u);
     EXPECT_EQ(find_curves(n.cut()).size(), 1u);
     EXPECT_TRUE(has_handle(n.surface, find_curves(n.cut())[0], n.handles));
-    for (int t : n.anchors)
-      EXPECT_NEAR(std::abs(whole.surface.points[whole.surface.tris[n.face[t]][0]].x - 15), 5, 5);
+    for (int h : n.anchors)
+      EXPECT_NEAR(std::abs(whole.surface.points[whole.surface.tris[n.face[h / 3]][0]].x - 15), 5, 5);
     put_back(n, whole.cut());
   }
   EXPECT_EQ(whole.surface.tris, same.surface.tris);
@@ -73,4 +77,38 @@ TEST(CurveNeighborhood, APartIsBrokenWhereItTouchesItself) {
 TEST(CurveNeighborhood, APartIsBrokenByTooManyTriangles) {
   EXPECT_EQ(broken_by(30 * 15 + 9, 1, 601), (std::vector<char>{0, 0, 0}));
   EXPECT_EQ(broken_by(30 * 15 + 9, 1, 600), (std::vector<char>{0, 1, 0}));
+}
+
+//  a torus along which runs a strip of part 0; parts 1 and 2 share the rest. If 1 gives its end next to 2 to
+//  part 0, that has the same genus in the neighborhood of 0 | 1, but a handle as a whole
+TEST(CurveNeighborhood, APartIsBrokenByAHandleThatOnlyTheWholeHas) {
+  constexpr int along = 120, around = 18;
+  Surface s;
+  std::vector<int> part, ring;
+  const double r = around / (2 * std::numbers::pi), far = along / (2 * std::numbers::pi) + r;
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double u = 2 * std::numbers::pi * i / along, v = 2 * std::numbers::pi * j / around;
+      const double x = far + r * std::cos(v);
+      s.points.push_back({x * std::cos(u), x * std::sin(u), r * std::sin(v)});
+      auto at = [&](int k, int l) { return k % along * around + l % around; };
+      s.tris.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      s.tris.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      part.insert(part.end(), 2, j < around / 3 ? 0 : i < 20 ? 1 : 2);
+      ring.insert(ring.end(), 2, i);
+    }
+  s.face.set("part", part);
+  std::vector<int> opposite = opposite_halfedges(s);
+  ASSERT_EQ(part_fault(s), "");
+  std::vector<Curve> curves = find_curves({s, opposite});
+  std::erase_if(curves, [](const Curve& c) { return c.a != 0 || c.b != 1; });
+  CurveNeighborhood near = std::move(take_curve_neighborhoods({s, opposite}, curves, 14, 0)[0]);
+  const Connectivity mesh = near.cut().connectivity();
+  std::vector<int>& here = near.surface.face.get<int>("part");
+  const PartTopologies before = topology_of_parts_in(near, mesh, here);
+  for (int t = 0; t < (int)here.size(); ++t)
+    if (ring[near.face[t]] < 2 && here[t] == 1) here[t] = 0;
+  EXPECT_EQ(broken_parts(before, topology_of_parts_in(near, mesh, here), here, near)[0], 1);
+  put_back(near, {s, opposite});
+  EXPECT_EQ(part_fault(s), "part 0 has genus 1");
 }

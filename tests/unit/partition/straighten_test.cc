@@ -91,6 +91,23 @@ TEST(Straighten, KeepsJunctionsValid) {
   EXPECT_LT(measure_interfaces(s).length, 0.75 * length);
 }
 
+//  0 | 1 | 2   both saws are straightened by themselves, and share what part 1 may still get
+TEST(Straighten, BoundsTheTrianglesOfAPartThatTwoCurvesShare) {
+  for (int more : {0, 20, 40, 60}) {
+    Surface s = grid(120, [](int x, int y) { return x < 30 + y % 2 ? 0 : x < 90 - y % 2 ? 1 : 2; });
+    auto faces = [&] {
+      const std::vector<int>& part = s.face.get<int>("part");
+      return (int)std::count(part.begin(), part.end(), 1);
+    };
+    const int most = faces() + more;
+    std::vector<int> opposite = opposite_halfedges(s);
+    straighten_interfaces({s, opposite}, 3, 0.1, most);
+    EXPECT_LE(faces(), most);
+    EXPECT_EQ(part_fault(s), "");
+    EXPECT_EQ(opposite, opposite_halfedges(s));
+  }
+}
+
 //  a strip of part 0 one triangle wide would vanish: it has to stay
 TEST(Straighten, DoesNotLoseAPart) {
   Surface s = grid(20, [](int x, int y) { return x < 10 + y % 2 ? 1 : x == 10 + y % 2 ? 0 : 2; });
