@@ -251,6 +251,7 @@ void mark(Io& io, Options& o) {
   if (caps.first <= caps.last) o.first_cap = caps.first, o.last_cap = caps.last;
   const PatchMerge merge = merge_patches(io, stream, o, length);
   io.report["patches_before"] = merge.patch.size();
+  io.report["patches"] = merge.count();
   std::vector<int> given = given_edges(io, stream, o.edge_file);
   if (opposite.empty()) opposite = opposite_halfedges(surface);
   auto features = [&] {
@@ -274,7 +275,7 @@ void mark(Io& io, Options& o) {
                    [](const RemovedFeature& a, const RemovedFeature& b) { return a.width > b.width; });
   sort_unique(removed.vanished);
   report_removed(io, removed, tolerance, stream);
-  io.report["patches"] = merge.count() - (int)removed.vanished.size();
+  io.report["patches"] = merge.count() - (int)removed.vanished.size();  // what is removed is known by now
   if (!removed.removed.empty()) follow_removal(stream, removed, first_given, given);
   report(io, marked);
   io.write(stream);
