@@ -390,6 +390,16 @@ bool resolve_as_it_is(Surface& s, const CleanOptions& options, const ResolveOpti
   return resolved.closed;
 }
 
+/// Moves points that are one up to noise, or within the tolerance given, to the first of them, also those of
+/// sheets that do not meet: where one is divided along the other, slivers would be left between them.
+void join_points(Surface& s, const CleanOptions& options) {
+  const std::vector<char> used = used_points(s);
+  std::vector<int> same = first_equal(s.points, used);
+  const double within = options.weld < 0 ? coordinate_noise(s, used) : options.weld;
+  if (within > 0) merge_near(s.points, used, within, same);
+  for (std::size_t v = 0; v < same.size(); ++v) s.points[v] = s.points[same[v]];
+}
+
 }  // namespace
 
 void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
@@ -404,6 +414,7 @@ void clean(Surface& surface, const CleanOptions& options, CleanReport& report) {
     first.keep_components = 0;
     first.sheets = CleanOptions::pair;
     s = surface;
+    if (how.keep == ResolveOptions::all) join_points(s, options);
     clean_once(s, first, report);
     resolved = resolve(s, how);
   }
