@@ -73,6 +73,7 @@ std::vector<RepairRow> table_of(const CleanReport& r, const CleanOptions& option
        {RepairRow{"intersecting_pairs", r.resolved.pairs, "pairs of triangles that intersect"},
         {"intersection_vertices", r.resolved.new_vertices, "vertices added where they do"},
         {"dropped_pieces", r.resolved.dropped, area},
+        {"subtracted", r.resolved.subtracted, "bodies inside out, subtracted from those that they overlap"},
         {"crumbs", r.resolved.crumbs, "bits of almost no volume dropped that were cut off"},
         {"intersecting_left", r.resolved.left, "pairs that still intersect"}})
     table.push_back(std::move(row));

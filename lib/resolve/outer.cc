@@ -7,6 +7,7 @@
 
 #include "lib/core/around.h"
 #include "lib/core/bvh.h"
+#include "lib/core/connectivity.h"
 #include "lib/core/edges.h"
 #include "lib/core/lists.h"
 #include "lib/core/ray.h"
@@ -94,6 +95,26 @@ std::vector<double> volumes(const Pieces& pieces, const ExactPoints& points, con
         pieces.weight[t] * dot(points.near(a) - p, cross(points.near(b) - p, points.near(c) - p));
   }
   return sum;
+}
+
+/// The number of bodies of the input, by its vertices, whose volume is negative in a closed component of
+/// several bodies. `sign`: by component.
+int count_subtracted(const Mesh& mesh, const std::vector<int>& weight, const Pieces& pieces, const Hull& hull,
+                     const std::vector<signed char>& sign) {
+  UnionFind bodies(mesh.points.size());
+  for (const auto& [a, b, c] : mesh.tris) bodies.join(a, b), bodies.join(a, c);
+  std::vector<double> volume(mesh.points.size(), 0);
+  std::vector<int> component(mesh.points.size(), -1), of_component(hull.open.size(), 0);
+  for (int t = 0; t < (int)mesh.tris.size(); ++t) {
+    const int b = bodies.find(mesh.tris[t][0]), c = hull.component[pieces.piece_of[t]];
+    if (component[b] < 0) ++of_component[c];
+    component[b] = c;
+    volume[b] += sign[c] * weight[t] * volume6(mesh, t, mesh.points[b]);
+  }
+  int n = 0;
+  for (std::size_t b = 0; b < volume.size(); ++b)
+    if (const int c = component[b]; c >= 0) n += !hull.open[c] && of_component[c] > 1 && volume[b] < 0;
+  return n;
 }
 
 /// The shell of each component that bounds it from outside: its volume, by the orientation away from the
@@ -225,6 +246,7 @@ Hull outer_hull(Pieces& pieces, const std::vector<Tri>& tris, const std::vector<
         sign[c] = -sign[c], reversed = true;
     if (!reversed) break;
   }
+  hull.subtracted = count_subtracted(mesh, weight, pieces, hull, sign);
   const std::vector<int> outer = outer_shells(pieces, points, sides, hull);
   for (int t = 0; t < n; ++t) pieces.weight[t] *= sign[hull.component[t]];
   Winding winding(pieces, sides);

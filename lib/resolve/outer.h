@@ -13,6 +13,7 @@ struct Hull {
   std::vector<int> component;     ///< per piece: of pieces that meet along edges
   std::vector<char> open;         ///< per component: it has borders, or winds inconsistently
   std::vector<char> ambiguous;    ///< per component: what is outside is not determined, all is kept
+  int subtracted = 0;             ///< bodies of the input that are inside out where they overlap others
 };
 
 /// Finds the boundary between regions of positive winding number and others, oriented away from the former.

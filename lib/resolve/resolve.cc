@@ -61,6 +61,7 @@ void pass(PieceMesh& s, const std::vector<std::pair<int, int>>& pairs, const Res
     const Hull hull = outer_hull(pieces, s.pieces.tris, s.pieces.weight, points);
     if (report.passes == 1) {
       report.open = (int)std::count(hull.open.begin(), hull.open.end(), 1);
+      report.subtracted = hull.subtracted;
       refuse_ambiguous(hull, pieces, s, pairs);
     }
     int n = 0;

@@ -18,6 +18,7 @@ struct ResolveReport {
   int crumbs = 0;   ///< closed components of almost no volume, cut off at intersections, which are dropped
   int dropped = 0;  ///< pieces that do not bound the outside
   double dropped_area = 0;
+  int subtracted = 0;    ///< bodies that are inside out where they overlap others
   int reversed = 0;      ///< pieces kept that were inside out
   int passes = 0;        ///< arrangements, until rounded points intersected nowhere
   double removed = 0;    ///< height of slivers removed between passes
