@@ -358,9 +358,9 @@ void straighten_corners(const CutSurface& cut, double snap, int max_faces) {
       corners.push_back({-turn, handle_of(surface, c)});
   std::sort(corners.begin(), corners.end());
   corners.resize(std::min(corners.size(), most_work / (surface.tris.size() + 1)));
-  for (const auto& [turn, one] : corners) {
+  for (const std::pair<double, Handle>& corner : corners) {
     std::vector<Curve> curves = find_curves(cut);
-    std::erase_if(curves, [&](const Curve& c) { return !has_handle(surface, c, {one}); });
+    std::erase_if(curves, [&](const Curve& c) { return !has_handle(surface, c, {corner.second}); });
     straighten_curves(cut, curves, std::span(attempts).subspan(2), snap, max_faces);
   }
 }
