@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <span>
 
 #include "lib/core/connectivity.h"
@@ -29,7 +28,6 @@ struct Attempt {
   int steps, sweeps;
   bool ends_stay;
 };
-using std::numbers::pi;
 // all together, those at fault again and more gently
 constexpr Attempt attempts[] = {{4, 5, 30, false}, {3, 1, 30, false}, {0, 0, 100, false}, {0, 0, 100, true}};
 
