@@ -19,7 +19,7 @@ FLAGS ?= -q
 inputs := stl obj off ply msh vtu vtp vtk mesh meshb
 outputs := vtu vtp vtk stl obj off ply msh msh2 msh4 mesh meshb gts inp bdf nas poly
 # the stages in order, from size on also in later rounds
-names := clean topo feature partition multiscale param size lines mesh2d lift relax check
+names := clean topo feature coarsen partition multiscale param size lines mesh2d lift relax check
 stages := $(shell n=0; for s in $(names); do n=$$((n + 1)); printf '%02d-%s ' $$n $$s; done)
 later := $(shell echo $(names) | sed 's/.* size //; s/ check//')
 numbered = $(filter %-$(1),$(stages))
@@ -29,9 +29,11 @@ last := $(lastword $(filter-out %-check,$(stages)))
 # sizes that vary have no share for the tolerance of mfeature, as in mremesh
 varying := $(foreach o,--data --field --expression --around --across --gap,$(findstring $(o),$(SIZE_ARGS)))
 tolerance := $(if $(strip $(varying)),$(if $(findstring --tolerance,$(FEATURE_ARGS)),,--tolerance 0))
+# nor do they say how coarse a surface may be
+coarsen := $(if $(strip $(SIZE_ARGS) $(BOUNDS)),,COARSEN)
 goal := $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
-args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE,$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
+args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE $(coarsen),$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
   $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
 # make -n shows what it would do, and runs nothing
 dry := $(findstring n,$(firstword -$(MAKEFLAGS)))

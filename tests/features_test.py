@@ -116,7 +116,7 @@ def check(name, path, count, scratch):
     subprocess.run(["mremesh", "-q", "--keep", keep, "--triangles", str(count), path, "-o", os.path.join(scratch, "out.ply")],
                    check=True)
     model_points, model_edges = read(os.path.join(keep, "03-feature.ply"))
-    points, edges = read(os.path.join(keep, "11-relax.ply"))
+    points, edges = read(os.path.join(keep, "12-relax.ply"))
     diagonal = math.dist(*(tuple(f(c) for c in zip(*model_points)) for f in (min, max)))
     place = {p: v for v, p in enumerate(points)}
 

@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
       argc, argv, "mcheck",
       "Verify a result: connectivity, self-intersections, quality, and distance to the surface it was "
       "made from.\n\nexamples:\n"
-      "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/11-relax.ply -o checked.ply\n"
+      "  mremesh -q --keep stages tree.stl -o tree-mesh.ply && mcheck stages/12-relax.ply -o checked.ply\n"
       "  mcheck tree.stl --reference tree.stl --require topology,hausdorff=0.01 -o tree.ply",
       add_options, [&](Io& io) { check(io, o, verdict.emplace(io, o.verdict, o.max_error > 0), summary); },
       {.shards = true});

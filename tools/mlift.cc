@@ -43,8 +43,14 @@ int main(int argc, char** argv) {
     for (const char* table : {"chart_vertex", "chart_point", "chart_face"}) stream.erase(table);
     if (const std::string names = lost_data(stream.surface); !names.empty())
       io.say("face data left out, since the result has other triangles: " + names);
-    LiftedMesh mesh = lift(stream.surface, std::move(charts), read_lines(stream), meshes);
+    Lines lines = read_lines(stream);
+    LiftedMesh mesh = lift(stream.surface, std::move(charts), lines, meshes);
     Surface reference = std::move(stream.surface);
+    if (std::optional<Surface> fine = take_fine(stream)) {
+      move_to_fine(mesh, lines, reference, *fine);
+      write_lines(stream, lines);
+      reference = std::move(*fine);
+    }
     reference.face.erase("curved");
     if (o.curved) reference.face.set("curved", std::vector<std::uint8_t>(reference.tris.size(), 1));
     write_reference(stream, reference);
@@ -62,7 +68,7 @@ int main(int argc, char** argv) {
       "Map the plane meshes of the charts back to the surface and glue them "
       "along the lines.\n\n"
       "Examples:\n"
-      "  mremesh -q --keep s tree.stl -o a.stl && mlift s/09-mesh2d.ply -o lifted.vtu\n"
-      "  mremesh -q --keep s tree.stl -o a.stl && mlift --curved --order 2 s/09-mesh2d.ply -o order-2.vtu",
+      "  mremesh -q --keep s tree.stl -o a.stl && mlift s/10-mesh2d.ply -o lifted.vtu\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mlift --curved --order 2 s/10-mesh2d.ply -o order-2.vtu",
       add_options, body);
 }

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       argc, argv, "mlines",
       "Divide borders, model edges and interfaces between parts into segments of the length that the size "
       "field asks for; no two segments cross in any chart.\n\n"
-      "Example:\n  mremesh -q --keep s tree.stl -o a.stl && mlines s/07-size.ply -o lines.ply",
+      "Example:\n  mremesh -q --keep s tree.stl -o a.stl && mlines s/08-size.ply -o lines.ply",
       [&](CLI::App& app) {
         app.add_flag("--keep-boundary", keep_boundary, "keep exactly the input's points on the border");
       },

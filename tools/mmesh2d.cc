@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
   return run_tool(
       argc, argv, "mmesh2d",
       "Mesh every chart in the plane with triangles that have the requested size on the surface.\n\n"
-      "Examples:\n  mremesh -q --keep s tree.stl -o a.stl && mmesh2d s/08-lines.ply -o plane.ply\n"
+      "Examples:\n  mremesh -q --keep s tree.stl -o a.stl && mmesh2d s/09-lines.ply -o plane.ply\n"
       "  mclean tree.stl | mpartition | mmultiscale | mparam | msize | mlines | mmesh2d -o plane.ply",
       options, body);
 }

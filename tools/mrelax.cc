@@ -159,7 +159,7 @@ int main(int argc, char** argv) {
       "Optimize a lifted mesh on the surface it was made from, by flips, collapses, splits and moves of "
       "vertices, across all interfaces that are not model edges.\n\n"
       "Examples:\n"
-      "  mremesh -q --keep s tree.stl -o a.stl && mrelax --sweeps 20 s/10-lift.ply -o relaxed.ply\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mrelax --sweeps 20 s/11-lift.ply -o relaxed.ply\n"
       "  mclean tree.stl | mrelax --reference tree.stl -o better.ply",
       add_options, body, {.shards = true});
 }

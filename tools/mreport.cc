@@ -48,7 +48,7 @@ PageItem item_of(Io& io, Stream& stream, const std::string& name, const Options&
   return page_item(stream, name, &judgment);
 }
 
-/// Returns the last intermediate in a folder of mremesh --keep, such as 11-relax.ply; any other path as it
+/// Returns the last intermediate in a folder of mremesh --keep, such as 12-relax.ply; any other path as it
 /// is.
 std::string last_intermediate(const std::string& path) {
   if (!std::filesystem::is_directory(path)) return path;

@@ -51,9 +51,9 @@ int main(int argc, char** argv) {
       "Cut a stream into shards of whole parts, for mparam and mmesh2d as separate jobs; their --join puts "
       "the results together.\n\nexamples:\n"
       "  mremesh -q --keep stages tree.stl -o tree-mesh.stl && "
-      "mshard --shards 2 --into in stages/08-lines.ply\n"
-      "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/08-lines.ply && "
+      "mshard --shards 2 --into in stages/09-lines.ply\n"
+      "  mremesh -q --keep s tree.stl -o a.stl && mshard --shards 2 --into in s/09-lines.ply && "
       "mkdir out && mmesh2d in/1.ply -o out/1.ply && mmesh2d in/2.ply -o out/2.ply && "
-      "mmesh2d --join out s/08-lines.ply | mlift -o lifted.ply",
+      "mmesh2d --join out s/09-lines.ply | mlift -o lifted.ply",
       options, [&](Io& io) { cut(io, count, into); }, {.passes = true, .any_size = true});
 }

@@ -34,7 +34,8 @@ void drop_stale(Stream& stream) {
   }
   drop_downstream(stream, Stage::parts);
   for (const char* column : {"part", "origin"}) stream.surface.face.erase(column);
-  for (const char* table : {"part", "line", "line_use", "line_vertex"}) stream.erase(table);
+  for (const char* table : {"part", "line", "line_use", "line_vertex", "fine_vertex", "fine_face"})
+    stream.erase(table);
 }
 
 }  // namespace

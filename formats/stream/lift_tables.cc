@@ -20,6 +20,49 @@ bool is_own(const std::string& column) {
   return false;
 }
 
+/// Returns the mesh that a table of points and one of corners hold.
+Mesh mesh_of(const Table& vertex, const Table& face) {
+  const auto &x = vertex.get<double>("x"), &y = vertex.get<double>("y"), &z = vertex.get<double>("z");
+  const auto &a = face.get<int>("a"), &b = face.get<int>("b"), &c = face.get<int>("c");
+  Mesh mesh;
+  mesh.points.reserve(vertex.rows);
+  for (std::size_t v = 0; v < vertex.rows; ++v) mesh.points.push_back({x[v], y[v], z[v]});
+  mesh.tris.reserve(face.rows);
+  for (std::size_t t = 0; t < face.rows; ++t) {
+    for (int v : {a[t], b[t], c[t]})
+      if (v < 0 || v >= (int)vertex.rows)
+        throw BadInput(face.name + ' ' + std::to_string(t) + " uses vertex " + std::to_string(v) +
+                       ", but there are " + std::to_string(vertex.rows));
+    mesh.tris.push_back({a[t], b[t], c[t]});
+  }
+  return mesh;
+}
+
+Table points_table(const char* name, const Mesh& mesh) {
+  std::vector<double> xyz[3];
+  for (Vec3 p : mesh.points) {
+    xyz[0].push_back(p.x);
+    xyz[1].push_back(p.y);
+    xyz[2].push_back(p.z);
+  }
+  Table table{name, 0, {}};
+  table.set("x", std::move(xyz[0]));
+  table.set("y", std::move(xyz[1]));
+  table.set("z", std::move(xyz[2]));
+  return table;
+}
+
+Table corners_table(const char* name, const Mesh& mesh) {
+  std::vector<int> corner[3];
+  for (const Tri& t : mesh.tris)
+    for (int i = 0; i < 3; ++i) corner[i].push_back(t[i]);
+  Table table{name, 0, {}};
+  table.set("a", std::move(corner[0]));
+  table.set("b", std::move(corner[1]));
+  table.set("c", std::move(corner[2]));
+  return table;
+}
+
 /// Interpolates the input's vertex data at the vertices of the mesh: doubles linearly on the triangles,
 /// others from the nearest corner.
 void interpolate_data(const Stream& stream, const LiftedMesh& mesh, Table& vertex) {
@@ -114,20 +157,7 @@ void write_lifted(Stream& stream, LiftedMesh mesh) {
 Surface read_reference(const Stream& stream) {
   const Table& vertex = stream.need("ref_vertex", "mlift");
   const Table& face = stream.need("ref_face", "mlift");
-  const auto &x = vertex.get<double>("x"), &y = vertex.get<double>("y"), &z = vertex.get<double>("z");
-  const auto &a = face.get<int>("a"), &b = face.get<int>("b"), &c = face.get<int>("c");
-  Surface s;
-  s.points.reserve(vertex.rows);
-  for (std::size_t v = 0; v < vertex.rows; ++v) s.points.push_back({x[v], y[v], z[v]});
-  s.tris.reserve(face.rows);
-  for (std::size_t t = 0; t < face.rows; ++t) {
-    for (int v : {a[t], b[t], c[t]})
-      if (v < 0 || v >= (int)vertex.rows)
-        throw BadInput("ref_face " + std::to_string(t) + " uses vertex " + std::to_string(v) +
-                       ", but there are " + std::to_string(vertex.rows));
-    s.tris.push_back({a[t], b[t], c[t]});
-  }
-  s.vertex.rows = vertex.rows;
+  Surface s = surface_of(mesh_of(vertex, face));
   if (vertex.has("size")) s.vertex.set("size", vertex.get<double>("size"));
   for (const char* name : {"patch", "part", "origin"}) s.face.set(name, face.get<int>(name));
   for (const char* name : {"model", "curved"})
@@ -136,35 +166,45 @@ Surface read_reference(const Stream& stream) {
 }
 
 void write_reference(Stream& stream, const Surface& reference) {
-  std::vector<double> xyz[3];
-  for (Vec3 p : reference.points) {
-    xyz[0].push_back(p.x);
-    xyz[1].push_back(p.y);
-    xyz[2].push_back(p.z);
-  }
-  Table vertex{"ref_vertex", 0, {}};
-  vertex.set("x", std::move(xyz[0]));
-  vertex.set("y", std::move(xyz[1]));
-  vertex.set("z", std::move(xyz[2]));
+  Table vertex = points_table("ref_vertex", reference);
   if (reference.vertex.has("size")) vertex.set("size", reference.vertex.get<double>("size"));
   for (const Column& c : reference.vertex.columns)
     if (!is_own(c.name)) vertex.columns.push_back(c);
   stream.set(std::move(vertex));
 
   const std::size_t n = reference.tris.size();
-  std::vector<int> corner[3], zero(n, 0), self(n);
+  std::vector<int> zero(n, 0), self(n);
   std::iota(self.begin(), self.end(), 0);
-  for (const Tri& t : reference.tris)
-    for (int i = 0; i < 3; ++i) corner[i].push_back(t[i]);
-  Table face{"ref_face", 0, {}};
-  face.set("a", std::move(corner[0]));
-  face.set("b", std::move(corner[1]));
-  face.set("c", std::move(corner[2]));
+  Table face = corners_table("ref_face", reference);
   face.set("patch", copy_or<int>(reference.face, "patch", zero));
   face.set("part", copy_or<int>(reference.face, "part", zero));
   face.set("origin", copy_or<int>(reference.face, "origin", self));
   face.set("model", copy_or<std::uint8_t>(reference.face, "model", std::vector<std::uint8_t>(n, 0)));
   if (reference.face.has("curved")) face.set("curved", reference.face.get<std::uint8_t>("curved"));
+  stream.set(std::move(face));
+}
+
+std::optional<Surface> take_fine(Stream& stream) {
+  if (!stream.find("fine_vertex")) return std::nullopt;
+  const Table& vertex = stream.need("fine_vertex", "mcoarsen");
+  const Table& face = stream.need("fine_face", "mcoarsen");
+  Surface s = surface_of(mesh_of(vertex, face));
+  for (const Column& c : vertex.columns)
+    if (!is_own(c.name)) s.vertex.columns.push_back(c);
+  s.face.set("patch", face.get<int>("patch"));
+  s.face.set("model", face.get<std::uint8_t>("model"));
+  for (const char* table : {"fine_vertex", "fine_face"}) stream.erase(table);
+  return s;
+}
+
+void write_fine(Stream& stream, const Surface& fine) {
+  Table vertex = points_table("fine_vertex", fine), face = corners_table("fine_face", fine);
+  for (const Column& c : fine.vertex.columns)
+    if (!is_own(c.name)) vertex.columns.push_back(c);
+  face.set("patch", copy_or<int>(fine.face, "patch", std::vector<int>(fine.tris.size(), 0)));
+  face.set("model",
+           copy_or<std::uint8_t>(fine.face, "model", std::vector<std::uint8_t>(fine.tris.size(), 0)));
+  stream.set(std::move(vertex));
   stream.set(std::move(face));
 }
 

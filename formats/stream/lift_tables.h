@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lifted mesh in the stream, and its reference surface: tables ref_vertex and ref_face.
 #pragma once
+#include <optional>
+
 #include "formats/stream.h"
 #include "lib/lift/lift.h"
 
@@ -24,5 +26,12 @@ Surface read_reference(const Stream& stream);
 /// Adds the tables ref_vertex, with the surface's vertex data, and ref_face. Missing columns become 0
 /// (`origin`: the triangle itself).
 void write_reference(Stream& stream, const Surface& reference);
+
+/// Adds the tables fine_vertex, with the surface's vertex data, and fine_face: the surface that a coarse one
+/// stands for.
+void write_fine(Stream& stream, const Surface& fine);
+/// Takes the surface out of these tables, with its vertex data and face columns patch and model; nothing if
+/// mcoarsen has not written them.
+std::optional<Surface> take_fine(Stream& stream);
 
 }  // namespace meshpipe

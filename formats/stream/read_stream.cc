@@ -492,6 +492,7 @@ void check_indices(const Stream& stream, const std::vector<Element>& elements, c
   for (const char* corner : {"a", "b", "c"}) {
     check.column("chart_face", corner, "chart_point");
     check.column("ref_face", corner, "ref_vertex");
+    check.column("fine_face", corner, "fine_vertex");
     check.column("other_face", corner, "other_vertex");
   }
   check.column("vertex", "ref_face", "ref_face");

@@ -8,6 +8,7 @@ void drop_downstream(Stream& stream, Stage remade) {
   auto drop = [&](std::initializer_list<const char*> tables) {
     for (const char* table : tables) stream.erase(table);
   };
+  if (remade == Stage::features) drop({"fine_vertex", "fine_face"});
   if (stream.find("ref_vertex")) {
     if (!maps) return;
     drop({"ref_vertex", "ref_face", "mid_vertex"});

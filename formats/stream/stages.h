@@ -12,7 +12,8 @@ enum class Stage { features, parts, charts, sizes, lines };
 /// Drops the tables that depend on what is made again: plane meshes always; divided lines except for `lines`,
 /// but not lines of a file (without table line_use); charts for `parts`. In a lifted stream (table
 /// ref_vertex) new parts or charts begin another remeshing and drop the reference with all that refers to it;
-/// anything else drops nothing. To be called before the new tables are set.
+/// anything else drops nothing. New model edges drop the surface before it was coarsened. To be called before
+/// the new tables are set.
 void drop_downstream(Stream& stream, Stage remade);
 
 }  // namespace meshpipe

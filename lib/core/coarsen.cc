@@ -13,29 +13,101 @@ namespace meshpipe {
 namespace {
 
 constexpr int most_valence = 10;
+constexpr double least_height = 0.2;  ///< of triangles, over their longest edge
 
-/// Would contracting an edge leave a triangle that turns away from the surface at its corners, further than
-/// the one it was?
-bool turns_away(const EditMesh& m, const std::vector<Vec3>& points, const std::vector<Vec3>& normal, int gone,
-                int kept, double least_cosine) {
-  bool turns = false;
-  m.star(gone, [&](int e) {
-    const int b = m.to(e), c = m.apex(e);
-    if (turns || b == kept || c == kept) return;
-    const Vec3 side = points[c] - points[b];
-    auto least = [&](int a) {
-      const Vec3 n = normalized(cross(side, points[a] - points[b]));
-      return -std::min({dot(n, normal[a]), dot(n, normal[b]), dot(n, normal[c])});
-    };
-    const double after = least(kept);
-    turns |= after > -least_cosine && after > least(gone);
-  });
-  return turns;
+/// A sum of weighted squares of distances from planes: x' a x + 2 b x + c (Garland and Heckbert 1997).
+struct Quadric {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  Vec3 b{};
+  double c = 0, weight = 0;
+
+  /// Adds the plane through p with this unit normal.
+  void add_plane(Vec3 normal, Vec3 p, double w) {
+    const double d = -dot(normal, p);
+    const Vec3 n = w * normal;
+    xx += n.x * normal.x, xy += n.x * normal.y, xz += n.x * normal.z;
+    yy += n.y * normal.y, yz += n.y * normal.z, zz += n.z * normal.z;
+    b = b + d * n;
+    c += d * d * w;
+    weight += w;
+  }
+  void add(const Quadric& o) {
+    xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz;
+    b = b + o.b;
+    c += o.c;
+    weight += o.weight;
+  }
+  double at(Vec3 p) const {
+    return dot(p, {xx * p.x + xy * p.y + xz * p.z, xy * p.x + yy * p.y + yz * p.z,
+                   xz * p.x + yz * p.y + zz * p.z}) +
+           2 * dot(b, p) + c;
+  }
+};
+
+/// Returns per vertex the planes of its triangles, and those through its borders and model edges at a right
+/// angle to the surface. `center`: their origin, near the surface for the sake of rounding.
+std::vector<Quadric> planes_of(const Connectivity& c, Vec3 center) {
+  std::vector<Quadric> planes(c.n_vertices());
+  for (int t = 0; t < c.n_tris(); ++t) {
+    const Vec3 n = c.area_vector(t);
+    if (!(norm(n) > 0)) continue;
+    for (int v : c.mesh.tris[t]) planes[v].add_plane(normalized(n), c.point(v) - center, norm(n));
+    for (int h = 3 * t; h < 3 * t + 3; ++h) {
+      if (!c.is_border(h) && !c.is_model(h)) continue;
+      const Vec3 along = c.point(c.to(h)) - c.point(c.from(h)), across = normalized(cross(n, along));
+      for (int v : {c.from(h), c.to(h)}) planes[v].add_plane(across, c.point(v) - center, dot(along, along));
+    }
+  }
+  return planes;
 }
+
+/// The contractions of a mesh that its limits permit.
+struct Contraction {
+  const EditMesh& m;
+  const std::vector<Vec3>& points;
+  const CoarsenLimits& limits;
+  std::vector<Vec3> normal;     ///< per vertex
+  Vec3 center;                  ///< of `planes`
+  std::vector<Quadric> planes;  ///< per vertex, of all that has become it; empty: no limit on the deviation
+
+  /// Is the kept vertex within the deviation of the planes of both?
+  bool deviates(int gone, int kept) const {
+    if (planes.empty()) return false;
+    const Vec3 p = points[kept] - center;
+    return planes[gone].at(p) + planes[kept].at(p) >
+           limits.deviation * limits.deviation * (planes[gone].weight + planes[kept].weight);
+  }
+  /// Would it leave a triangle that turns away from the surface at its corners, or is thin, more than the one
+  /// it was, or an edge that is too long?
+  bool spoils(int gone, int kept) const {
+    const double least_cosine = std::cos(limits.turn);
+    bool spoils = false;
+    m.star(gone, [&](int e) {
+      const int b = m.to(e), c = m.apex(e);
+      if (spoils || b == kept || c == kept) return;
+      const Vec3 side = points[c] - points[b];
+      auto least = [&](int a) {
+        const Vec3 n = normalized(cross(side, points[a] - points[b]));
+        return -std::min({dot(n, normal[a]), dot(n, normal[b]), dot(n, normal[c])});
+      };
+      const double after = least(kept);
+      spoils |= after > -least_cosine && after > least(gone);
+      if (!(limits.length < infinity)) return;
+      auto longest = [&](int a) {
+        const Vec3 x = points[a] - points[b], y = points[a] - points[c];
+        return std::max({dot(side, side), dot(x, x), dot(y, y)});
+      };
+      auto height = [&](int a) { return norm(cross(side, points[a] - points[b])) / longest(a); };
+      spoils |= longest(kept) > limits.length * limits.length ||
+                (height(kept) < least_height && height(kept) < height(gone));
+    });
+    return spoils;
+  }
+};
 
 }  // namespace
 
-Coarse coarsen(const Connectivity& c, int wanted, double most_turn) {
+Coarse coarsen(const Connectivity& c, int wanted, const CoarsenLimits& limits) {
   constexpr int tries = 3;
   constexpr double least_progress = 0.2;  // of a round
   const Mesh& mesh = c.mesh;
@@ -45,11 +117,15 @@ Coarse coarsen(const Connectivity& c, int wanted, double most_turn) {
   std::vector<int> round_of(n, -1), left;
   for (int v = 0; v < n; ++v)
     if (m.out[v] >= 0) left.push_back(v);
-  const std::vector<Vec3> normal = vertex_normals(mesh);
+  Contraction contraction{m, mesh.points, limits, vertex_normals(mesh), {}, {}};
+  if (limits.deviation < infinity) {
+    contraction.center = mesh.points[mesh.tris[0][0]];
+    contraction.planes = planes_of(c, contraction.center);
+  }
   for (int round = 0; m.live > wanted; ++round) {
     const int before = m.live;
     for (int v : left) {
-      if (round_of[v] == round) continue;
+      if (round_of[v] == round || (!limits.fixed.empty() && limits.fixed[v])) continue;
       // its shortest edges to those that have taken in no other yet
       struct Edge {
         double square;
@@ -71,8 +147,9 @@ Coarse coarsen(const Connectivity& c, int wanted, double most_turn) {
       if (m.opp[prev(last)] < 0) consider(prev(last), m.apex(last));
       for (int i = 0; i < found; ++i) {
         const auto [square, h, w] = shortest[i];
-        if (!m.can_collapse(h, v) || turns_away(m, mesh.points, normal, v, w, std::cos(most_turn))) continue;
+        if (contraction.deviates(v, w) || !m.can_collapse(h, v) || contraction.spoils(v, w)) continue;
         m.collapse(h, v);
+        if (!contraction.planes.empty()) contraction.planes[w].add(contraction.planes[v]);
         into.merge_into(v, w);
         round_of[w] = round;
         break;
@@ -95,6 +172,11 @@ Coarse coarsen(const Connectivity& c, int wanted, double most_turn) {
     coarse.face.push_back(t);
     const Tri& v = m.tris[t];
     coarse.tris.push_back({number[v[0]], number[v[1]], number[v[2]]});
+    if (c.model.empty()) continue;
+    std::uint8_t model = 0;
+    for (int i = 0; i < 3; ++i)
+      if (m.hard[3 * t + i] && m.opp[3 * t + i] >= 0) model |= static_cast<std::uint8_t>(1 << i);
+    coarse.model.push_back(model);
   }
   return coarse;
 }

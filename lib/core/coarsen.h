@@ -7,19 +7,28 @@
 
 namespace meshpipe {
 
+/// What contractions may do.
+struct CoarsenLimits {
+  /// Radians by which a triangle may turn from the surface's normals at its corners, or as much as before:
+  /// with 25 degrees, tubes keep about seven edges around them.
+  double turn;
+  double length = infinity;     ///< of edges that result; with it, no triangle becomes thin
+  double deviation = infinity;  ///< root mean square distance of a vertex from the planes that become it
+  std::vector<char> fixed{};    ///< per vertex: it stays; empty: none
+};
+
 /// A surface some of whose edges were contracted, each by the link condition: the vertices that became one
 /// are connected, so a cut along coarse edges can be transferred to the surface with the same topology.
 struct Coarse : Mesh {
-  std::vector<int> vertex;  ///< of each coarse vertex: the vertex that it is
-  std::vector<int> face;    ///< of each coarse triangle: the triangle that has become it
-  std::vector<int> of;      ///< of each vertex: the coarse vertex it has become
+  std::vector<std::uint8_t> model;  ///< bits of model edges, as of the surface
+  std::vector<int> vertex;          ///< of each coarse vertex: the vertex that it is
+  std::vector<int> face;            ///< of each coarse triangle: the triangle that has become it
+  std::vector<int> of;              ///< of each vertex: the coarse vertex it has become
 };
 
 /// Contracts short edges in rounds, in each of which a vertex takes in at most one other, until at most
-/// `wanted` triangles are left or a round removes less than a fifth. No triangle may turn from the mesh's
-/// normals at its corners by more than `most_turn` (radians), or by more than it did before: with 25 degrees,
-/// tubes keep about seven edges around them. Density follows that of the mesh; borders and model edges keep
-/// their lines. Requires: an oriented manifold without pinched vertices.
-Coarse coarsen(const Connectivity& c, int wanted, double most_turn);
+/// `wanted` triangles are left or a round removes less than a fifth. Density follows that of the mesh;
+/// borders and model edges stay, and their corners. Requires: an oriented manifold without pinched vertices.
+Coarse coarsen(const Connectivity& c, int wanted, const CoarsenLimits& limits);
 
 }  // namespace meshpipe

@@ -34,6 +34,12 @@ LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines
 /// of the vertices are farther away than the mean edge length.
 LiftedMesh place_on(const Surface& mesh, const Surface& reference);
 
+/// Moves a mesh and its lines from the coarse surface that they were made on to the fine one that this stands
+/// for: borders and model edges to the nearest ones, what is inside to the nearest point that faces the same
+/// way, points of interfaces to vertices. The fine surface gets the vertex data that only the coarse one has
+/// (doubles), as column `size`. Requires: the coarse surface is made of vertices of the fine one.
+void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface& fine);
+
 /// The smooth surface of a reference: a cubic triangle (Vlachos and others 2001) over each triangle that the
 /// reference was cut from (face column `origin`). It interpolates the vertices, with normals averaged (Max
 /// 1999) on each side of borders and model edges (face column `model`), which become smooth curves where they

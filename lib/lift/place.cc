@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "lib/core/bvh.h"
 #include "lib/core/connectivity.h"
 #include "lib/core/error.h"
+#include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
 #include "lib/lift/lift.h"
 
 namespace meshpipe {
 namespace {
+
+constexpr double thin_sheet = 3;  ///< distances to the other side within which the right one is looked for
 
 enum On : char { inside, on_model, on_border };
 
@@ -30,6 +34,57 @@ Mesh edges_of(const Connectivity& s, On kind, std::vector<int>& halfedges) {
   return edges;
 }
 
+/// Returns the place of the reference nearest to each point: of its border or model edges for points that are
+/// on_border or on_model, where there are any; else what `inside_place` returns for the tree of its
+/// triangles.
+template <class InsidePlace>
+std::vector<Place> nearest_places(const std::vector<Vec3>& points, const std::vector<char>& on,
+                                  const Surface& reference, const InsidePlace& inside_place) {
+  const std::vector<int> opposite = opposite_halfedges(reference);
+  const Connectivity below{reference, opposite, model_of(reference)};
+  const int n = (int)points.size();
+  std::vector<Place> places(n);
+  std::vector<int> halfedges;
+  for (On kind : {inside, on_model, on_border}) {
+    if (std::find(on.begin(), on.end(), kind) == on.end()) continue;
+    halfedges.clear();
+    const Mesh edges = kind == inside ? Mesh{} : edges_of(below, kind, halfedges);
+    const bool none = edges.tris.empty();
+    const Bvh tree(none ? (const Mesh&)reference : edges);
+#pragma omp parallel for schedule(static) if (n > 10000)
+    for (int i = 0; i < n; ++i) {
+      if (on[i] != kind) continue;
+      if (none) {
+        places[i] = inside_place(tree, i);
+        continue;
+      }
+      const Place at = tree.nearest(points[i]).place;
+      places[i] = place_on_edge(halfedges[at.face], at.b0, 1 - at.b0);
+    }
+  }
+  return places;
+}
+
+/// Interpolates the vertex data that only the coarse surface has, at the nearest points.
+void add_missing_columns(const Surface& coarse, Surface& fine) {
+  std::vector<Place> nearest;
+  for (const Column& c : coarse.vertex.columns) {
+    const auto* values = std::get_if<std::vector<double>>(&c.data);
+    if (!values || fine.vertex.has(c.name)) continue;
+    std::vector<double> to(fine.points.size(), values->front());
+    if (std::adjacent_find(values->begin(), values->end(), std::not_equal_to<>()) != values->end()) {
+      if (nearest.empty()) {
+        nearest.resize(fine.points.size());
+        const Bvh tree(coarse);
+#pragma omp parallel for schedule(static)
+        for (int v = 0; v < (int)nearest.size(); ++v) nearest[v] = tree.nearest(fine.points[v]).place;
+      }
+      for (std::size_t v = 0; v < to.size(); ++v) to[v] = value_at(nearest[v], *values, coarse.tris);
+    }
+    fine.vertex.set(c.name, std::move(to));
+  }
+}
+
 double mean_edge(const Mesh& mesh) {
   double sum = 0;
   for (const Tri& t : mesh.tris)
@@ -44,34 +99,19 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   r.tris = mesh.tris;
   r.model = model_bits(mesh);
   const int n = (int)mesh.points.size();
-  const std::vector<int> opposite = opposite_halfedges(mesh.tris, n),
-                         ref_opposite = opposite_halfedges(reference);
-  const Connectivity below{reference, ref_opposite, model_of(reference)};
+  const std::vector<int> opposite = opposite_halfedges(mesh.tris, n);
   std::vector<char> on(n, inside);
   for (int h = 0; h < (int)opposite.size(); ++h) {
     const On kind = opposite[h] < 0 ? on_border : r.model[h / 3] >> (h % 3) & 1 ? on_model : inside;
     for (int v : {origin(mesh.tris, h), target(mesh.tris, h)}) on[v] = std::max<char>(on[v], kind);
   }
-
-  r.points.resize(n), r.place.resize(n);
-  std::vector<int> halfedges[3];
-  for (On kind : {inside, on_model, on_border}) {
-    const Mesh edges = kind == inside ? Mesh{} : edges_of(below, kind, halfedges[kind]);
-    const bool none = edges.tris.empty();  // no such edges: take the nearest point of the surface
-    const Bvh tree(none ? (const Mesh&)reference : edges);
-#pragma omp parallel for schedule(static) if (n > 10000)
-    for (int v = 0; v < n; ++v) {
-      if (on[v] != kind) continue;
-      const Bvh::Hit hit = tree.nearest(mesh.points[v]);
-      r.place[v] =
-          none ? hit.place : place_on_edge(halfedges[kind][hit.place.face], hit.place.b0, 1 - hit.place.b0);
-    }
-  }
+  r.place = nearest_places(mesh.points, on, reference,
+                           [&](const Bvh& tree, int v) { return tree.nearest(mesh.points[v]).place; });
   const double edge = mean_edge(mesh);
   int far = 0;
   for (int v = 0; v < n; ++v) {
     const Place& p = r.place[v];
-    r.points[v] = value_at(p, reference.points, reference.tris);
+    r.points.push_back(value_at(p, reference.points, reference.tris));
     far += norm(r.points[v] - mesh.points[v]) > edge;
     if (!reference.vertex.has("size")) continue;
     r.size.push_back(value_at(p, reference.vertex.get<double>("size"), reference.tris));
@@ -90,6 +130,50 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   r.patch = labels("patch", 1);
   r.part = labels("part", 0);
   return r;
+}
+
+void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface& fine) {
+  constexpr On on_line[] = {on_border, on_model, inside};  // by LineKind
+  const std::vector<Vec3> coarse_normal = face_normals(coarse), normal = face_normals(fine);
+  auto faces = [&](int t, const Place& place) { return dot(normal[t], coarse_normal[place.face]) > 0; };
+
+  // the points of lines after those of the mesh
+  std::vector<Vec3> points = mesh.points;
+  std::vector<char> on;
+  for (int l : mesh.line) on.push_back(l < 0 ? inside : on_line[lines.lines[l].kind]);
+  for (const Line& l : lines.lines)
+    for (int i = l.first; i < l.first + l.count; ++i) {
+      const LinePoint& p = lines.points[i];
+      points.push_back(lerp(coarse.points[p.a], coarse.points[p.b], p.t));
+      on.push_back(on_line[l.kind]);
+    }
+  const int n = (int)mesh.points.size();
+  const std::vector<Place> places = nearest_places(points, on, fine, [&](const Bvh& tree, int i) {
+    const Bvh::Hit hit = tree.nearest(points[i]);
+    if (i >= n || faces(hit.place.face, mesh.place[i])) return hit.place;
+    Place best = hit.place;  // the other side of a thin sheet: the nearest that faces the same way
+    double least = thin_sheet * hit.distance + mesh.size[i];
+    const Vec3 reach = least * Vec3{1, 1, 1};
+    tree.overlapping({points[i] - reach, points[i] + reach}, [&](int t) {
+      if (!faces(t, mesh.place[i])) return;
+      const Place place = closest_place(fine, t, points[i]);
+      const double d = norm(value_at(place, fine.points, fine.tris) - points[i]);
+      if (d < least || (d == least && t < best.face)) best = place, least = d;
+    });
+    return best;
+  });
+  std::copy_n(places.begin(), n, mesh.place.begin());
+  for (int v = 0; v < n; ++v) mesh.points[v] = value_at(mesh.place[v], fine.points, fine.tris);
+  for (std::size_t i = 0; i < lines.points.size(); ++i) {
+    const Place& p = places[n + i];
+    const Tri& corner = fine.tris[p.face];
+    const double weight[] = {p.b0, p.b1, p.b2};
+    int a = nearest_corner(p), b = (a + 1) % 3;
+    if (weight[(a + 2) % 3] > weight[b]) b = (a + 2) % 3;
+    lines.points[i] = on[n + i] == inside || weight[a] == 1 ? LinePoint{corner[a], corner[a], 0}
+                                                            : LinePoint{corner[a], corner[b], weight[b]};
+  }
+  add_missing_columns(coarse, fine);
 }
 
 }  // namespace meshpipe

@@ -137,7 +137,7 @@ CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& f
   const double n = (double)part.tris.size();
   Coarse coarse;
   if (n > worth * enough)
-    coarse = coarsen({part, part.opposite}, std::max(enough, (int)(n / at_most)), most_turn);
+    coarse = coarsen({part, part.opposite}, std::max(enough, (int)(n / at_most)), {most_turn});
   if (coarse.tris.empty() || n < worth * (double)coarse.tris.size()) {
     CutMaps cut = best_cut_of(part, share);
     field = cut.field;

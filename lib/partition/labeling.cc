@@ -330,7 +330,8 @@ Labeling best_labeling(Component& c, bool homology, int seed) {
   constexpr double worth = 2, most_turn = 60 * std::numbers::pi / 180;
   const int n = (int)c.mesh.tris.size(), least = std::min(enough + a_handle * c.whole.genus(), most);
   Coarse coarse;
-  if (n > 2 * least) coarse = coarsen({c.mesh, c.opposite}, std::clamp(n / at_most, least, most), most_turn);
+  if (n > 2 * least)
+    coarse = coarsen({c.mesh, c.opposite}, std::clamp(n / at_most, least, most), {most_turn});
   Labeling l;
   if (!coarse.tris.empty() && n > worth * (double)coarse.tris.size()) {
     ConnectedPart part;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "lib/core/bvh.h"
 #include "lib/core/topology.h"
 #include "lib/shape/shape.h"
 
@@ -47,7 +48,7 @@ void expect_same_cuts(const Mesh& mesh, const Coarse& coarse) {
 
 TEST(Coarsen, KeepsTheTopology) {
   for (const Mesh& mesh : {torus(0.4, 3000), tube(6, 40, false)}) {
-    const Coarse coarse = coarsen({mesh, opposite_of(mesh)}, (int)mesh.tris.size() / 4, 0.45);
+    const Coarse coarse = coarsen({mesh, opposite_of(mesh)}, (int)mesh.tris.size() / 4, {.turn = 0.45});
     const Topology before = topology_of(mesh), after = topology_of(coarse);
     EXPECT_EQ(after.genus, before.genus);
     EXPECT_EQ(after.loops, before.loops);
@@ -65,6 +66,64 @@ TEST(Coarsen, KeepsTheTopology) {
 TEST(Coarsen, KeepsThinTubes) {
   // eight edges around already: hardly any may go
   const Mesh mesh = tube(10, 8, false);
-  const Coarse coarse = coarsen({mesh, opposite_of(mesh)}, 10, 0.45);
+  const Coarse coarse = coarsen({mesh, opposite_of(mesh)}, 10, {.turn = 0.45});
   EXPECT_GT(total_area(coarse), 0.9 * total_area(mesh));
+}
+
+namespace {
+
+//  y       a square of 2 n^2 triangles, with a model edge along x = 1/2
+//  |  / | /
+//  +---+---+ x
+Surface square_with_line(int n) {
+  Surface s;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) s.points.push_back({(double)i / n, (double)j / n, 0});
+  std::vector<std::uint8_t> model;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = a + n + 2, d = a + n + 1;
+      s.tris.push_back({a, b, c}), model.push_back(i + 1 == n / 2 ? 2 : 0);
+      s.tris.push_back({a, c, d}), model.push_back(i == n / 2 ? 4 : 0);
+    }
+  s.vertex.rows = s.points.size(), s.face.rows = s.tris.size();
+  s.face.set("model", std::move(model));
+  return s;
+}
+
+double model_length(const Connectivity& c) {
+  double length = 0;
+  for (int h = 0; h < c.n_half_edges(); ++h)
+    if (c.is_model(h)) length += 0.5 * c.length(h);
+  return length;
+}
+
+}  // namespace
+
+TEST(Coarsen, StaysWithinItsLimits) {
+  const Mesh mesh = torus(0.4, 40000);
+  constexpr double length = 0.2, deviation = 0.004;
+  const Coarse coarse =
+      coarsen({mesh, opposite_of(mesh)}, 0, {.turn = 25 * degree, .length = length, .deviation = deviation});
+  EXPECT_LT(coarse.tris.size(), mesh.tris.size() / 8);
+  EXPECT_EQ(topology_of(coarse).genus, 1);
+  for (int h = 0; h < 3 * (int)coarse.tris.size(); ++h) EXPECT_LE(edge_length(coarse, h), length);
+  const Bvh tree(coarse);
+  for (Vec3 p : mesh.points) EXPECT_LT(tree.nearest(p).distance, 4 * deviation);
+  const Coarse exact = coarsen({mesh, opposite_of(mesh)}, 0, {.turn = 1, .length = 1, .deviation = 1e-7});
+  EXPECT_EQ(exact.tris.size(), mesh.tris.size());
+}
+
+TEST(Coarsen, KeepsLinesAndFixedVertices) {
+  const Surface s = square_with_line(40);
+  std::vector<char> fixed(s.points.size(), 0);
+  const int stays = 7 * 41 + 11;
+  fixed[stays] = 1;
+  const std::vector<int> opposite = opposite_of(s);
+  const Coarse coarse = coarsen({s, opposite, s.face.get<std::uint8_t>("model")}, 0,
+                                {.turn = 0.4, .length = 0.3, .deviation = 1e-6, .fixed = fixed});
+  EXPECT_LT(coarse.tris.size(), s.tris.size() / 10);
+  EXPECT_NEAR(total_area(coarse), 1, 1e-12);
+  EXPECT_NEAR(model_length({coarse, opposite_of(coarse), coarse.model}), 1, 1e-12);
+  EXPECT_EQ(coarse.vertex[coarse.of[stays]], stays);
 }
