@@ -30,11 +30,12 @@ last := $(lastword $(filter-out %-check,$(stages)))
 varying := $(foreach o,--data --field --expression --around --across --gap,$(findstring $(o),$(SIZE_ARGS)))
 tolerance := $(if $(strip $(varying)),$(if $(findstring --tolerance,$(FEATURE_ARGS)),,--tolerance 0))
 # nor do they say how coarse a surface may be
-coarsen := $(if $(strip $(SIZE_ARGS) $(BOUNDS)),,COARSEN)
+smaller := $(varying) $(foreach o,--curvature --chord --max,$(findstring $(o),$(SIZE_ARGS) $(BOUNDS)))
+coarsen := $(if $(strip $(smaller)),,COARSEN)
 goal := $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
 args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE $(coarsen),$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
-  $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
+  $(if $(filter COARSEN,$(1)),$(findstring --keep-boundary,$(LINES_ARGS))) $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
 # make -n shows what it would do, and runs nothing
 dry := $(findstring n,$(firstword -$(MAKEFLAGS)))
 

@@ -17,6 +17,10 @@ int main(int argc, char** argv) {
     const Table& vertex = stream.surface.vertex;
     if (vertex.has("size"))
       refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());
+    for (const Provenance& p : stream.history)
+      if (keep_boundary && stream.find("fine_vertex") && p.program == "mcoarsen" &&
+          p.arguments.find("--keep-boundary") == p.arguments.npos)
+        throw NotAdmissible("the border was coarsened; run mcoarsen with --keep-boundary");
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;

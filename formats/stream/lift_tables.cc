@@ -166,6 +166,7 @@ Surface read_reference(const Stream& stream) {
 }
 
 void write_reference(Stream& stream, const Surface& reference) {
+  for (const char* table : {"fine_vertex", "fine_face"}) stream.erase(table);
   Table vertex = points_table("ref_vertex", reference);
   if (reference.vertex.has("size")) vertex.set("size", reference.vertex.get<double>("size"));
   for (const Column& c : reference.vertex.columns)
@@ -185,9 +186,10 @@ void write_reference(Stream& stream, const Surface& reference) {
 }
 
 std::optional<Surface> take_fine(Stream& stream) {
-  if (!stream.find("fine_vertex")) return std::nullopt;
+  if (!stream.find("fine_vertex") && !stream.find("fine_face")) return std::nullopt;
   const Table& vertex = stream.need("fine_vertex", "mcoarsen");
   const Table& face = stream.need("fine_face", "mcoarsen");
+  if (face.rows == 0) throw BadInput("'fine_face' has no rows");
   Surface s = surface_of(mesh_of(vertex, face));
   for (const Column& c : vertex.columns)
     if (!is_own(c.name)) s.vertex.columns.push_back(c);

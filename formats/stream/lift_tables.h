@@ -24,7 +24,7 @@ void write_lifted(Stream& stream, LiftedMesh mesh);
 Surface read_reference(const Stream& stream);
 
 /// Adds the tables ref_vertex, with the surface's vertex data, and ref_face. Missing columns become 0
-/// (`origin`: the triangle itself).
+/// (`origin`: the triangle itself). Drops the tables of write_fine.
 void write_reference(Stream& stream, const Surface& reference);
 
 /// Adds the tables fine_vertex, with the surface's vertex data, and fine_face: the surface that a coarse one

@@ -13,7 +13,9 @@ namespace meshpipe {
 namespace {
 
 constexpr int most_valence = 10;
-constexpr double least_height = 0.2;  ///< of triangles, over their longest edge
+/// Of triangles, over their longest edge: contractions of regular grids leave 1/5 and more.
+constexpr double least_height = 0.15;
+constexpr double less_high = 0.9;  ///< of the height that a thin triangle had, squared
 
 /// A sum of weighted squares of distances from planes: x' a x + 2 b x + c (Garland and Heckbert 1997).
 struct Quadric {
@@ -51,7 +53,9 @@ std::vector<Quadric> planes_of(const Connectivity& c, Vec3 center) {
   for (int t = 0; t < c.n_tris(); ++t) {
     const Vec3 n = c.area_vector(t);
     if (!(norm(n) > 0)) continue;
-    for (int v : c.mesh.tris[t]) planes[v].add_plane(normalized(n), c.point(v) - center, norm(n));
+    Quadric plane;
+    plane.add_plane(normalized(n), c.point(c.mesh.tris[t][0]) - center, norm(n));
+    for (int v : c.mesh.tris[t]) planes[v].add(plane);
     for (int h = 3 * t; h < 3 * t + 3; ++h) {
       if (!c.is_border(h) && !c.is_model(h)) continue;
       const Vec3 along = c.point(c.to(h)) - c.point(c.from(h)), across = normalized(cross(n, along));
@@ -67,6 +71,8 @@ struct Contraction {
   const std::vector<Vec3>& points;
   const CoarsenLimits& limits;
   std::vector<Vec3> normal;     ///< per vertex
+  double least_cosine;          ///< of the turn
+  std::vector<char> on_line;    ///< per vertex: on a model edge; empty: none is known
   Vec3 center;                  ///< of `planes`
   std::vector<Quadric> planes;  ///< per vertex, of all that has become it; empty: no limit on the deviation
 
@@ -74,32 +80,43 @@ struct Contraction {
   bool deviates(int gone, int kept) const {
     if (planes.empty()) return false;
     const Vec3 p = points[kept] - center;
+    const double most = std::min(limits.deviation[gone], limits.deviation[kept]);
     return planes[gone].at(p) + planes[kept].at(p) >
-           limits.deviation * limits.deviation * (planes[gone].weight + planes[kept].weight);
+           most * most * (planes[gone].weight + planes[kept].weight);
   }
+  /// Returns the deviation of a vertex from the planes of all that has become it.
+  double deviation(int v) const {
+    const Quadric& q = planes[v];
+    return q.weight > 0 ? std::sqrt(std::max(0.0, q.at(points[v] - center) / q.weight)) : 0;
+  }
+  /// The cosine between the normals at a vertex and of a triangle; 1 on lines of a model, which has no
+  /// normal.
+  double along(int v, Vec3 n) const { return on_line.empty() || !on_line[v] ? dot(normal[v], n) : 1; }
   /// Would it leave a triangle that turns away from the surface at its corners, or is thin, more than the one
   /// it was, or an edge that is too long?
   bool spoils(int gone, int kept) const {
-    const double least_cosine = std::cos(limits.turn);
     bool spoils = false;
     m.star(gone, [&](int e) {
       const int b = m.to(e), c = m.apex(e);
       if (spoils || b == kept || c == kept) return;
       const Vec3 side = points[c] - points[b];
-      auto least = [&](int a) {
-        const Vec3 n = normalized(cross(side, points[a] - points[b]));
-        return -std::min({dot(n, normal[a]), dot(n, normal[b]), dot(n, normal[c])});
-      };
-      const double after = least(kept);
-      spoils |= after > -least_cosine && after > least(gone);
+      auto normal_with = [&](int a) { return normalized(cross(side, points[a] - points[b])); };
+      const Vec3 after = normal_with(kept), before = normal_with(gone);
+      auto least = [&](Vec3 n, int a) { return std::min({along(a, n), along(b, n), along(c, n)}); };
+      const double cosine = least(after, kept);
+      spoils |= (cosine < least_cosine && cosine < least(before, gone)) ||
+                (!planes.empty() && dot(after, before) < least_cosine);
       if (!(limits.length < infinity)) return;
-      auto longest = [&](int a) {
-        const Vec3 x = points[a] - points[b], y = points[a] - points[c];
-        return std::max({dot(side, side), dot(x, x), dot(y, y)});
+      auto squares = [&](int a) {
+        const Vec3 x = points[a] - points[b], y = points[a] - points[c], n = cross(side, x);
+        const double longest = std::max({dot(side, side), dot(x, x), dot(y, y)});
+        return std::pair(longest, dot(n, n) / longest);
       };
-      auto height = [&](int a) { return norm(cross(side, points[a] - points[b])) / longest(a); };
-      spoils |= longest(kept) > limits.length * limits.length ||
-                (height(kept) < least_height && height(kept) < height(gone));
+      const auto [longest, height] = squares(kept);
+      const auto [longest_before, height_before] = squares(gone);
+      const double most = limits.length * limits.length;
+      spoils |= longest > (longest_before > most ? longest_before + most : most) ||
+                (height < least_height * least_height * longest && height < less_high * height_before);
     });
     return spoils;
   }
@@ -117,10 +134,13 @@ Coarse coarsen(const Connectivity& c, int wanted, const CoarsenLimits& limits) {
   std::vector<int> round_of(n, -1), left;
   for (int v = 0; v < n; ++v)
     if (m.out[v] >= 0) left.push_back(v);
-  Contraction contraction{m, mesh.points, limits, vertex_normals(mesh), {}, {}};
-  if (limits.deviation < infinity) {
+  Contraction contraction{m, mesh.points, limits, vertex_normals(mesh), std::cos(limits.turn), {}, {}, {}};
+  if (!limits.deviation.empty()) {
     contraction.center = mesh.points[mesh.tris[0][0]];
     contraction.planes = planes_of(c, contraction.center);
+    contraction.on_line.assign(n, 0);
+    for (int h = 0; h < c.n_half_edges(); ++h)
+      if (c.is_model(h)) contraction.on_line[c.from(h)] = contraction.on_line[c.to(h)] = 1;
   }
   for (int round = 0; m.live > wanted; ++round) {
     const int before = m.live;
@@ -134,7 +154,9 @@ Coarse coarsen(const Connectivity& c, int wanted, const CoarsenLimits& limits) {
       std::array<Edge, tries> shortest;
       int found = 0;
       auto consider = [&](int h, int w) {
-        if (round_of[w] == round || m.valence(v) + m.valence(w) - 4 > most_valence) return;
+        const int most =
+            limits.length < infinity ? std::max({most_valence, m.valence(v), m.valence(w)}) : most_valence;
+        if (round_of[w] == round || m.valence(v) + m.valence(w) - 4 > most) return;
         const Vec3 d = mesh.points[w] - mesh.points[v];
         const Edge edge{dot(d, d), h, w};
         int at = found < tries ? found++ : tries;
@@ -164,6 +186,7 @@ Coarse coarsen(const Connectivity& c, int wanted, const CoarsenLimits& limits) {
     number[v] = (int)coarse.vertex.size();
     coarse.vertex.push_back(v);
     coarse.points.push_back(mesh.points[v]);
+    if (!contraction.planes.empty()) coarse.deviation.push_back(contraction.deviation(v));
   }
   coarse.of.resize(n);
   for (int v = 0; v < n; ++v) coarse.of[v] = number[into.find(v)];

@@ -2,6 +2,8 @@
 // Meshes on a reference surface: plane meshes lifted back and glued, meshes from elsewhere placed on it,
 // the smooth surface that it stands for, and nodes of second order.
 #pragma once
+#include <optional>
+
 #include "lib/lines/lines.h"
 #include "lib/mesh2d/mesh2d.h"
 
@@ -34,10 +36,19 @@ LiftedMesh lift(const Surface& reference, std::vector<Chart> charts, const Lines
 /// of the vertices are farther away than the mean edge length.
 LiftedMesh place_on(const Surface& mesh, const Surface& reference);
 
+/// Contracts edges of a surface as far as a mesh of this size permits: none gets longer than the size, and
+/// the planes of all triangles that became a vertex are within 0.02 of it (lib/core/coarsen.h), and within
+/// 1/40 of the distance of the next sheet. Corners of the model stay, and on request the border. Returns
+/// nothing, and the reason, if more than half of the triangles would stay, or the surface or all coarse
+/// models intersect themselves. `s` is as before. Requires: triangles. Throws: as opposite_halfedges;
+/// NotAdmissible at a pinched vertex.
+std::optional<Surface> coarse_surface(Surface& s, double size, bool keep_border, std::string& reason);
+
 /// Moves a mesh and its lines from the coarse surface that they were made on to the fine one that this stands
 /// for: borders and model edges to the nearest ones, what is inside to the nearest point that faces the same
 /// way, points of interfaces to vertices. The fine surface gets the vertex data that only the coarse one has
-/// (doubles), as column `size`. Requires: the coarse surface is made of vertices of the fine one.
+/// (doubles), as column `size`. Requires: both have triangles; the places are on the coarse one, whose lines
+/// are nearly those of the fine one.
 void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface& fine);
 
 /// The smooth surface of a reference: a cubic triangle (Vlachos and others 2001) over each triangle that the

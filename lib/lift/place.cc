@@ -14,7 +14,7 @@
 namespace meshpipe {
 namespace {
 
-constexpr double thin_sheet = 3;  ///< distances to the other side within which the right one is looked for
+constexpr double much_farther = 3;  ///< times as far as the nearest point of all
 
 enum On : char { inside, on_model, on_border };
 
@@ -65,8 +65,34 @@ std::vector<Place> nearest_places(const std::vector<Vec3>& points, const std::ve
   return places;
 }
 
+/// Unit normals per triangle of a surface, with its tree: where the nearest point may be on the other side of
+/// a thin sheet.
+struct Sides {
+  const Surface& surface;
+  const std::vector<Vec3>& normal;
+  const Bvh& tree;
+
+  /// Returns the place nearest to p among triangles that face the way of n, as far as that is not much
+  /// farther than the nearest of all, or within `reach`; else the nearest of all.
+  Place nearest(Vec3 p, Vec3 n, double reach) const {
+    const Bvh::Hit hit = tree.nearest(p);
+    if (dot(normal[hit.place.face], n) > 0) return hit.place;
+    Place best = hit.place;
+    double least = much_farther * hit.distance + reach;
+    const Vec3 r = least * Vec3{1, 1, 1};
+    tree.overlapping({p - r, p + r}, [&](int t) {
+      if (!(dot(normal[t], n) > 0)) return;
+      const Place place = closest_place(surface, t, p);
+      const double d = norm(value_at(place, surface.points, surface.tris) - p);
+      if (d < least || (d == least && t < best.face)) best = place, least = d;
+    });
+    return best;
+  }
+};
+
 /// Interpolates the vertex data that only the coarse surface has, at the nearest points.
-void add_missing_columns(const Surface& coarse, Surface& fine) {
+void add_missing_columns(const Surface& coarse, const std::vector<Vec3>& coarse_normal, Surface& fine) {
+  const std::vector<double>& size = coarse.vertex.get<double>("size");
   std::vector<Place> nearest;
   for (const Column& c : coarse.vertex.columns) {
     const auto* values = std::get_if<std::vector<double>>(&c.data);
@@ -76,8 +102,11 @@ void add_missing_columns(const Surface& coarse, Surface& fine) {
       if (nearest.empty()) {
         nearest.resize(fine.points.size());
         const Bvh tree(coarse);
+        const std::vector<Vec3> normal = vertex_normals(fine);
+        const double reach = *std::min_element(size.begin(), size.end());
 #pragma omp parallel for schedule(static)
-        for (int v = 0; v < (int)nearest.size(); ++v) nearest[v] = tree.nearest(fine.points[v]).place;
+        for (int v = 0; v < (int)nearest.size(); ++v)
+          nearest[v] = Sides{coarse, coarse_normal, tree}.nearest(fine.points[v], normal[v], reach);
       }
       for (std::size_t v = 0; v < to.size(); ++v) to[v] = value_at(nearest[v], *values, coarse.tris);
     }
@@ -135,7 +164,6 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
 void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface& fine) {
   constexpr On on_line[] = {on_border, on_model, inside};  // by LineKind
   const std::vector<Vec3> coarse_normal = face_normals(coarse), normal = face_normals(fine);
-  auto faces = [&](int t, const Place& place) { return dot(normal[t], coarse_normal[place.face]) > 0; };
 
   // the points of lines after those of the mesh
   std::vector<Vec3> points = mesh.points;
@@ -149,18 +177,8 @@ void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface
     }
   const int n = (int)mesh.points.size();
   const std::vector<Place> places = nearest_places(points, on, fine, [&](const Bvh& tree, int i) {
-    const Bvh::Hit hit = tree.nearest(points[i]);
-    if (i >= n || faces(hit.place.face, mesh.place[i])) return hit.place;
-    Place best = hit.place;  // the other side of a thin sheet: the nearest that faces the same way
-    double least = thin_sheet * hit.distance + mesh.size[i];
-    const Vec3 reach = least * Vec3{1, 1, 1};
-    tree.overlapping({points[i] - reach, points[i] + reach}, [&](int t) {
-      if (!faces(t, mesh.place[i])) return;
-      const Place place = closest_place(fine, t, points[i]);
-      const double d = norm(value_at(place, fine.points, fine.tris) - points[i]);
-      if (d < least || (d == least && t < best.face)) best = place, least = d;
-    });
-    return best;
+    if (i >= n) return tree.nearest(points[i]).place;
+    return Sides{fine, normal, tree}.nearest(points[i], coarse_normal[mesh.place[i].face], mesh.size[i]);
   });
   std::copy_n(places.begin(), n, mesh.place.begin());
   for (int v = 0; v < n; ++v) mesh.points[v] = value_at(mesh.place[v], fine.points, fine.tris);
@@ -173,7 +191,7 @@ void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface
     lines.points[i] = on[n + i] == inside || weight[a] == 1 ? LinePoint{corner[a], corner[a], 0}
                                                             : LinePoint{corner[a], corner[b], weight[b]};
   }
-  add_missing_columns(coarse, fine);
+  add_missing_columns(coarse, coarse_normal, fine);
 }
 
 }  // namespace meshpipe

@@ -103,14 +103,18 @@ double model_length(const Connectivity& c) {
 TEST(Coarsen, StaysWithinItsLimits) {
   const Mesh mesh = torus(0.4, 40000);
   constexpr double length = 0.2, deviation = 0.004;
-  const Coarse coarse =
-      coarsen({mesh, opposite_of(mesh)}, 0, {.turn = 25 * degree, .length = length, .deviation = deviation});
+  const Coarse coarse = coarsen({mesh, opposite_of(mesh)}, 0,
+                                {.turn = 25 * degree,
+                                 .length = length,
+                                 .deviation = std::vector<double>(mesh.points.size(), deviation)});
   EXPECT_LT(coarse.tris.size(), mesh.tris.size() / 8);
   EXPECT_EQ(topology_of(coarse).genus, 1);
   for (int h = 0; h < 3 * (int)coarse.tris.size(); ++h) EXPECT_LE(edge_length(coarse, h), length);
   const Bvh tree(coarse);
   for (Vec3 p : mesh.points) EXPECT_LT(tree.nearest(p).distance, 4 * deviation);
-  const Coarse exact = coarsen({mesh, opposite_of(mesh)}, 0, {.turn = 1, .length = 1, .deviation = 1e-7});
+  const Coarse exact =
+      coarsen({mesh, opposite_of(mesh)}, 0,
+              {.turn = 1, .length = 1, .deviation = std::vector<double>(mesh.points.size(), 1e-7)});
   EXPECT_EQ(exact.tris.size(), mesh.tris.size());
 }
 
@@ -120,8 +124,9 @@ TEST(Coarsen, KeepsLinesAndFixedVertices) {
   const int stays = 7 * 41 + 11;
   fixed[stays] = 1;
   const std::vector<int> opposite = opposite_of(s);
-  const Coarse coarse = coarsen({s, opposite, s.face.get<std::uint8_t>("model")}, 0,
-                                {.turn = 0.4, .length = 0.3, .deviation = 1e-6, .fixed = fixed});
+  const Coarse coarse = coarsen(
+      {s, opposite, s.face.get<std::uint8_t>("model")}, 0,
+      {.turn = 0.4, .length = 0.3, .deviation = std::vector<double>(s.points.size(), 1e-6), .fixed = fixed});
   EXPECT_LT(coarse.tris.size(), s.tris.size() / 10);
   EXPECT_NEAR(total_area(coarse), 1, 1e-12);
   EXPECT_NEAR(model_length({coarse, opposite_of(coarse), coarse.model}), 1, 1e-12);

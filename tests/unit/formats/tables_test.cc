@@ -103,6 +103,34 @@ TEST(PlaneTables, ReadWhatTheyWrote) {
   EXPECT_THROW(read_plane_meshes(bad, charts), BadInput);
 }
 
+TEST(LiftTables, FineSurfaceIsWholeOrRefused) {
+  Stream stream = square_with_lines();
+  const Surface input = stream.surface;
+  EXPECT_FALSE(take_fine(stream));
+  write_fine(stream, input);
+  Stream copy = read_stream(write_stream(stream, false), "test");
+  const std::optional<Surface> back = take_fine(copy);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->points, input.points);
+  EXPECT_EQ(back->tris, input.tris);
+  EXPECT_FALSE(take_fine(copy));
+
+  for (const char* table : {"fine_vertex", "fine_face"}) {
+    Stream damaged = stream;
+    damaged.erase(table);
+    EXPECT_THROW(take_fine(damaged), NotAdmissible);
+  }
+  Stream empty = stream;
+  write_fine(empty, Surface{});
+  EXPECT_THROW(take_fine(empty), BadInput);
+  Stream wrong = stream;
+  for (Table& t : wrong.tables)
+    if (t.name == "fine_face") t.get<int>("b")[0] = (int)input.points.size();
+  EXPECT_THROW(read_stream(write_stream(wrong, false), "test"), BadInput);
+  write_reference(stream, input);  // what is lifted belongs to this one
+  EXPECT_FALSE(take_fine(stream));
+}
+
 TEST(LiftTables, ReadWhatTheyWrote) {
   Stream stream = square_with_lines();
   const Surface input = stream.surface;

@@ -14,7 +14,9 @@ namespace {
 /// A coarse model of a mesh as a surface, with sizes that grow with z.
 Surface coarse_of(const Mesh& mesh) {
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, (int)mesh.points.size());
-  Coarse coarse = coarsen({mesh, opposite}, 0, {.turn = 0.4, .length = 0.5, .deviation = 0.02});
+  Coarse coarse =
+      coarsen({mesh, opposite}, 0,
+              {.turn = 0.4, .length = 0.5, .deviation = std::vector<double>(mesh.points.size(), 0.02)});
   Surface s = surface_of(std::move(coarse));
   std::vector<double> size;
   for (Vec3 p : s.points) size.push_back(2 + p.z);
