@@ -391,7 +391,7 @@ def reads(mconvert, path, expected, said=""):
 
 def intermediates(programs, scratch):
     """The streams between the stages of the remeshing of a small tree."""
-    stages = "mshape mclean mtopo mfeature mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck mremesh"
+    stages = "mshape mclean mtopo mfeature mcoarsen mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck mremesh"
     absent = [p for p in stages.split() if not os.path.exists(os.path.join(programs, p))]
     if absent:
         print(f"skipped: the pipe, without {', '.join(absent)}")

@@ -26,7 +26,7 @@ MAPS = [
     ("convex", ["--map", "convex"]),
     ("mean value", ["--map", "convex", "--weights", "mean-value"]),
 ]
-STAGES = "mclean mtopo mfeature mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck".split()
+STAGES = "mclean mtopo mfeature mcoarsen mpartition mmultiscale mparam msize mlines mmesh2d mlift mrelax mcheck".split()
 
 
 def main(words):

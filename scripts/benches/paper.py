@@ -34,7 +34,7 @@ STEPS = [
     ("parametrize (3)", "5 %", ("mparam",)),
     ("remesh lines (4)", "in the rest", ("mlines",)),
     ("remesh partitions (5)", "most of it", ("mmesh2d", "mlift")),
-    ("not in the paper: clean, features, size, relax, check", "-", ("mclean", "mfeature", "msize", "mrelax", "mcheck")),
+    ("not in the paper: clean, features, coarse surface, size, relax, check", "-", ("mclean", "mfeature", "mcoarsen", "msize", "mrelax", "mcheck")),
 ]
 
 

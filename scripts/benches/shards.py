@@ -26,7 +26,7 @@ import tempfile
 
 from benches import common
 
-STAGES = ["clean", "topo", "feature", "partition", "multiscale", "param", "size", "lines", "mesh2d", "lift", "relax", "check"]
+STAGES = ["clean", "topo", "feature", "coarsen", "partition", "multiscale", "param", "size", "lines", "mesh2d", "lift", "relax", "check"]
 
 
 class Steps:
