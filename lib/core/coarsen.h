@@ -26,7 +26,7 @@ struct Coarse : Mesh {
   std::vector<int> vertex;          ///< of each coarse vertex: the vertex that it is
   std::vector<int> face;            ///< of each coarse triangle: the triangle that has become it
   std::vector<double> deviation;    ///< of each coarse vertex, if that has limits
-  std::vector<int> of;              ///< of each vertex: the coarse vertex it has become
+  std::vector<int> of;  ///< of each vertex: the coarse vertex it has become; -1: it has no triangle
 };
 
 /// Contracts short edges in rounds, in each of which a vertex takes in at most one other, until at most

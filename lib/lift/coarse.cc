@@ -14,7 +14,6 @@
 namespace meshpipe {
 namespace {
 
-constexpr double most_length = 1;          ///< of the size: edges of the coarse surface
 constexpr double most_deviation = 0.02;    ///< of the size: less than what mfeature removes
 constexpr double most_turn = 25 * degree;  ///< tubes keep about seven edges around
 constexpr double of_gap = 1.0 / 40;  ///< deviation over the distance of the next sheet: sizes depend on it
@@ -56,7 +55,8 @@ bool heed_sheets(const Coarse& coarse, std::vector<double>& deviation) {
   std::vector<double> around = most;
   for (const Tri& t : coarse.tris)
     for (int v : t) around[v] = std::min({around[v], most[t[0]], most[t[1]], most[t[2]]});
-  for (std::size_t v = 0; v < deviation.size(); ++v) deviation[v] = around[coarse.of[v]];
+  for (std::size_t v = 0; v < deviation.size(); ++v)
+    if (coarse.of[v] >= 0) deviation[v] = around[coarse.of[v]];
   int deviate = 0;
   for (std::size_t v = 0; v < around.size(); ++v) deviate += coarse.deviation[v] > around[v];
   return deviate > few * (double)around.size();
@@ -83,7 +83,8 @@ void fix(const Coarse& coarse, const std::vector<std::pair<int, int>>& pairs, st
   for (const Tri& t : coarse.tris)
     if (meets[t[0]] || meets[t[1]] || meets[t[2]])
       for (int v : t) near[v] = 1;
-  for (std::size_t v = 0; v < fixed.size(); ++v) fixed[v] |= near[coarse.of[v]];
+  for (std::size_t v = 0; v < fixed.size(); ++v)
+    if (coarse.of[v] >= 0) fixed[v] |= near[coarse.of[v]];
 }
 
 }  // namespace
@@ -93,8 +94,7 @@ std::optional<Surface> coarse_surface(Surface& s, double size, bool keep_border,
   if (const int v = find_pinched_vertex({s, opposite}); v >= 0)
     throw NotAdmissible("vertex " + std::to_string(v) +
                         " joins triangles that share no edge; run mclean first");
-  CoarsenLimits limits{most_turn, most_length * size,
-                       std::vector<double>(s.points.size(), most_deviation * size),
+  CoarsenLimits limits{most_turn, size, std::vector<double>(s.points.size(), most_deviation * size),
                        fixed_vertices({s, opposite}, size, keep_border)};
   const Connectivity fine{s, opposite, model_of(s)};
   int own = -1;  // pairs of its triangles that intersect

@@ -164,7 +164,6 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
 void move_to_fine(LiftedMesh& mesh, Lines& lines, const Surface& coarse, Surface& fine) {
   constexpr On on_line[] = {on_border, on_model, inside};  // by LineKind
   const std::vector<Vec3> coarse_normal = face_normals(coarse), normal = face_normals(fine);
-
   // the points of lines after those of the mesh
   std::vector<Vec3> points = mesh.points;
   std::vector<char> on;

@@ -74,3 +74,15 @@ TEST(CoarseSurface, RefusesPinchedVertices) {
   std::string reason;
   EXPECT_THROW(coarse_surface(s, 0.1, false, reason), NotAdmissible);
 }
+
+TEST(CoarseSurface, LeavesOutVerticesWithoutTriangles) {
+  Mesh mesh = torus(0.4, 40000);
+  mesh.points.insert(mesh.points.begin(), {5, 5, 5});
+  for (Tri& t : mesh.tris)
+    for (int& v : t) ++v;
+  Surface s = surface_of(std::move(mesh));
+  std::string reason;
+  const std::optional<Surface> coarse = coarse_surface(s, 0.1, false, reason);
+  ASSERT_TRUE(coarse);
+  for (Vec3 p : coarse->points) EXPECT_LT(p.x, 2);
+}
