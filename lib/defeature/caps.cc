@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <numbers>
 #include <variant>
 
 #include "lib/core/bvh.h"
@@ -16,7 +17,8 @@ constexpr double rounding = 3e-6;     ///< of the diagonal: single-precision coo
 constexpr double nearest_end = 1e-3;  ///< of the edge: a corner nearer to its end makes a needle there
 constexpr double flat = 0.05;         ///< of the longest edge: a higher triangle has a normal of its own
 constexpr double same_side = 0.5;     ///< cosine between normals: what is bent more has an edge there
-constexpr int most_rows = 20;         ///< one for each row of caps that lean on each other
+constexpr double least_turn = std::numbers::pi / 2;  ///< around a corner of a fold
+constexpr int most_rows = 20;                        ///< one for each row of caps that lean on each other
 
 /// Height of a triangle over the longest of its edges.
 double height(Vec3 a, Vec3 b, Vec3 c) {
@@ -54,11 +56,23 @@ std::vector<int> triangles_around(const EditMesh& m, int h) {
   return around;
 }
 
+/// Returns the angle (radians) through which the triangles go around v, counterclockwise if seen against the
+/// unit vector `up`: a whole turn where the surface faces up, also where it is folded; none on the rim of a
+/// lens or a thin plate.
+double angle_around(const EditMesh& m, const Mesh& s, int v, Vec3 up) {
+  double angle = 0;
+  m.star(v, [&](int h) {
+    const Vec3 p = s.points[m.to(h)] - s.points[v], q = s.points[m.apex(h)] - s.points[v];
+    angle += std::atan2(dot(cross(p, q), up), dot(p, q) - dot(p, up) * dot(q, up));
+  });
+  return angle;
+}
+
 /// Flips the edge of h in thought, at which the surface lies flat on itself. Returns how far that moves the
 /// surface, at most, to `least` or a fiftieth of `tolerance`; infinite if it does not lie so, or still would,
-/// or if halving does not tell. The apex of the smaller triangle divides the larger one, from which it is not
-/// far. What is left over is the smaller triangle: others may lie where it was. Requires: h is of the smaller
-/// triangle.
+/// or if halving does not tell, or if the edge is of a rim, where flips would leave a notch. The apex of the
+/// smaller triangle divides the larger one, from which it is not far. What is left over is the smaller
+/// triangle: others may lie where it was. Requires: h is of the smaller triangle.
 double unfold(const EditMesh& m, const Mesh& s, int h, double least, double tolerance) {
   const int o = m.opp[h], a = m.from(h), b = m.to(h), c = m.apex(h), d = m.apex(o);
   const Vec3 n = area_vector(s, h / 3), k = area_vector(s, o / 3), up = n + k;
@@ -66,6 +80,9 @@ double unfold(const EditMesh& m, const Mesh& s, int h, double least, double tole
   auto faces_up = [&](int x, int y, int z) { return dot(area_vector(p[x], p[y], p[z]), up) > 0; };
   if (!lie_flat(normalized(n), normalized(k)) || m.joined(c, d) || !faces_up(a, d, c) || !faces_up(b, c, d))
     return infinity;
+  const bool of_rim = std::all_of(s.tris[h / 3].begin(), s.tris[h / 3].end(),
+                                  [&](int v) { return angle_around(m, s, v, normalized(k)) < least_turn; });
+  if (of_rim) return infinity;
   Mesh after;
   auto add = [&](const Tri& t) {
     const int i = (int)after.points.size();

@@ -51,9 +51,9 @@ struct Flips {
 /// Flips edges at triangles of no height: below 3e-6 of the diagonal, rounding of single-precision
 /// coordinates decides which way a triangle faces. Its longest edge is flipped if both new triangles are
 /// higher and face as the neighbor does, which it must, too, if it is small but not flat. Also flips edges at
-/// which the surface lies flat on itself, if that unfolds it and moves it by no more than `tolerance`.
-/// Both triangles get the face columns of the larger one. Edges between patches or parts, and those with a
-/// number in `line` (per half-edge, -1: none) stay. Model bits are not kept.
+/// which the surface lies flat on itself, rims of thin bodies apart, if that unfolds it and moves it by no
+/// more than `tolerance`. Both triangles get the face columns of the larger one. Edges between patches or
+/// parts, and those with a number in `line` (per half-edge, -1: none) stay. Model bits are not kept.
 Flips flip_caps_and_folds(CutSurface surface, const std::vector<int>& line, double tolerance);
 
 /// Returns the remark "removed FEATURES moved DISTANCE" for mcheck: how far the surface may be off.

@@ -112,19 +112,32 @@ TEST(Caps, WhatLiesFlatOnItselfIsUnfolded) {
   EXPECT_EQ(boundary_loops(opposite_halfedges(s)).size(), 1u);
 }
 
-//   1
-//   | ==--_2__3     two triangles back to back, joined along 0 1: a fin, of which a flip would leave two
-//   spikes | ==--
-//   0
-TEST(Caps, AFinIsNotCutOffIfItIsLarge) {
+//   6 ___ 0 ______ 2     the triangle 0 2 4 is folded over the border and lies on the triangle 0 1 2
+//    |   / \ \  4  /
+//    |  /    \   /
+//   5 ---------1
+TEST(Caps, AFlapIsNotCutOffIfItIsLarge) {
   Surface s;
-  s.points = {{0, 0, 0}, {0, 1, 0}, {1, 0.5, 0}, {1.2, 0.5, 0}};
-  s.tris = {{0, 1, 2}, {1, 0, 3}};
+  s.points = {{0, 0, 0},         {0.5, -0.8, 0}, {1, 0, 0},   {2, 2, 0},
+              {0.5, -0.4, 0.03}, {-1, -0.8, 0},  {-1, 0.3, 0}};
+  s.tris = {{0, 1, 2}, {0, 2, 4}, {0, 5, 1}, {0, 6, 5}};
   s.face.rows = s.tris.size();
-  const std::vector<int> none(6, -1);
-  EXPECT_EQ(flip(s, none, 0.4).count, 0);
-  const Flips flips = flip(s, none, 0.5);
+  EXPECT_EQ(flip(s, no_lines, 0.3).count, 0);
+  const Flips flips = flip(s, no_lines, 0.4);
   EXPECT_EQ(flips.count, 1);
-  EXPECT_GT(flips.moved, 0.4);  // the middle of 0 1 is as far from the spikes
-  EXPECT_LT(flips.moved, 0.5);
+  EXPECT_GT(flips.moved, 0.3);  // the middle of 0 2 is as far from the edges 0 4 and 2 4
+  EXPECT_LT(flips.moved, 0.4);
+}
+
+TEST(Caps, TheSharpRimOfALensStays) {
+  Surface s;
+  for (int i = 0; i < 8; ++i) s.points.push_back({std::cos(i * 0.785398), std::sin(i * 0.785398), 0});
+  s.points.push_back({0, 0, 0.02});
+  s.points.push_back({0, 0, -0.02});
+  for (int i = 0; i < 8; ++i) {
+    s.tris.push_back({i, (i + 1) % 8, 8});
+    s.tris.push_back({(i + 1) % 8, i, 9});
+  }
+  s.face.rows = s.tris.size();
+  EXPECT_EQ(flip(s, std::vector<int>(48, -1), 1).count, 0);
 }
