@@ -6,6 +6,7 @@
 #include "formats/stream/second_order.h"
 #include "formats/stream/tile_tables.h"
 #include "lib/clean/clean.h"
+#include "lib/core/triangle_count.h"
 #include "lib/lift/lift.h"
 #include "lib/relax/relax.h"
 #include "tools/common.h"
@@ -30,8 +31,8 @@ Surface reference_from(const Stream& file, std::size_t triangles) {
   clean(s);
   if (s.tris.empty() || triangles == 0) throw NotAdmissible("the mesh or its reference has no triangles");
   if (!s.vertex.has("size"))
-    s.vertex.set("size", std::vector<double>(s.points.size(), std::sqrt(4 / std::sqrt(3.0) * total_area(s) /
-                                                                        (double)triangles)));
+    s.vertex.set("size",
+                 std::vector<double>(s.points.size(), size_for_count(total_area(s), (double)triangles)));
   if (!s.face.has("part")) s.face.set("part", std::vector<int>(s.tris.size()));
   return s;
 }

@@ -258,8 +258,7 @@ bool keep_sheets(const Surface& surface, const std::vector<int>& same, const Cle
   if (pairs_leave_borders) return true;
   Repair whole = r;
   unite(whole);
-  Mesh mesh{{}, std::move(whole.tris)};
-  for (int v : whole.vertex) mesh.points.push_back(surface.points[v]);
+  const Mesh mesh{rearranged(surface.points, whole.vertex), std::move(whole.tris)};
   return divides_space(find_solids(mesh)) && self_intersections(mesh).empty();
 }
 

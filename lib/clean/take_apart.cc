@@ -85,10 +85,8 @@ int face_outside(Surface& surface, Solids& solids) {
 }  // namespace
 
 RegionReport take_apart(Surface& surface, std::vector<std::array<int, 2>> given) {
-  if (const std::vector<int> part_of = open_slits(surface); !given.empty() && !part_of.empty()) {
-    const std::vector<std::array<int, 2>> whole = std::exchange(given, {});
-    for (int t : part_of) given.push_back(whole[t]);
-  }
+  if (const std::vector<int> part_of = open_slits(surface); !given.empty() && !part_of.empty())
+    given = rearranged(given, part_of);
   RegionReport report;
   bool meet = false, flips = false;  // more than two triangles, two with different orientation
   for_each_edge(surface.tris, (int)surface.points.size(), [&](std::span<const EdgeUse> uses) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Orders in which neighbors in space are near each other in memory, too.
 #pragma once
-#include "lib/core/mesh.h"
+#include "lib/core/take_rows.h"
 
 namespace meshpipe {
 
@@ -18,15 +18,6 @@ std::vector<int> new_rows(const std::vector<int>& order);
 
 /// Renumbers the vertices, of n, that triangles use by first use. Returns the former number of each.
 std::vector<int> number_by_first_use(std::vector<Tri>& tris, std::size_t n);
-
-/// Returns a column whose row i is row order[i] of another.
-template <class T>
-std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& order) {
-  std::vector<T> moved;
-  moved.reserve(order.size());
-  for (int row : order) moved.push_back(column[row]);
-  return moved;
-}
 
 /// Puts points and triangles into an order; triangles keep their first corner.
 void rearrange(Mesh& mesh, const SpatialOrder& order);

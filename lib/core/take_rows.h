@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rearranges and repeats rows of a table.
+// Rearranges and repeats rows of columns and tables.
 #pragma once
 #include <type_traits>
 #include <utility>
@@ -10,18 +10,20 @@
 
 namespace meshpipe {
 
-/// Returns a table whose row i is row rows[i] of another; rows may be left out or repeated.
+/// Returns a column whose row i is row rows[i] of another; rows may be left out or repeated.
+template <class T>
+std::vector<T> rearranged(const std::vector<T>& column, const std::vector<int>& rows) {
+  std::vector<T> taken;
+  taken.reserve(rows.size());
+  for (int row : rows) taken.push_back(column[row]);
+  return taken;
+}
+
+/// Returns a table whose row i is row rows[i] of another.
 inline Table rows_of(const Table& table, const std::vector<int>& rows) {
   Table taken{table.name, rows.size(), {}};
   for (const Column& c : table.columns)
-    std::visit(
-        [&]<class T>(const std::vector<T>& from) {
-          std::vector<T> values;
-          values.reserve(rows.size());
-          for (int row : rows) values.push_back(from[row]);
-          taken.columns.push_back({c.name, std::move(values)});
-        },
-        c.data);
+    std::visit([&](const auto& from) { taken.columns.push_back({c.name, rearranged(from, rows)}); }, c.data);
   return taken;
 }
 /// Makes row i of a table what row rows[i] was.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "lib/core/bvh.h"
@@ -9,6 +8,7 @@
 #include "lib/core/normals.h"
 #include "lib/core/number.h"
 #include "lib/core/topology.h"
+#include "lib/core/triangle_count.h"
 #include "lib/lift/lift.h"
 
 namespace meshpipe {
@@ -17,10 +17,6 @@ namespace {
 constexpr double much_farther = 3;  ///< times as far as the nearest point of all
 
 enum On : char { inside, on_model, on_border };
-
-std::vector<std::uint8_t> model_bits(const Surface& s) {
-  return s.face.has("model") ? s.face.get<std::uint8_t>("model") : std::vector<std::uint8_t>(s.tris.size());
-}
 
 /// Returns the border edges of a surface, or its model edges, as triangles without area; `halfedges[i]` is
 /// the half-edge of triangle i.
@@ -114,19 +110,13 @@ void add_missing_columns(const Surface& coarse, const std::vector<Vec3>& coarse_
   }
 }
 
-double mean_edge(const Mesh& mesh) {
-  double sum = 0;
-  for (const Tri& t : mesh.tris)
-    for (int i = 0; i < 3; ++i) sum += norm(mesh.points[t[(i + 1) % 3]] - mesh.points[t[i]]);
-  return sum / (3 * (double)mesh.tris.size());
-}
-
 }  // namespace
 
 LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   LiftedMesh r;
   r.tris = mesh.tris;
-  r.model = model_bits(mesh);
+  r.model = model_of(mesh);
+  r.model.resize(mesh.tris.size());
   const int n = (int)mesh.points.size();
   const std::vector<int> opposite = opposite_halfedges(mesh.tris, n);
   std::vector<char> on(n, inside);
@@ -136,7 +126,7 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   }
   r.place = nearest_places(mesh.points, on, reference,
                            [&](const Bvh& tree, int v) { return tree.nearest(mesh.points[v]).place; });
-  const double edge = mean_edge(mesh);
+  const double edge = size_for_count(total_area(mesh), (double)mesh.tris.size());
   int far = 0;
   for (int v = 0; v < n; ++v) {
     const Place& p = r.place[v];
@@ -148,8 +138,7 @@ LiftedMesh place_on(const Surface& mesh, const Surface& reference) {
   if (2 * far > n)
     throw NotAdmissible("the mesh is not one of the reference: " + std::to_string(far) + " of " +
                         std::to_string(n) + " vertices are farther from it than a mean edge, " + shown(edge));
-  if (r.size.empty())
-    r.size.assign(n, std::sqrt(4 / std::sqrt(3.0) * total_area(reference) / (double)mesh.tris.size()));
+  if (r.size.empty()) r.size.assign(n, size_for_count(total_area(reference), (double)mesh.tris.size()));
   r.kind.resize(n);
   for (int v = 0; v < n; ++v) r.kind[v] = on[v] != inside;
   r.line.assign(n, -1);

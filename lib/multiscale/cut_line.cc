@@ -8,7 +8,7 @@
 
 #include "lib/core/lists.h"
 #include "lib/core/segments.h"
-#include "lib/core/spatial_order.h"
+#include "lib/core/take_rows.h"
 
 namespace meshpipe {
 namespace {

@@ -7,6 +7,7 @@
 #include "lib/core/coarsen.h"
 #include "lib/core/parallel.h"
 #include "lib/core/progress.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/core/union_find.h"
 #include "lib/multiscale/cut_line.h"
@@ -146,8 +147,7 @@ CutMaps best_cut(const ConnectedPart& part, double share, std::vector<double>& f
   // the sides that coarse vertices give to those that have become them have as many pieces
   ConnectedPart model{{coarse, {}, {}}, opposite_halfedges(coarse), {}};
   CutMaps cut = best_cut_of(model, share);
-  field.clear();
-  for (int v : coarse.of) field.push_back(cut.field[v]);
+  field = rearranged(cut.field, coarse.of);
   return cut;
 }
 

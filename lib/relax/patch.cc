@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "lib/core/bvh.h"
+#include "lib/core/take_rows.h"
 #include "lib/relax/junctions.h"
 
 namespace meshpipe {
@@ -141,12 +142,7 @@ State extract(const State& s, const std::vector<int>& triangles) {
     tris.push_back({local(v[0]), local(v[1]), local(v[2])});
     model.push_back(hard[0] | hard[1] << 1 | hard[2] << 2);
   }
-  auto pick = [&](const auto& column) {
-    std::decay_t<decltype(column)> picked;
-    picked.reserve(vertices.size());
-    for (int v : vertices) picked.push_back(column[v]);
-    return picked;
-  };
+  auto pick = [&](const auto& column) { return rearranged(column, vertices); };
   const int n = (int)vertices.size();
   State patch(*s.reference, EditMesh(std::move(tris), n, model), pick(s.points), pick(s.place), pick(s.size));
   patch.normal = pick(s.normal), patch.refinement = pick(s.refinement), patch.hold = pick(s.hold);

@@ -11,6 +11,7 @@
 #include "lib/core/random.h"
 #include "lib/core/spatial_order.h"
 #include "lib/core/topology.h"
+#include "lib/core/triangle_count.h"
 #include "lib/shape/shape.h"
 
 namespace meshpipe {
@@ -42,7 +43,7 @@ void coarsen(Mesh& mesh, int count, const std::vector<float>& fineness) {
     return good;
   };
   // every sweep takes the edges a little longer than before, so that the lengths stay even
-  double shortest = 0.5 * std::sqrt(4 / std::sqrt(3) * total_area(mesh) / edit.live);
+  double shortest = 0.5 * size_for_count(total_area(mesh), edit.live);
   for (int sweep = 0; sweep < 40 && edit.live > count; ++sweep, shortest *= 1.1)
     for (int h = 0; h < (int)edit.opp.size() && edit.live > count; ++h) {
       if (edit.dead(h / 3)) continue;

@@ -11,6 +11,7 @@
 #include "lib/core/lists.h"
 #include "lib/core/normals.h"
 #include "lib/core/shortest_paths.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/size/size.h"
 
@@ -111,12 +112,11 @@ class TubeFinder {
 /// Returns per triangle the area of its component; infinity if that has borders or model edges.
 std::vector<double> closed_areas(const Connectivity& surface) {
   std::vector<int> component;
-  std::vector<double> area(components(surface.opposite, component), 0), whole;
+  std::vector<double> area(components(surface.opposite, component), 0);
   for (int h = 0; h < surface.n_half_edges(); ++h)
     area[component[h / 3]] +=
         surface.is_border(h) || surface.is_model(h) ? infinity : triangle_area(surface.mesh, h / 3) / 3;
-  for (int c : component) whole.push_back(area[c]);
-  return whole;
+  return rearranged(area, component);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "lib/core/number.h"
 #include "lib/core/shortest_paths.h"
 #include "lib/core/split_edges.h"
+#include "lib/core/take_rows.h"
 #include "lib/core/topology.h"
 #include "lib/feature/feature.h"
 #include "lib/size/local_feature_size.h"
@@ -270,18 +271,8 @@ bool split(Field& f, const Test& test) {
   if (parent.empty()) return false;
   f.opposite = opposite_halfedges(f.s);
   f.next = neighbors_of(f.s);
-  if (!f.root.empty()) {
-    std::vector<int> root;
-    root.reserve(parent.size());
-    for (int t : parent) root.push_back(f.root[t]);
-    f.root = std::move(root);
-  }
-  if (!f.curvature.empty()) {
-    std::vector<double> k;
-    k.reserve(parent.size());
-    for (int t : parent) k.push_back(f.curvature[t]);
-    f.curvature = std::move(k);
-  }
+  if (!f.root.empty()) f.root = rearranged(f.root, parent);
+  if (!f.curvature.empty()) f.curvature = rearranged(f.curvature, parent);
   return true;
 }
 
@@ -454,8 +445,7 @@ MeasuredSize measure_sheets(Field& f, const Measured& kind, bool may_split) {
 bool bound_again(Field& f, double most_triangles) {
   const double least = *std::min_element(f.size.begin(), f.size.end());
   std::vector<char> close;
-  if (!f.close.empty())
-    for (int t : f.root) close.push_back(f.close[t]);
+  if (!f.close.empty()) close = rearranged(f.close, f.root);
   auto bounds = permitted_sizes({f.s, f.opposite, model_of(f.s)}, f.size, least, most_triangles, close);
   std::erase_if(bounds, [&](const SizeBound& x) {
     return !(x.size < much_less * value_along(f.s, f.size, x.half_edge, x.place));
