@@ -17,7 +17,7 @@ LIMITS = {
     "comments": (0, "comments on a declaration of more than 8 lines"),
     "verbs": (0, "comments on a function in a header that do not begin with a verb"),
     "words": (0, "words with a better one in scripts/checks/tables.py"),
-    "lib-lines": (40900, "lines in lib/"),
+    "lib-lines": (40890, "lines in lib/"),
     "cutting-lines": (3798, "lines of the modules that cut: partition, multiscale, plan"),
     "cutting-in-param": (0, "includes of those in lib/param"),
     "eigen": (0, "includes of Eigen outside lib/numeric"),
