@@ -104,8 +104,10 @@ std::string way_out_of(Io& io, const std::exception& failure, int status) {
     Surface surface = remeshed ? read_reference(io.stream) : io.stream.surface;
     if (has_sheets(io.stream)) join_borders(surface);  // copies of a vertex are no intersections
     found = diagnose(surface, facts.place, facts.reach);
-    if (has_sheets(io.stream))
-      for (const SheetPatch& s : read_sheets(io.stream)) found.sheets |= s.front > 0 && s.back > 0;
+    found.joined = has_sheets(io.stream);
+    if (found.joined)
+      for (const SheetPatch& s : read_sheets(io.stream))
+        found.sheets |= s.front > 0 && s.back > 0 && s.front != s.back;
   }
   for (const std::string& remark : io.stream.remarks) found.spikes += Spikes::parse(remark);
   found.gaps = gaps_of(io.stream.remarks);

@@ -16,7 +16,8 @@ struct Diagnosis {
   double next_edge = 0;           ///< and the shortest of all others
   int spikes = 0;                 ///< for the caller: vertices that stick out, as mclean has found them,
   Gaps gaps;                      ///< borders that almost fit,
-  bool sheets = false;            ///< and whether sheets lie between regions, which a wrap would join
+  bool joined = false;            ///< whether sheets were left joined where they meet,
+  bool sheets = false;            ///< and some of them lie between regions, which a wrap would join
   // Lines of the surface within `reach` of the place of the failure.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };

@@ -129,6 +129,12 @@ const Row table[] = {
      [](const Case&) {
        return WayOut{"--smooth", "smooths the rough lines along which sheets of labeled images meet"};
      }},
+    {[](const Case& c) {
+       return c.status >= goal_missed && c.found.joined && !c.found.sheets && !c.used("mclean", "--sheets");
+     },
+     [](const Case&) {
+       return WayOut{"--sheets pair", "sheets that meet are taken apart; none of them separates two regions"};
+     }},
     {[](const Case& c) { return c.found.at_border && c.used("mlines", "--keep-boundary"); },
      [](const Case&) {
        return WayOut{"without --keep-boundary", "the place is next to fixed points of the border"};

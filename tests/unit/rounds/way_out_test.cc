@@ -27,11 +27,13 @@ TEST(WayOut, NamesTheRepairOfWhatIsMeasured) {
   FailureFacts creases;  // which no patch has cut off
   creases.requirement = "creases";
   EXPECT_NE(named(missed, creases, found), "--merge-auto");
+  found.joined = true;
+  EXPECT_EQ(named(missed, {}, found), "--sheets pair");
   found.sheets = true;
   EXPECT_EQ(named(missed, {}, found), "--smooth");
   found.intersections = 3;
   EXPECT_EQ(named(missed, {}, found), "mclean --resolve all");  // what bounds the outside is not all
-  found.sheets = false;
+  found.joined = found.sheets = false;
   EXPECT_EQ(named(missed, {}, found), "mclean --resolve outer");
   found.weld = 2.3456e-7;
   EXPECT_EQ(named(missed, {}, found), "mclean --weld 2.35e-07");
