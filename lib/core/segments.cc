@@ -49,11 +49,11 @@ SegmentTree::SegmentTree(const std::vector<Segment>& segments) : segments_(segme
   }
 }
 
-std::vector<std::array<int, 2>> SegmentTree::crossings() const {
+std::vector<std::array<int, 2>> SegmentTree::crossings(std::size_t most) const {
   const int n = (int)segments_.size();
   std::vector<std::array<int, 2>> pairs, stack;  // of segments; of nodes, each pair once
   if (n > 0) stack.push_back({1, 1});
-  while (!stack.empty()) {
+  while (!stack.empty() && pairs.size() < most) {
     const int k = std::min(stack.back()[0], stack.back()[1]), m = std::max(stack.back()[0], stack.back()[1]);
     const Box &a = box_[k], &b = box_[m];
     stack.pop_back();

@@ -2,6 +2,7 @@
 // Segments in the plane: which of them meet, and how often they wind around a point; exact signs.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "lib/core/vec.h"
@@ -20,8 +21,9 @@ class SegmentTree {
  public:
   explicit SegmentTree(const std::vector<Segment>& segments);
 
-  /// Returns the pairs i < j of segments that meet elsewhere than at one common end, sorted.
-  std::vector<std::array<int, 2>> crossings() const;
+  /// Returns the pairs i < j of segments that meet elsewhere than at one common end, sorted; if there are more
+  /// than `most`, as many of them.
+  std::vector<std::array<int, 2>> crossings(std::size_t most = SIZE_MAX) const;
 
   /// Returns the winding number around p of the segments, each counted weight[i] times (0: not at all); they
   /// form loops. Requires: p lies on none of those with a weight.

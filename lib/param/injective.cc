@@ -99,14 +99,14 @@ std::vector<Segment> border(const Connectivity& c, const std::vector<Vec2>& uv, 
 bool border_is_simple(const Connectivity& c, const std::vector<Vec2>& uv) {
   Loops loops;
   const std::vector<Segment> segments = border(c, uv, loops);
-  return loops.counter_clockwise == 1 && loops.flat == 0 && SegmentTree(segments).crossings().empty();
+  return loops.counter_clockwise == 1 && loops.flat == 0 && SegmentTree(segments).crossings(1).empty();
 }
 
 bool polygon_is_simple(const std::vector<Vec2>& polygon) {
   std::vector<Segment> segments;
   int n = (int)polygon.size();
   for (int i = 0; i < n; ++i) segments.push_back({polygon[i], polygon[(i + 1) % n], i, (i + 1) % n});
-  return turn(polygon) > 0 && SegmentTree(segments).crossings().empty();
+  return turn(polygon) > 0 && SegmentTree(segments).crossings(1).empty();
 }
 
 std::vector<std::array<int, 2>> border_crossings(const Connectivity& c, const std::vector<Vec2>& uv) {

@@ -38,6 +38,7 @@ TEST(Segments, TreeFindsWhatAllPairsFind) {
       for (int j = i + 1; j < n; ++j)
         if (meet(s[i], s[j])) all.push_back({i, j});
     EXPECT_EQ(SegmentTree(s).crossings(), all);
+    EXPECT_EQ(SegmentTree(s).crossings(2).size(), std::min<std::size_t>(2, all.size()));
   }
 }
 
