@@ -2,9 +2,12 @@
 #include "formats/stream/model_lines.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "formats/stream/model_edges.h"
+#include "lib/core/bvh.h"
 #include "lib/core/edges.h"
+#include "lib/core/lists.h"
 
 namespace meshpipe {
 namespace {
@@ -126,8 +129,8 @@ std::vector<LineEdge> sorted_by_ends(std::vector<LineEdge> edges) {
   return edges;
 }
 
-/// Finds the lines of a remeshed surface by its vertices: one within a line names it, a corner one of the
-/// lines that end there.
+/// Finds the lines of a remeshed surface: an edge is on the line of the file that its ends and its middle are
+/// near, else (where vertices are on a smooth surface) on the line that a vertex within it names.
 class LinesOfVertices {
  public:
   explicit LinesOfVertices(const Stream& stream) {
@@ -137,15 +140,17 @@ class LinesOfVertices {
     line_kind_ = ints(*lines, "kind");
     line_ = ints(stream.surface.vertex, "line");
     kind_ = ints(stream.surface.vertex, "kind");
-    const ModelSegments given = read_model_edges(stream);
-    for (std::size_t i = 0; i < given.tag.size(); ++i)
-      if (given.tag[i] != 0)
-        of_tag_.push_back({0, 0, given.tag[i], given.ridge[i] != 0, given.required[i] != 0});
+    points_ = &stream.surface.points;
+    given_ = read_model_edges(stream);
+    for (std::size_t i = 0; i < given_.tag.size(); ++i)
+      if (given_.tag[i] != 0)
+        of_tag_.push_back({0, 0, given_.tag[i], given_.ridge[i] != 0, given_.required[i] != 0});
     std::stable_sort(of_tag_.begin(), of_tag_.end(), by_tag);
+    if (!of_tag_.empty()) search_.emplace(given_);
   }
   explicit operator bool() const { return tag_ != nullptr; }
-  /// Sets the label of the line that holds the edge (0 if that is not certain), and the marks of the first
-  /// edge that was given with this label.
+  /// Sets the label of the line that holds the edge (0 if none does), and the marks of the first edge that
+  /// was given with this label.
   void describe(LineEdge& e, bool border) const {
     e.tag = tag_of(e, border);
     const auto at = std::lower_bound(of_tag_.begin(), of_tag_.end(), e, by_tag);
@@ -158,15 +163,37 @@ class LinesOfVertices {
   static bool by_tag(const LineEdge& x, const LineEdge& y) { return x.tag < y.tag; }
   int tag_of(const LineEdge& e, bool border) const {
     if (!tag_ || !line_kind_ || !line_ || !kind_) return 0;
-    const int a = (*line_)[e.a], b = (*line_)[e.b];
-    const bool sure_a = (*kind_)[e.a] == 1, sure_b = (*kind_)[e.b] == 1;
-    const int line = a == b || (sure_a && !sure_b) ? a : sure_b && !sure_a ? b : -1;
+    if (const int tag = search_ ? tag_near(e.a, e.b) : 0) return tag;
+    int line = -1;
+    for (int v : {e.a, e.b})
+      if ((*kind_)[v] == 1) line = (*line_)[v];
     if (line < 0 || line >= static_cast<int>(tag_->size()) || (*line_kind_)[line] != (border ? 0 : 1))
       return 0;
     return (*tag_)[line];
   }
+  int tag_near(int a, int b) const {
+    constexpr double on = 0.1, along = 0.25;  // of the edge: how far ends and middle may be from its line
+    const Vec3 p = (*points_)[a], q = (*points_)[b];
+    const double length = norm(q - p), reach = on * length;
+    const Vec3 margin{reach, reach, reach};
+    std::vector<int> tags;  // of lines near one end
+    search_->overlapping({p - margin, p + margin}, [&](int i) { tags.push_back(given_.tag[i]); });
+    sort_unique(tags);
+    int tag = 0;
+    double least = infinity;
+    for (int t : tags) {
+      auto distance = [&](Vec3 x) { return search_->nearest_of(given_.tag, t, x, length, 0).distance; };
+      const double to_p = distance(p), to_q = distance(q), to_middle = distance(lerp(p, q, 0.5));
+      if (t == 0 || std::max(to_p, to_q) > reach || to_middle > along * length) continue;
+      if (const double d = to_p + to_q + to_middle; d < least) least = d, tag = t;
+    }
+    return tag;
+  }
 
-  std::vector<LineEdge> of_tag_;  ///< of the file, sorted
+  const std::vector<Vec3>* points_ = nullptr;
+  ModelSegments given_;             ///< of the file
+  std::optional<Bvh> search_;       ///< for `given_`; none if no line has a label
+  std::vector<LineEdge> of_tag_{};  ///< of the file, sorted
   const std::vector<int>*tag_ = nullptr, *line_kind_ = nullptr, *line_ = nullptr, *kind_ = nullptr;
 };
 

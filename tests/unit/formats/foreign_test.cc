@@ -266,6 +266,23 @@ TEST(Lines, OfARemeshedSurfaceAreFoundByItsVertices) {
   EXPECT_EQ(back.surface.face.get<std::uint8_t>("model"), s.surface.face.get<std::uint8_t>("model"));
 }
 
+TEST(Lines, OfARemeshedSurfaceBetweenCornersAreThoseOfTheFileThere) {
+  Stream s = squares();
+  s.surface.face.set<std::uint8_t>("model", {4, 1, 0, 0});
+  s.surface.vertex.set<int>("line", std::vector<int>(8, 0));  // one of the lines that end there
+  s.surface.vertex.set<int>("kind", std::vector<int>(8, 2));
+  Table line{"line", 0, {}}, reference{"ref_vertex", 0, {}};
+  for (const char* column : {"kind", "first", "count", "closed"}) line.set<int>(column, {1, 1});
+  line.set<int>("tag", {5, 6});
+  reference.set<double>("x", {0.0});
+  s.tables = {line, reference};
+  write_model_edges(s, segments_between(s.surface.points, {{0, 1, 5}, {0, 2, 6}, {1, 2, 7}}));
+  std::vector<std::array<int, 3>> found;
+  for (const LineEdge& e : model_lines(s)) found.push_back({std::min(e.a, e.b), std::max(e.a, e.b), e.tag});
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, (std::vector<std::array<int, 3>>{{0, 1, 5}, {0, 2, 6}, {1, 2, 7}}));
+}
+
 TEST(Colors, OfObjAndOffAreKept) {
   Stream s = squares();
   s.surface.vertex.set<std::uint8_t>("red", {0, 1, 2, 100, 127, 128, 254, 255});
