@@ -77,11 +77,11 @@ Stream ObjReader::read() {
     else if (w == "l")
       line();
     else if (w == "g")
-      groups_.enter(text_.rest());
+      groups_.enter(text_.name());
     else if (w == "o")
-      objects_.enter(text_.rest());
+      objects_.enter(text_.name());
     else if (w == "usemtl")
-      materials_.enter(text_.rest());
+      materials_.enter(text_.name());
   }
   // the format has no mark of its own: a file without a face or line is probably another one
   if (polygons_.ends.empty() && lines_.empty()) text_.fail("the file ends without a face");

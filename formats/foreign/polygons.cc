@@ -120,11 +120,15 @@ int add_element(Polygons& polygons, const int* nodes, int n_corners, int n_nodes
                      triangle_6 = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}},
                      quad_8 = {{0, 4, 7}, {4, 1, 5}, {5, 2, 6}, {7, 6, 3}, {4, 5, 6, 7}},
                      quad_9 = {{0, 4, 8, 7}, {4, 1, 5, 8}, {8, 5, 2, 6}, {7, 8, 6, 3}};
+  constexpr std::uint8_t inner_of_triangle_6[] = {2, 4, 1, 7};
   const bool of_triangle = n_corners == 3;
   const Faces& faces = of_triangle    ? (n_nodes == 6 || n_nodes == 7 ? triangle_6 : triangle)
                        : n_nodes == 8 ? quad_8
                        : n_nodes == 9 ? quad_9
                                       : quad;
+  if (&faces == &triangle_6)
+    for (int i = 0; i < 4; ++i)
+      polygons.inner.push_back({static_cast<int>(polygons.ends.size()) + i, inner_of_triangle_6[i]});
   for (const std::vector<int>& face : faces) {
     for (int k : face) polygons.corners.push_back(nodes[k]);
     polygons.ends.push_back(polygons.corners.size());
@@ -160,6 +164,10 @@ void set_faces(Stream& stream, const Polygons& polygons) {
   s.face.set("patch", of_triangles(polygons.patch));
   for (const Column& c : polygons.columns.columns)
     std::visit([&](const auto& v) { s.face.set(c.name, of_triangles(v)); }, c.data);
+  const Column* model = s.face.find("model");
+  if (model && std::holds_alternative<std::vector<std::uint8_t>>(model->data))
+    for (auto& bits = s.face.get<std::uint8_t>("model"); const auto& [face, inner] : polygons.inner)
+      bits[std::lower_bound(from.begin(), from.end(), face) - from.begin()] &= ~inner;
 }
 
 std::vector<int> patches_of(const Stream& stream) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Faces of any number of corners, as foreign files hold them, and their triangles.
 #pragma once
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "formats/stream.h"
@@ -14,7 +16,8 @@ struct Polygons {
   std::vector<std::size_t> ends;
   std::vector<int> patch;
   Table columns{"face", 0, {}};
-  int second_order = 0, higher_order = 0;  ///< finite elements that add_element made flat
+  int second_order = 0, higher_order = 0;           ///< finite elements that add_element made flat
+  std::vector<std::pair<int, std::uint8_t>> inner;  ///< of those, triangles with edges (bits) in an element
 };
 
 /// The largest number of corners of a face: more are an error in the file, and would take quadratic time.
@@ -27,9 +30,10 @@ constexpr int max_corners = 10000;
 int add_element(Polygons& polygons, const int* nodes, int n_corners, int n_nodes);
 
 /// Triangulates the faces into stream.surface, in order, with labels as face column `patch` and the other
-/// columns. Quadrilaterals are split along the better diagonal that does not fold; larger faces by ear
-/// clipping in the coordinate plane that shows them largest. Faces of fewer than three corners are left out.
-/// Requires: the points of stream.surface, which include every corner.
+/// columns; edges within an element get no bit of column `model`. Quadrilaterals are split along the better
+/// diagonal that does not fold; larger faces by ear clipping in the coordinate plane that shows them largest.
+/// Faces of fewer than three corners are left out. Requires: the points of stream.surface, which include
+/// every corner.
 void set_faces(Stream& stream, const Polygons& polygons);
 
 /// Returns face column `patch`; zeros if there is none.

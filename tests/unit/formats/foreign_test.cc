@@ -43,6 +43,14 @@ TEST(Curved, SecondOrderElementsAreFlatBetweenTheirNodes) {
             std::vector<std::string>{"read flat between their nodes: 1 curved elements of second order"});
 }
 
+TEST(Curved, EdgesWithinElementsAreNoModelEdges) {
+  const Stream s = read_any(msh("2\n1 9 2 3 1 1 2 3 5 6 8\n7 2 2 4 1 1 3 4\n") +
+                                "$ElementData\n1\n\"model\"\n1\n0\n3\n0\n1\n2\n1 3\n7 1\n$EndElementData\n",
+                            "in");
+  // edges 0 and 1 of the element, each of them now two
+  EXPECT_EQ(s.surface.face.get<std::uint8_t>("model"), (std::vector<std::uint8_t>{1, 3, 2, 0, 1}));
+}
+
 TEST(Curved, QuadsOfAllKinds) {
   // flat, so that the area shows it: 8 and 9 nodes, and one of third order by its corners
   for (const char* quad : {"16 2 1 1 1 2 3 4 5 6 7 9", "10 2 1 1 1 2 3 4 5 6 7 9 8",

@@ -288,6 +288,8 @@ TEST(Obj, GroupsObjectsOrMaterialsAreThePatches) {
   s = read_any("# comment\r\n" + v + "g all\r\nf 1 2 3\r\nusemtl red\r\nf 1 2 \\\r\n 3 # end\r\n", "in");
   EXPECT_EQ(s.surface.face.get<int>("patch"), (std::vector<int>{0, 1}));
   EXPECT_EQ(s.name_of(2, 1), "red");
+  s = read_any(v + "g wall#1 # left\nf 1 2 3\ng wall#2\nf 1 3 2 # end\n", "in");  // names may hold a #
+  EXPECT_EQ(s.name_of(2, 1) + '|' + s.name_of(2, 2), "wall#1 # left|wall#2");
   s = read_any("o ring\n" + v + "f 1 2 3\n", "in");
   EXPECT_EQ(s.name_of(2, s.surface.face.get<int>("patch")[0]), "ring");
   s = read_any("f 1 2 3\n" + v, "in");  // vertices after the face that uses them
