@@ -35,7 +35,7 @@ coarsen := $(if $(strip $(smaller)),,COARSEN)
 goal := $(if $(SIZE),--size $(SIZE)) $(if $(TRIANGLES),--triangles $(TRIANGLES))
 # all options of a stage, by its name in capitals
 args = $(strip $($(1)_ARGS) $(if $(filter FEATURE SIZE $(coarsen),$(1)),$(goal)) $(if $(filter SIZE,$(1)),$(BOUNDS)) \
-  $(if $(filter COARSEN,$(1)),$(findstring --keep-boundary,$(LINES_ARGS))) $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
+  $(if $(filter FEATURE COARSEN,$(1)),$(findstring --keep-boundary,$(LINES_ARGS))) $(if $(filter FEATURE,$(1)),$(tolerance)) $(if $(filter RELAX,$(1)),--accept))
 # make -n shows what it would do, and runs nothing
 dry := $(findstring n,$(firstword -$(MAKEFLAGS)))
 

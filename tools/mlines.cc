@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mlines: divide borders, model edges and interfaces between parts by the size
 // field.
+#include <algorithm>
+
 #include "formats/stream/line_tables.h"
 #include "formats/stream/model_edges.h"
 #include "formats/stream/region_tables.h"
@@ -10,6 +12,21 @@
 
 using namespace meshpipe;
 
+namespace {
+
+/// Throws: NotAdmissible if a program before this one has removed points of the border, or may have.
+void expect_given_border(const Stream& stream) {
+  const bool removed = std::any_of(stream.remarks.begin(), stream.remarks.end(), [](const auto& remark) {
+    return remark.starts_with("removed ") && !remark.starts_with("removed 0 ");
+  });
+  for (const Provenance& p : stream.history)
+    if (((p.program == "mfeature" && removed) || (p.program == "mcoarsen" && stream.find("fine_vertex"))) &&
+        p.arguments.find("--keep-boundary") == p.arguments.npos)
+      throw NotAdmissible("the border may have changed; run " + p.program + " with --keep-boundary");
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   bool keep_boundary = false;
   auto body = [&](Io& io) {
@@ -17,10 +34,7 @@ int main(int argc, char** argv) {
     const Table& vertex = stream.surface.vertex;
     if (vertex.has("size"))
       refuse_more_triangles(stream.surface, vertex.get<double>("size"), most_triangles());
-    for (const Provenance& p : stream.history)
-      if (keep_boundary && stream.find("fine_vertex") && p.program == "mcoarsen" &&
-          p.arguments.find("--keep-boundary") == p.arguments.npos)
-        throw NotAdmissible("the border was coarsened; run mcoarsen with --keep-boundary");
+    if (keep_boundary) expect_given_border(stream);
     const ModelSegments given = read_model_edges(stream);
     std::vector<int> tag = segments_under(stream.surface, given);
     for (int& t : tag) t = t >= 0 ? given.tag[t] : 0;
