@@ -50,7 +50,6 @@ bool Text::next_line() {
     left_ = bytes_.substr(0, end);
     bytes_.remove_prefix(end == std::string_view::npos ? bytes_.size() : end + 1);
     ++line_;
-    line_end_ = left_.data() + left_.size();
     if (comment_) left_ = left_.substr(0, left_.find(comment_));
     left_ = without_leading_blanks(left_);
     if (!left_.empty()) return true;
@@ -72,15 +71,12 @@ std::string_view Text::word() {
   return w;
 }
 
-std::string_view Text::rest() {
+std::string_view Text::rest(bool comment) {
+  if (comment) left_ = {left_.data(), bytes_.data()};
+  if (left_.ends_with('\n')) left_.remove_suffix(1);
   std::string_view r = trim(left_);
   left_ = {};
   return r;
-}
-
-std::string_view Text::name() {
-  left_ = {left_.data(), line_end_};
-  return rest();
 }
 
 bool Text::line_ends() const { return without_leading_blanks(left_).empty(); }

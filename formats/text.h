@@ -32,10 +32,9 @@ class Text {
   std::string_view word();
   /// Returns the next word without taking it.
   std::string_view peek() const;
-  /// Takes the rest of the line, without blanks at either end.
-  std::string_view rest();
-  /// Takes the same and the comment behind it, for names, which may hold the character that starts one.
-  std::string_view name();
+  /// Takes the rest of the line, without blanks at either end; with `comment` also what would be one: names
+  /// may hold the character.
+  std::string_view rest(bool comment = false);
   bool line_ends() const;
   /// Takes the next word of the line as a finite number; `what` is for the message.
   double number(const char* what);
@@ -63,7 +62,6 @@ class Text {
 
  private:
   std::string_view bytes_, left_;  ///< bytes_: after the current line; left_: of the current line
-  const char* line_end_ = nullptr;
   std::string where_;
   char comment_;
   std::size_t line_ = 0;

@@ -77,11 +77,11 @@ Stream ObjReader::read() {
     else if (w == "l")
       line();
     else if (w == "g")
-      groups_.enter(text_.name());
+      groups_.enter(text_.rest(true));
     else if (w == "o")
-      objects_.enter(text_.name());
+      objects_.enter(text_.rest(true));
     else if (w == "usemtl")
-      materials_.enter(text_.name());
+      materials_.enter(text_.rest(true));
   }
   // the format has no mark of its own: a file without a face or line is probably another one
   if (polygons_.ends.empty() && lines_.empty()) text_.fail("the file ends without a face");

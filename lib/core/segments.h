@@ -21,8 +21,8 @@ class SegmentTree {
  public:
   explicit SegmentTree(const std::vector<Segment>& segments);
 
-  /// Returns the pairs i < j of segments that meet elsewhere than at one common end, sorted; if there are more
-  /// than `most`, as many of them.
+  /// Returns the pairs i < j of segments that meet elsewhere than at one common end, sorted; if there are
+  /// more than `most`, as many of them.
   std::vector<std::array<int, 2>> crossings(std::size_t most = SIZE_MAX) const;
 
   /// Returns the winding number around p of the segments, each counted weight[i] times (0: not at all); they
