@@ -47,7 +47,7 @@ std::unique_ptr<Bvh> read_field(const Io& io, const std::string& text, SizeField
   } else {
     const std::string bytes = read_bytes(path);
     if (is_size_table(bytes)) {
-      sizes = read_size_table(bytes, path);
+      sizes = read_size_table(bytes, column, path);
     } else {
       const Stream field = read_any(bytes, path);
       unit = field.unit;

@@ -76,9 +76,15 @@ bool is_size_table(std::string_view bytes) {
          (is_row(words_of(text.rest())) || (text.next_line() && is_row(words_of(text.rest()))));
 }
 
-SizeField read_size_table(std::string_view bytes, const std::string& where) {
+SizeField read_size_table(std::string_view bytes, const std::string& column, const std::string& where) {
   Text text(bytes, where, '#');
   SizeField field;
+  if (!column.empty()) {
+    text.next_line();
+    const std::vector<std::string_view> names = words_of(text.rest());
+    const std::string known = names_only(names) && names.size() == 4 ? std::string(names[3]) : "none";
+    if (known != column) text.fail("no column '" + column + "' of sizes; there is " + known);
+  }
   for (bool first = true; text.next_line(); first = false) {
     const std::vector<std::string_view> words = words_of(text.rest());
     if (words.empty() || (first && names_only(words))) continue;

@@ -19,7 +19,7 @@ SizeField size_field_of(const Stream& mesh, const std::string& column, const std
 bool is_size_table(std::string_view bytes);
 /// Reads rows of x y z h, separated by blanks, commas or semicolons. Comments run from # to the end of a
 /// line; a first line without a number names the columns. Throws: BadInput with the line of a row that is not
-/// four values with a positive size.
-SizeField read_size_table(std::string_view bytes, const std::string& where);
+/// four values with a positive size, or if `column` is not "" and not the name of the fourth.
+SizeField read_size_table(std::string_view bytes, const std::string& column, const std::string& where);
 
 }  // namespace meshpipe

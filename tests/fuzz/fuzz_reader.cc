@@ -21,7 +21,7 @@ using namespace meshpipe;
 
 /// A table of sizes is no mesh.
 [[maybe_unused]] static Stream read_size_file(std::string_view bytes, const std::string& where) {
-  for (double h : read_size_table(bytes, where).size)
+  for (double h : read_size_table(bytes, "", where).size)
     if (!(h > 0)) __builtin_trap();
   return {};
 }

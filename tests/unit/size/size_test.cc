@@ -465,16 +465,19 @@ TEST(SizeField, Tables) {
   EXPECT_TRUE(is_size_table("x,y,z,h\r\n0,0,0,1\r\n"));
   EXPECT_FALSE(is_size_table("solid a\nfacet normal 0 0 1\n"));
   EXPECT_FALSE(is_size_table("OFF\n3 1 0\n0 0 0\n"));
-  const SizeField f = read_size_table("x;y;z;h\n0;0;0;1\n\n# more\n1;2;3;0.5\n", "t");
+  const SizeField f = read_size_table("x;y;z;h\n0;0;0;1\n\n# more\n1;2;3;0.5\n", "", "t");
   ASSERT_EQ(f.points.size(), 2u);
   EXPECT_EQ(f.points[1], (Vec3{1, 2, 3}));
   EXPECT_EQ(f.size[1], 0.5);
   EXPECT_EQ(f.tris.size(), 2u);  // points alone
-  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 0\n", "t"), BadInput);
-  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 a 1\n", "t"), BadInput);
-  EXPECT_THROW(read_size_table("0 0 0 -1\n", "t"), BadInput);
+  EXPECT_EQ(read_size_table("x y z fine\n0 0 0 1\n1 1 1 2\n", "fine", "t").size, (std::vector<double>{1, 2}));
+  EXPECT_THROW(read_size_table("x y z fine\n0 0 0 1\n", "coarse", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 1\n", "fine", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 0\n", "", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 1\n0 0 a 1\n", "", "t"), BadInput);
+  EXPECT_THROW(read_size_table("0 0 0 -1\n", "", "t"), BadInput);
   for (const char* first : {"0 0 0", "0 0 0 1 5", "0 0 0 nan"})  // is no line of names
-    EXPECT_THROW(read_size_table(std::string(first) + "\n1 1 1 0.4\n", "t"), BadInput) << first;
+    EXPECT_THROW(read_size_table(std::string(first) + "\n1 1 1 0.4\n", "", "t"), BadInput) << first;
 }
 
 TEST(Size, GeometryIsDividedAsAsked) {
