@@ -17,6 +17,8 @@ namespace {
 /// Edges are short if they are below this share of the median, and another one is not for a factor of `gap`.
 constexpr double short_share = 0.01, gap = 10;
 
+constexpr double tangent = 0.94;  ///< cosine, 20 degrees: patches that meet at less may be merged
+
 bool has_sound_indices(const Mesh& mesh) {
   for (const Tri& t : mesh.tris)
     for (int v : t)
@@ -48,7 +50,9 @@ void find_lines_near(const Surface& s, Vec3 place, double reach, Diagnosis& d) {
   const auto* model = s.face.has("model") ? &s.face.get<std::uint8_t>("model") : nullptr;
   for (int h = 0; h < (int)opposite.size(); ++h) {
     const int g = opposite[h];
-    const bool patches = g >= 0 && patch && (*patch)[h / 3] != (*patch)[g / 3];
+    const Vec3 m = area_vector(s, h / 3), n = g < 0 ? m : area_vector(s, g / 3);
+    const bool smooth = dot(m, n) >= tangent * norm(m) * norm(n);
+    const bool patches = g >= 0 && smooth && patch && (*patch)[h / 3] != (*patch)[g / 3];
     const bool crease = g >= 0 && !patches && model && ((*model)[h / 3] >> h % 3 & 1);
     if (!(g < 0 || patches || crease) ||
         distance_to_segment(place, s.points[origin(s.tris, h)], s.points[target(s.tris, h)]) > reach)

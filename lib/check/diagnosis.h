@@ -18,7 +18,7 @@ struct Diagnosis {
   Gaps gaps;                      ///< borders that almost fit,
   bool joined = false;            ///< whether sheets were left joined where they meet,
   bool sheets = false;            ///< and some of them lie between regions, which a wrap would join
-  // Lines of the surface within `reach` of the place of the failure.
+  // Lines of the surface within `reach` of the place of the failure: borders of patches are smooth.
   bool at_border = false, at_patch_border = false, at_crease = false;
 };
 
