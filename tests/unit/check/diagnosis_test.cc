@@ -63,7 +63,7 @@ TEST(Diagnosis, KnowsTheLinesNextToAPlace) {
   const Diagnosis crease = diagnose(s, {3.5, 0.5, 0}, 0.3);
   EXPECT_TRUE(!crease.at_patch_border && crease.at_crease && !crease.at_border);
   EXPECT_TRUE(diagnose(s, {5.1, 0.9, 0}, 0.3).at_border);
-  // patches that meet at an angle cannot be merged
+  // where they meet at an angle, patches cannot be merged
   for (Vec3& p : s.points) p.z = std::max(0.0, p.x - 5);
   EXPECT_FALSE(diagnose(s, {5, 0.5, 0}, 0.3).at_patch_border);
 }
