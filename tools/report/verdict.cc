@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "formats/stream/model_edges.h"
+#include "formats/text.h"
 #include "lib/clean/clean.h"
+#include "lib/core/lists.h"
 #include "lib/core/number.h"
 #include "lib/defeature/defeature.h"
 #include "tools/report/histogram.h"
@@ -26,6 +29,22 @@ Remark cleaning_of(const Stream& stream) {
   for (const std::string& text : stream.remarks)
     if (const Remark r = parse_remark(text); r.opened + r.split + r.dropped > 0) cleaning = r;
   return cleaning;
+}
+
+/// Returns the labels, or names, of lines of the input that no edge of a result of the chain has.
+std::vector<std::string> lines_lost(const Stream& stream) {
+  std::vector<std::string> lost;
+  std::vector<int> given = read_model_edges(stream).tag, kept;
+  sort_unique(given);
+  if (!stream.find("ref_vertex") || given.empty() || given.back() == 0) return lost;
+  for (const LineEdge& e : model_lines(stream)) kept.push_back(e.tag);
+  sort_unique(kept);
+  for (int tag : given) {
+    if (tag == 0 || std::binary_search(kept.begin(), kept.end(), tag)) continue;
+    const std::string name = stream.name_of(1, tag);
+    lost.push_back(name.empty() ? std::to_string(tag) : meshpipe::quoted(name));
+  }
+  return lost;
 }
 
 }  // namespace
@@ -64,6 +83,9 @@ std::vector<std::string> warnings_of(const Stream& stream, const Findings& f) {
     lines.push_back("of the input, mclean has opened " + std::to_string(r.opened) + " edges, split " +
                     std::to_string(r.split) + " vertices, dropped " + std::to_string(r.dropped) +
                     " triangles");
+  std::string lost;
+  for (const std::string& line : lines_lost(stream)) lost += (lost.empty() ? "" : ", ") + line;
+  if (!lost.empty()) lines.push_back("lines of the input that have no edge in the result: " + lost);
   return lines;
 }
 
@@ -90,6 +112,7 @@ nlohmann::ordered_json report_of(const Findings& f, const Stream& stream) {
       report["region_volumes"].push_back(
           {{"label", v.label}, {"volume", v.result}, {"reference", v.reference}});
   if (const double most = moved_in(stream); most > 0) report["moved"] = most;
+  if (const auto lost = lines_lost(stream); !lost.empty()) report["lines_lost"] = lost;
   if (const Remark c = cleaning_of(stream); c.opened + c.split + c.dropped > 0)
     report["input"] = {{"opened", c.opened}, {"split", c.split}, {"dropped", c.dropped}};
   return report;
